@@ -182,7 +182,7 @@ fn joints_reach_the_ends_of_their_ranges_at_any_speed() {
                 }
                 let mut goal = lockstep.goal(Target::Joints(q), OnArrival::ReportAndFinish);
                 goal.budget = goal.budget.scaled(speed);
-                // The end itself is refused, and the error says how far the joint may go.
+                // The end itself is refused, and the error names the permitted range of the joint.
                 let error = lockstep.submit(goal).unwrap_err();
                 let MotionError::Goal(GoalError::OutOfRange {
                     lower: least,

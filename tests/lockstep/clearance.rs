@@ -1,4 +1,4 @@
-//! How an arm stays clear of itself and of regions: it slows down on approach and never comes too
+//! Arms that stay clear of themselves and of regions: they slow down on approach and never come too
 //! near.
 
 use std::time::Duration;
@@ -15,11 +15,10 @@ use franka_rt::session::{
 };
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-/// How far the distance may fall below the one to keep, `[m]`: the braking path is checked at two
-/// points only.
+/// Largest shortfall of the distance, `[m]`: the braking path is checked at two points only.
 const CURVE: f64 = 1e-4;
 
-/// The same for braking at 6 rad/s^2, where the joints come to rest one after the other.
+/// The same for braking at 6 rad/s^2, where the joints stop one after the other.
 const QUICK_CURVE: f64 = 1e-3;
 
 /// A posture bent forwards, with the hand in the base.

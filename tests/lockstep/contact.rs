@@ -1,4 +1,4 @@
-//! Where a contact is, told from the external torques of an arm that sticks and flexes.
+//! Location of a contact, computed from the external torques of an arm that sticks and flexes.
 
 use franka_model::RobotKind;
 use franka_model::collision::Body;
@@ -96,7 +96,7 @@ fn places(kind: RobotKind) {
     }));
 }
 
-/// Medians over the contacts that are told.
+/// Medians over these contacts.
 fn errors(of: &[&Told]) -> Errors {
     Errors::medians(of.iter().filter_map(|Told { push, contact }| {
         let contact = contact.as_ref().ok()?;

@@ -17,7 +17,7 @@ fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
     error.control().expect("ended by the robot").clone()
 }
 
-/// What a diagnosis names: error, subject, quantity, origin, first cycle, and the causes' kinds.
+/// Content of a diagnosis: error, subject, quantity, origin, first cycle, and the causes' kinds.
 fn told(diagnosis: &Diagnosis) -> String {
     let finding = diagnosis.finding.expect("it is visible");
     let causes = diagnosis.causes.iter().map(core::mem::discriminant);

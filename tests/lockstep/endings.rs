@@ -1,4 +1,4 @@
-//! How interrupted motions end.
+//! Ends of interrupted motions.
 
 use std::sync::mpsc;
 
@@ -39,7 +39,7 @@ fn a_stop_brakes_and_resolves_itself_and_the_goal() {
     });
 }
 
-/// Of two callers, under goals and under a control function.
+/// Stops by two callers, under goals and under a control function.
 #[test]
 fn stops_at_the_same_time_resolve_with_the_same_rest() {
     for_each_robot(|ready| {
@@ -351,7 +351,7 @@ fn bad_goals_are_named_and_change_nothing() {
 }
 
 /// The state of the motion is unknown, so the control function gets no more states, and the robot
-/// is told to stop.
+/// receives a stop.
 #[test]
 fn a_control_function_gets_no_more_states_after_an_unreadable_reply() {
     for_each_robot(|ready| {

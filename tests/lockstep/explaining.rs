@@ -180,8 +180,8 @@ fn places(kind: RobotKind) {
     assert!(errors.place < 0.03 && errors.force < 0.15, "{errors}");
 }
 
-/// What is explained of an arm that swings around the posture of the push, and is pushed on its
-/// way for 0.3 s.
+/// Explanation for an arm that swings around the posture of the push, and is pushed in motion for
+/// 0.3 s.
 fn pushed_on_its_way(push: &Push, arm: &Arm, seed: u64) -> Place {
     println!("{:?}, seed {seed}", push.body);
     let mut config = Config {
@@ -192,7 +192,7 @@ fn pushed_on_its_way(push: &Push, arm: &Arm, seed: u64) -> Place {
         seed,
         ..Config::default()
     };
-    // Pushes are on postures that are nearer to themselves than a robot moves by itself.
+    // Some pushes are on postures that are nearer to themselves than a robot permits.
     config.unpublished.self_collision.margin = 0.0;
     let mut lockstep = Lockstep::new(config);
     let never = CollisionBehavior::uniform([90.0; 7], [100.0; 7], [190.0; 6], [200.0; 6]);

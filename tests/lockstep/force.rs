@@ -2,10 +2,10 @@
 //!
 //! The forces are those of the simulated contact, in the millisecond in which it acts on the arm,
 //! and not estimates of the driver. The part of a push that accelerates the arm does not come from
-//! the law. The contact supplies it whatever the torques are: `Lambda J ddq`, with the simulated
-//! arm's whole inertia, rotors included. It is subtracted. By the equations of motion, the rest is
-//! the resistance of the joints' torques and friction. The hand holds the end effector at a point,
-//! so `J` is the Jacobian of the position only:
+//! the law. The contact supplies it for any torques: `Lambda J ddq`, with the simulated arm's whole
+//! inertia, rotors included. It is subtracted. By the equations of motion, the rest is the
+//! resistance of the joints' torques and friction. The hand holds the end effector at a point, so
+//! `J` is only the Jacobian of the position:
 //!
 //! ```text
 //! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
@@ -321,9 +321,9 @@ fn an_undeclared_load_is_held_up_to_the_cap_and_always_reported() {
     });
 }
 
-/// The undeclared load exceeds the cap, and the goal has no end of its own. The cap bounds the
-/// dampers as well, so the load displaces the arm like a hand and the arm keeps sinking. It may
-/// reach a limit of the robot before it rests.
+/// The undeclared load exceeds the cap, and the goal itself has no end. The cap bounds the dampers
+/// as well, so the load displaces the arm like a hand and the arm keeps sinking. It may reach a
+/// limit of the robot before it rests.
 #[test]
 fn the_sinking_of_a_held_arm_is_reported() {
     for_each_robot(|ready| {

@@ -289,8 +289,8 @@ fn under(limits: SystemLimits) -> Lockstep {
 
 /// Joint targets at 99 % of the range of system 5.9, to either side of its middle.
 ///
-/// The envelope of joints 1 and 6 allows no speed beyond 98.97 and 99.9 % of what is documented, so
-/// that their targets are at 99 % of what it leaves.
+/// The envelope of joints 1 and 6 allows no speed beyond 98.97 and 99.9 % of the documented range.
+/// Their targets are therefore at 99 % of the remaining range.
 fn near_the_ends_of_5_9() -> Vec<(usize, [f64; 7])> {
     let limits = JointLimits::fr3_system_5_9();
     let envelope = limits.envelope.expect("an FR3 has one");
@@ -353,7 +353,7 @@ fn targets_at_99_percent_arrive_where_5_9_is_served_and_nowhere_else() {
 
 #[test]
 fn goals_are_checked_against_the_ranges_of_the_connected_robot() {
-    // Joint 6 of a Panda folds in that far, that of a Research 3 does not.
+    // Joint 6 of a Panda folds in that far, joint 6 of a Research 3 does not.
     let mut q: [f64; 7] = READY.into();
     q[5] = 0.45;
     let mut fer = Lockstep::ready_of(RobotKind::Fer);

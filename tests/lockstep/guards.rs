@@ -17,7 +17,7 @@ fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
 }
 
 /// Pulls the arm aside against spring and damper, at constant velocity, until the deviation guard
-/// binds: it must not swing back by itself. Returns how far, `[m]`.
+/// binds: the arm must not swing back alone. Returns the distance, `[m]`.
 fn pull_aside(lockstep: &mut Lockstep) -> f64 {
     let start = lockstep.arm_pose().translation.y;
     loop {

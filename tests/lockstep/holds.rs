@@ -34,7 +34,7 @@ fn of(arm: Arm, seed: u64) -> Lockstep {
     })
 }
 
-/// One that a push does not stop.
+/// A robot that a push does not stop.
 fn tolerant(mut lockstep: Lockstep) -> Lockstep {
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
@@ -138,7 +138,7 @@ fn an_arm_that_sticks_is_held_without_hunting() {
     }
 }
 
-/// How far an arm that was let go swings beyond its target along `way` within 3 s, `[m]`.
+/// Distance by which a released arm swings beyond its target along `way` within 3 s, `[m]`.
 fn swing(lockstep: &mut Lockstep, target: &Isometry3<f64>, way: Vector3<f64>) -> f64 {
     let mut beyond = 0.0_f64;
     for _ in 0..3000 {
@@ -185,9 +185,9 @@ fn an_arm_that_was_held_back_comes_home_without_a_kick() {
     }
 }
 
-/// A hand that moves the end effector so far away at 2 cm/s, holds it there until 5 s are over, and
-/// lets go. Returns the greatest force that it meets, the mean over its last second, `[N]`, and how
-/// far the arm swings beyond its target, `[m]`.
+/// A hand that moves the end effector this far at 2 cm/s, holds it there until 5 s are over, and
+/// releases it. Returns three values: the greatest force on the hand and its mean over the last
+/// second, `[N]`, and the arm's swing beyond its target, `[m]`.
 fn slow_push(arm: Arm, way: Vector3<f64>, distance: f64, gains: Gains) -> [f64; 3] {
     let mut lockstep = tolerant(of(arm, 3));
     let engaged = lockstep.engage();
@@ -219,7 +219,8 @@ fn slow_push(arm: Arm, way: Vector3<f64>, distance: f64, gains: Gains) -> [f64; 
     [most, last, beyond]
 }
 
-/// A push within what friction may take cannot be told from friction, and the integral answers it.
+/// A push within the range of friction cannot be distinguished from friction, and the integral
+/// answers it.
 #[test]
 fn a_slow_push_meets_little_more_with_compensation_than_without() {
     let seeds = 0..if thorough() { 3 } else { 1 };
@@ -245,7 +246,7 @@ fn a_slow_push_meets_little_more_with_compensation_than_without() {
     }
 }
 
-/// A block that stops the arm short of its target for four seconds, before it has come to rest.
+/// A block that stops the arm short of its target for four seconds, before it is at rest.
 #[test]
 fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
     let realistic = (0..3).map(|seed| Arm::sample(RobotKind::Fer, seed, &Family::realistic()));
@@ -319,7 +320,7 @@ fn a_load_that_is_gripped_and_dropped_is_compensated() {
     }
 }
 
-/// Each step is a motion of its own.
+/// Each step is a separate motion.
 #[test]
 fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
     let mut lockstep = sticking(2);

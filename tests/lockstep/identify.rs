@@ -1,4 +1,5 @@
-//! Identifying arms: what is found against what an arm is like, and what a later connection gains.
+//! Identification of arms: estimates against an arm's true parameters, and the benefit for a later
+//! connection.
 
 use franka_lockstep::Lockstep;
 use franka_model::{Load, Model, RobotKind};
@@ -11,7 +12,7 @@ use franka_sim::arm::{Arm, Family};
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3, Vector6};
 
-/// What the flange carries beside the hand: mass and centre.
+/// Load on the flange besides the hand: mass and centre.
 const CARRIED: (f64, [f64; 3]) = (0.5, [0.0, 0.02, 0.1]);
 
 /// A realistic arm of a kind that its seed decides, which carries a load or not.
@@ -88,7 +89,7 @@ fn identify(
     fit.finish()
 }
 
-/// How far the end effector is behind its reference in the first motions of a new connection, 5 cm
+/// Distance of the end effector behind its reference in the first motions of a new connection, 5 cm
 /// up, down and up again, `[m]`.
 fn lags(lockstep: &mut Lockstep, known: Option<Identified>, declared: bool) -> [f64; 3] {
     lockstep.reconnect();
@@ -109,7 +110,7 @@ fn lags(lockstep: &mut Lockstep, known: Option<Identified>, declared: bool) -> [
     lags
 }
 
-/// True if an estimate is within so many of its deviations.
+/// True if an estimate is within this many of its deviations.
 fn agrees(found: &Estimate, truth: f64, deviations: f64) -> bool {
     (found.value - truth).abs() < deviations * found.deviation
 }
@@ -136,7 +137,7 @@ fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
         assert!(known < 0.6 * unknown, "{known} m, {unknown} m");
         assert!(known < 1.3 * later, "{known} m, {later} m");
         if carries {
-            // What is declared is no bias any more.
+            // A declared load is no longer a bias.
             let [declared, ..] = lags(&mut lockstep, Some(found), true);
             assert!(declared < 0.6 * unknown, "{declared} m");
         }

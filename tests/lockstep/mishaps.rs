@@ -129,7 +129,7 @@ fn jitter_makes_commands_late_and_loses_nothing() {
 fn overtaken_states_count_as_lost() {
     arrives(mishaps::reordering, |_, report, tally, _| {
         assert_eq!(tally.lost, 0);
-        // The motion goes on after it has arrived, the end of the report's duration.
+        // The motion continues after its arrival, the end of the report's duration.
         let share = report.lost_states as f64 / tally.sent as f64;
         assert!((share - mishaps::OVERTAKEN).abs() < 0.04, "{share}");
         let expected = (1.0 - mishaps::OVERTAKEN).powi(2);

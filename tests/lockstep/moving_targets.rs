@@ -57,7 +57,7 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
             assert_eq!(lockstep.update(goal, moving(ms)), Ok(true));
         }
     }
-    // The motion goes on as long as it counts, and then ends within the default accelerations.
+    // The motion continues while it counts, and then ends within the default accelerations.
     lockstep.run(Target::MOVES_ON_MS);
     let ends = moved(&start, &twist, 1.4);
     let error = PoseError::between(&lockstep.reference_pose(), &ends);
@@ -180,9 +180,8 @@ fn a_target_that_moves_has_no_arrival() {
     assert_eq!(error.to_string(), text);
 }
 
-/// Goes to `target`, and pauses for two seconds after 400 ms. Returns the outcome, how far beside
-/// the straight line the reference was, and how far it moved in the last second of the pause,
-/// `[m]`.
+/// Moves to `target`, and pauses for two seconds after 400 ms. Returns the outcome, the reference's
+/// distance from the straight line, and its motion in the last second of the pause, `[m]`.
 fn paused(target: Isometry3<f64>) -> (Outcome, f64, f64) {
     let mut lockstep = realistic();
     let start = lockstep.arm_pose().translation.vector;

@@ -36,7 +36,7 @@ fn rounded(poses: &[Isometry3<f64>], blend: f64) -> Vec<Waypoint> {
     poses.iter().map(waypoint).collect()
 }
 
-/// What a motion was like.
+/// Course of a motion.
 #[derive(Debug)]
 struct Way {
     /// Its duration, or why it has none.
@@ -141,7 +141,7 @@ fn corners_are_stopped_at_or_rounded_within_their_distance() {
     assert!(durations[1] < durations[0] - 0.3, "{durations:?}");
 }
 
-/// A preview is what the reference then does: along a path, and on the way of a plain goal.
+/// The reference does what the preview shows: along a path, and on the way of a plain goal.
 #[test]
 fn a_motion_does_what_its_preview_says() {
     for along in [true, false] {
@@ -385,7 +385,7 @@ fn robots() -> Vec<(String, Lockstep)> {
     robots
 }
 
-/// Tries a path that is to be refused for the way between two waypoints, and says why it was.
+/// Tries a path that must be refused for the way between two waypoints, and returns the reason.
 fn refused_on_the_way(name: &str, lockstep: &mut Lockstep, waypoints: &[Waypoint]) -> String {
     let before = *lockstep.robot.q();
     let resolved = lockstep.client.resolved();
@@ -511,7 +511,7 @@ fn nearest(lockstep: &mut Lockstep, id: GoalId, place: &Isometry3<f64>) -> f64 {
     least
 }
 
-/// The motion before may end at any moment: the path that comes then begins as a motion of its own.
+/// The previous motion may end at any moment: the path that comes then begins as a separate motion.
 #[test]
 fn a_path_that_comes_as_the_motion_before_ends_is_followed_all_the_same() {
     for_each_robot(|ready| {
@@ -586,7 +586,7 @@ fn a_path_whose_common_start_does_not_come_moves_nothing() {
     });
 }
 
-/// What a path leads around may be just what its last place lies behind.
+/// The last place of a path may be behind the region around which the path leads.
 #[test]
 fn a_path_that_is_braked_before_a_region_goes_nowhere_else() {
     for_each_robot(|ready| {

@@ -14,9 +14,9 @@ fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {
     error.control().expect("ended by the robot").clone()
 }
 
-/// Asserts that the text names `cause`, that the log is full, that only its last entry has the
-/// command that `stepped` recognises, and that the state of that entry, the first after the
-/// command, is the one with the error.
+/// Asserts that the text names `cause`, and that the log is full. Only its last entry must have the
+/// command that `stepped` recognises. The state of that entry, the first after the command, must be
+/// the one with the error.
 fn assert_shown(error: &ControlError, cause: RobotError, stepped: impl Fn(&LogEntry) -> bool) {
     let text = format!(
         "libfranka: Move command aborted: motion aborted by reflex! [\"{}\"]\n\

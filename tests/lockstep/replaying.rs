@@ -43,7 +43,7 @@ fn recorded(kind: RobotKind) -> Vec<Sample> {
     samples
 }
 
-/// Moves to the first target, and replays until `end` says so, the last target is due or the
+/// Moves to the first target, and replays until `end` returns true, the last target is due or the
 /// session has ended. Returns the session.
 fn replay(
     lockstep: &mut Lockstep,
@@ -257,7 +257,7 @@ fn what_is_no_motion_of_this_arm_is_refused_before_anything_moves() {
         refused(fr3, &twice, options),
         ReplayError::Gap { .. }
     ));
-    // Ten times as fast: what speed would do is part of the answer.
+    // Ten times as fast: the answer includes the effect of the speed.
     let fast: Vec<Sample> = samples.iter().step_by(20).copied().collect();
     let fast: Vec<Sample> = fast
         .iter()

@@ -1,5 +1,5 @@
-//! A robot that sends no states during a motion: nothing happens before the link timeout, and the
-//! motion is aborted at it, also where its end was told before and no state could show it.
+//! A robot that sends no states during a motion. Nothing happens before the link timeout, at which
+//! the motion is aborted, even if its end was reported before and no state could show it.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
                     Some(Err(MotionError::LinkLost { silence })) if lost => {
                         assert_eq!(*silence, timeout);
                     }
-                    // From 20 missing commands on, the robot stops by itself.
+                    // After more than 20 missing commands, the robot stops on its own.
                     Some(Err(MotionError::Control(_))) if !lost && silence > 20 => {}
                     None if !lost => {}
                     other => panic!("{silence} ms {silent:+}: {other:?}"),
@@ -39,7 +39,7 @@ fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
     }
 }
 
-/// The robot misses the commands, aborts the motion and says so: its states would show that.
+/// The robot misses the commands, aborts the motion and reports that: its states would show it.
 #[test]
 fn an_end_that_no_state_confirms_is_a_lost_link_after_the_link_timeout_and_not_before() {
     for_each_robot(|robot| {

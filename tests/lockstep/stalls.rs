@@ -1,7 +1,7 @@
-//! What an FER's transmit stalls do to its client.
+//! Effect of an FER's transmit stalls on its client.
 //!
-//! Measured on robots, in 30 s under control by a client that answers the newest available state:
-//! some 28 of the 30 000 states were skipped for a newer one, never two in a row, and the mean of
+//! Figures of robots, in 30 s under control by a client that answers the newest available state:
+//! some 28 of the 30 000 states were skipped for a newer one, never two in a row. The mean of
 //! `control_command_success_rate` was 0.986. These are the figures of libfranka's example
 //! `communication_test`. The tests count as the example does: in the control function, from the
 //! time steps and the rate in each state.
@@ -17,7 +17,7 @@ use franka_sim::Network;
 use franka_sim::network::Conditions;
 use franka_tests::cycle_counts::CycleCounts;
 
-/// Commands no torque to an FER for so many cycles, over `network`.
+/// Commands no torque to an FER for this many cycles, over `network`.
 fn communicate(network: Network, turnaround: Duration, cycles: u64) -> CycleCounts {
     let mut lockstep = Lockstep::ready_of(RobotKind::Fer);
     lockstep.link = Link::over(network);

@@ -1,4 +1,4 @@
-//! Ends of motions while hands push the arm: it is stopped, and comes to rest, all the same.
+//! Ends of motions while hands push the arm: it still receives a stop and stops.
 
 use std::time::Duration;
 
@@ -12,11 +12,11 @@ use franka_sim::{Config, Touch};
 use franka_tests::thorough;
 use nalgebra::Translation3;
 
-/// The longest time from a stop until it resolves well while hands push, `[ms]`: until the robot is
-/// told to stop, and what it takes for that.
+/// The longest time from a stop to its successful result while hands push, `[ms]`. It consists of
+/// the time until the robot receives the stop, and the duration of the stop.
 const BOUND: u64 = 2500;
 
-/// The same of a stop that says that the arm was not seen to rest.
+/// The same for a stop that reports that the arm was not seen at rest.
 const UNSEEN: u64 = BOUND + 2000;
 
 fn arms() -> u64 {
@@ -45,8 +45,8 @@ fn hands((force, each): (f64, u64)) -> Touch {
     })
 }
 
-/// How hard hands push, and how long to each side. The second shakes the arm, also under the robot's
-/// own controller.
+/// Force of the hands, and time to each side. The second shakes the arm, also under the robot's own
+/// controller.
 const PUSHES: [(f64, u64); 4] = [(15.0, 250), SHAKE, (30.0, 250), (60.0, 2000)];
 
 const SHAKE: (f64, u64) = (15.0, 60);
@@ -55,7 +55,7 @@ fn aside(lockstep: &Lockstep) -> Target {
     (Translation3::new(0.0, 0.3, 0.0) * lockstep.arm_pose()).into()
 }
 
-/// Stops an arm that moves while hands push it, and expects it to come to rest in time.
+/// Stops an arm that moves while hands push it, and expects it to stop in time.
 fn stop_while_pushed(mut lockstep: Lockstep, push: (f64, u64), what: &str) {
     lockstep.run(700);
     lockstep.robot.touch(hands(push));
@@ -124,7 +124,7 @@ fn no_motion_ends_in_a_reflex_because_hands_push_the_arm() {
                 goal.settling.timeout = Duration::from_secs(1);
                 let id = lockstep.submit(goal).expect("within reach");
                 lockstep.run(700);
-                // Hands that go on pushing may keep the arm from its target for as long.
+                // Hands that continue to push may keep the arm from its target for as long.
                 lockstep.robot.touch(hands(push).lasting(10_000));
                 if cancelled {
                     lockstep.cancel(id);

@@ -23,8 +23,8 @@ fn insensitive(config: Config) -> Lockstep {
     lockstep
 }
 
-/// Where the arm begins, and where it is to go: the straight line winds the joints to the ends of
-/// their ranges unless the elbow is led.
+/// Start and target of an arm. The straight line winds the joints to the ends of their ranges
+/// unless the elbow is led.
 fn winding(kind: RobotKind, tool: Tool) -> (Lockstep, Isometry3<f64>) {
     let q = [-0.4781, -0.8056, -0.3814, -2.3850, 0.2325, 3.4186, 0.5198];
     let turn = UnitQuaternion::new_normalize(Quaternion::new(0.0, 0.4635, 0.8860, 0.0));

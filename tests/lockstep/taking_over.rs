@@ -77,7 +77,7 @@ fn an_arm_brakes_when_its_motion_is_aborted() {
     }
 }
 
-/// The robot has been told to stop the first motion, and has not ended it yet.
+/// The robot has received a stop for the first motion, and has not ended it yet.
 #[test]
 fn a_motion_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_before() {
     for after in [0, 1, 2, 3, 5, 300] {

@@ -32,7 +32,7 @@ fn watch(
     panic!("goal {goal:?} is unresolved after {most} ms");
 }
 
-/// A program that commands zero torques for so many milliseconds of the robot's time.
+/// A program that commands zero torques for this many milliseconds of the robot's time.
 fn nothing_for(milliseconds: u64) -> Callback {
     let mut time = Duration::ZERO;
     Callback::torques(Version::V10, move |_, step| {
@@ -96,7 +96,7 @@ fn states_superseded_by_a_newer_one_count_as_skipped() {
     let id = lockstep.control_function(nothing_for(400));
     let id = id.expect("nothing else runs");
     lockstep.run(100);
-    // As when the control thread finds three states and answers the newest: of five missing states,
+    // As if the control thread found three states and answered the newest: of five missing states,
     // two never arrived.
     let mut told = VecDeque::from([(5, 3), (2, 2), (1, 0)]);
     let (mut lost, mut skipped) = (0, 0);

@@ -21,7 +21,7 @@ fn served() -> String {
     robot.description().expect("an FR3 describes itself").into()
 }
 
-/// The configuration of an ideal FR3 whose limits are those of the constants.
+/// The configuration of an ideal FR3 with the limits of the constants.
 fn before_5_9() -> Config {
     let mut arm = Arm::ideal(RobotKind::Fr3);
     arm.limits = SystemLimits::Before5_9;
@@ -153,7 +153,7 @@ async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
         .await;
     ended.expect("the robot accepts the motion");
     let (worst, end) = hear.recv().expect("an end");
-    // The limit is that of the previous cycle's position; it falls by 6 mrad/s per cycle.
+    // The limit is for the position of the previous cycle; it falls by 6 mrad/s per cycle.
     assert!(worst.abs() < 0.01, "it binds and holds: {worst}");
     assert!(1.48 < end && end < 1.5, "{end}");
     robot.shutdown().await;

@@ -61,7 +61,7 @@ async fn every_function_of_a_downloaded_library_gets_its_inputs() {
     let (robot, _sim) = connected(sim).await;
     let downloaded = robot.load_model_library(Architecture::X64, System::Linux);
     assert_eq!(downloaded.await, Ok(bytes));
-    // SAFETY: the library was compiled from the source beside this file, with the signatures that
+    // SAFETY: the library was compiled from the source next to this file, with the signatures that
     // `load` names.
     let library = unsafe { robot.model_library() }.await.expect("a library");
     robot.shutdown().await;
@@ -159,7 +159,7 @@ fn invalid_libraries_are_refused_with_the_vendors_text() {
     );
 
     let lacking = stand_in("lacking", &["--cfg", "lacking"]);
-    // SAFETY: the library was compiled from the source beside this file, with the signatures that
+    // SAFETY: the library was compiled from the source next to this file, with the signatures that
     // `load` names.
     let error = unsafe { ModelLibrary::load(&lacking) }.expect_err("a function is missing");
     assert!(matches!(error, LibraryError::Symbol { .. }));

@@ -1,5 +1,5 @@
 //! A library with the functions of the vendor's, as a robot could send it, with easily recognised
-//! results: each number is a sum of the function's tag, the number's place, and all inputs, each
+//! results. Each number is a sum of the function's tag, the number's place, and all inputs, each
 //! with a different weight.
 //!
 //! Compiled by the tests, as a `cdylib`; with `--cfg lacking`, one function is missing.

@@ -26,7 +26,7 @@ const MODES: Modes = Modes {
     controller: ControllerMode::ExternalController,
 };
 
-/// How a motion ends.
+/// End of a motion.
 #[derive(Clone, Copy, Debug)]
 enum End {
     /// Its `Move` is refused.
@@ -68,7 +68,7 @@ const ALL_EVENTS: [&str; 8] = [
 /// Cycles of a motion before its end: more than the log holds.
 const RUNNING: u64 = 60;
 
-/// A program of each kind that ends by itself if it can.
+/// A program of each kind that has an end if possible.
 fn programs(end: End) -> [Program; 3] {
     let mut calls = 0;
     let callback = Callback::torques(VERSION, move |_: &RobotState, _| -> Next<Torques> {

@@ -106,7 +106,7 @@ impl Engaged {
         }
     }
 
-    /// Runs for so many milliseconds, in which the deadman is kept alive.
+    /// Runs for this many milliseconds, in which the deadman is kept alive.
     fn run(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             if let Some(token) = &self.token {

@@ -149,7 +149,7 @@ fn a_full_condition_and_what_follows_it_allocate_and_free_nothing() {
         while lockstep.client.outcome(id).is_none() {
             lockstep.tick_around(|part, work| {
                 let during = calls_during(work);
-                // What has ended is handed over after the answer.
+                // A finished motion is handed over after the answer.
                 calls += during;
                 cycles += u64::from(part == Part::Answer);
             });

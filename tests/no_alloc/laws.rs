@@ -40,7 +40,7 @@ fn laws_allocate_and_free_nothing() {
     for (version, model) in [(Version::V5, Model::fer()), (Version::V10, Model::fr3())] {
         let (mut parameters, arriving) = slot();
         let (remembered, mut memory) = slot();
-        // SAFETY: the function is static, and is what a law has to be.
+        // SAFETY: the function is static, and meets the requirements of a law.
         let code = unsafe { Code::new(counting as *const () as usize, Box::new(())) };
         let setup = Setup {
             model: Arc::new(model.clone()),

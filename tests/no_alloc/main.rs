@@ -35,13 +35,13 @@ fn count() {
     CALLS.set(CALLS.get() + 1);
 }
 
-// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what
-// that returns; counting touches a thread-local cell that is initialised at compile time and has no
-// destructor, so it neither allocates nor fails in any phase of a thread's life.
+// SAFETY: every method passes its arguments to the system's allocator unchanged and returns the
+// result unchanged. Counting touches a thread-local cell that is initialised at compile time and
+// has no destructor, so it neither allocates nor fails in any phase of a thread's life.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
-        // SAFETY: the caller's obligations are those of the system's allocator.
+        // SAFETY: the caller's obligations are equal to the system allocator's.
         unsafe { System.alloc(layout) }
     }
 

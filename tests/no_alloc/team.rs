@@ -71,7 +71,7 @@ fn joint_motions_and_their_stops_allocate_and_free_nothing() {
 const CARRIED: u64 = 20;
 
 /// Both carry an object, one of them against a wall for a while: it lags, and the other one halts
-/// and goes on. Some ways are stopped, taken back, or superseded by the next.
+/// and continues. Some motions are stopped, cancelled, or superseded by the next.
 #[test]
 fn carrying_an_object_allocates_and_frees_nothing() {
     let (coordinator, mut sessions) = two();

@@ -40,8 +40,8 @@ impl Drop for BrokenSocket {
 
 /// Lets `descriptor` lead where `target` does.
 fn lead(descriptor: RawFd, target: &impl AsRawFd) -> io::Result<()> {
-    // SAFETY: the call takes numbers. Its owner goes on to own `descriptor`, which is open before
-    // and after it.
+    // SAFETY: the call takes numbers. Its owner still owns `descriptor`, which is open before and
+    // after it.
     match unsafe { libc::dup2(target.as_raw_fd(), descriptor) } {
         -1 => Err(io::Error::last_os_error()),
         _ => Ok(()),

@@ -15,17 +15,17 @@ use rand::{Rng, SeedableRng};
 pub struct Push {
     /// The arm's.
     pub kind: RobotKind,
-    /// Posture when it comes.
+    /// Joint positions at the time of the push.
     pub q: JointVector,
-    /// What is pushed.
+    /// Body that is pushed.
     pub body: Body,
-    /// Where, `[m]`, base axes.
+    /// Point of the push, `[m]`, base axes.
     pub point: Vector3<f64>,
     /// On the arm, `[N]`, base axes.
     pub force: Vector3<f64>,
 }
 
-/// What was told of a push.
+/// Result for a push.
 #[derive(Debug, Clone)]
 pub struct Told {
     /// The push.
@@ -34,12 +34,12 @@ pub struct Told {
     pub contact: Result<Contact, Unknown>,
 }
 
-/// How far an estimate is from the push.
+/// Errors of an estimate against the push.
 #[derive(Debug, Clone, Copy)]
 pub struct Errors {
     /// `[m]`
     pub place: f64,
-    /// As a part of the force.
+    /// As a fraction of the force.
     pub force: f64,
 }
 
@@ -70,8 +70,8 @@ fn shape(kind: RobotKind) -> Shape<'static> {
 impl Push {
     /// A push of 5 to 40 N into the surface of a random posture, within 30 degrees of its normal.
     ///
-    /// The surface is that of the capsules that contain the arm, or up to 15 mm below: the estimate
-    /// knows neither.
+    /// The surface is the surface of the capsules that contain the arm, or up to 15 mm below it:
+    /// the estimate knows neither.
     pub fn random(kind: RobotKind, body: Body, random: &mut SmallRng) -> Self {
         let q = posture(kind, random);
         let placed = shape(kind).at(&q);
@@ -126,13 +126,13 @@ impl Push {
         transform::isometry(&pose).expect("rigid")
     }
 
-    /// Where it acts on the body that is pushed, in the frame of that, `[m]`.
+    /// Point of the push on the pushed body, in the frame of the body, `[m]`.
     fn place(&self) -> Point3<f64> {
         self.pose(&self.q)
             .inverse_transform_point(&self.point.into())
     }
 
-    /// How far this place and force are from those of the push, on an arm at `q`.
+    /// Errors of this place and force against the push, on an arm at `q`.
     pub fn errors(&self, q: &JointVector, point: &Vector3<f64>, force: &Vector3<f64>) -> Errors {
         let pushed = self.pose(q) * self.place();
         Errors {
@@ -147,7 +147,7 @@ impl Push {
         touch.offset(self.place().coords)
     }
 
-    /// What it exerts on the joints, `[N·m]`.
+    /// Torques on the joints, `[N·m]`.
     pub fn torque(&self) -> JointVector {
         let model = Model::physically_consistent(self.kind);
         let jacobian = model.zero_jacobian(self.frame(), &self.q, &EndEffector::default());

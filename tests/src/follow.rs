@@ -1,4 +1,4 @@
-//! How far target control is behind a target that moves evenly, in virtual time.
+//! Lag of target control behind a target that moves evenly, in virtual time.
 
 use franka_model::{RobotKind, Twist, rotation};
 use franka_rt::session::{OnArrival, Target};
@@ -20,7 +20,7 @@ pub fn twist() -> Twist {
     Twist::new(0.02, 0.08, -0.05, 0.1, -0.05, 0.15)
 }
 
-/// Where a pose is after `t` seconds of this motion.
+/// The pose after `t` seconds of this motion.
 pub fn moved(from: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f64> {
     let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
     Isometry3::from_parts(
@@ -32,9 +32,9 @@ pub fn moved(from: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f64> {
 /// Distance to a target that moves evenly, at most, in milliseconds of its motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lag {
-    /// Of the reference.
+    /// Lag of the reference.
     pub reference: f64,
-    /// Of the arm.
+    /// Lag of the arm.
     pub arm: f64,
 }
 

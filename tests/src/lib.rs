@@ -22,8 +22,8 @@ pub mod held_push;
 pub mod mishaps;
 pub mod push;
 
-/// How long a robot at the pace of its client waits for a command. Twenty that are missing in a row
-/// end a motion.
+/// Time for which a robot at the pace of its client waits for a command. Twenty missing commands in
+/// a row end a motion.
 pub const PATIENCE: Duration = Duration::from_millis(100);
 
 /// True if suites that draw or enumerate many cases run all of them: the variable

@@ -1,5 +1,5 @@
-//! Networks with one kind of fault each, for the suites in virtual time and over sockets: both have
-//! to show the same effects. Unless a function says otherwise, the fault acts in both directions.
+//! Networks with one kind of fault each, for the suites in virtual time and over sockets: both must
+//! show the same effects. Unless noted otherwise, the fault acts in both directions.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -89,8 +89,8 @@ pub fn cut(time: Range<Duration>) -> Network {
 }
 
 /// Packets to the client are lost. A state of protocol 5 takes two packets. There, a loss is mostly
-/// half of a state, and the share of lost states is almost twice that of lost packets. A state of
-/// protocol 10 takes one packet.
+/// half of a state, and the share of lost states is almost twice the share of lost packets. A state
+/// of protocol 10 takes one packet.
 pub fn halves(seed: u64) -> Network {
     let losing = losing(Loss::Independent(LOST_TO_CLIENT));
     Network::new(seed, losing, Conditions::default())

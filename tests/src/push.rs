@@ -39,7 +39,7 @@ pub struct ArmInertia {
 }
 
 impl ArmInertia {
-    /// Of this arm, as it is.
+    /// Inertia of this arm in its current state.
     pub fn of(lockstep: &Lockstep) -> Self {
         let config = lockstep.robot.config();
         let f_t_ee = transform::isometry_from_array(&lockstep.robot.state().F_T_EE);

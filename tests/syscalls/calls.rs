@@ -15,7 +15,7 @@ const ALLOWED: &[i64] = &[
     libc::SYS_poll,
     // Absent where the kernel serves the clock without a system call (vDSO).
     libc::SYS_clock_gettime,
-    // The kernel's own: it goes on with a wait that a stop of the process has interrupted.
+    // The kernel's own: it continues a wait that a stop of the process has interrupted.
     libc::SYS_restart_syscall,
 ];
 

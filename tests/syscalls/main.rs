@@ -1,9 +1,9 @@
 //! The system calls of the control thread, one by one.
 //!
-//! Each test runs a scenario in a child process of its own: this same program, traced with
-//! `ptrace`. It checks every system call that the thread of the cycle makes between its first and
-//! its last wait for the robot. Only receives, sends, polls, the clock and the eventfd are allowed.
-//! A contended lock, an allocation that reaches the system, a log or a file would show as another
+//! Each test runs a scenario in a separate child process: this same program, traced with `ptrace`.
+//! It checks every system call that the thread of the cycle makes between its first and its last
+//! wait for the robot. Only receives, sends, polls, the clock and the eventfd are allowed. A
+//! contended lock, an allocation that reaches the system, a log or a file would show as another
 //! call.
 //!
 //! An uncontended lock and an allocation from memory that the process already has make no call.

@@ -1,4 +1,4 @@
-//! What the traced child does: it controls a simulated robot in the same process, in every way.
+//! Scenarios of the traced child: it controls a simulated robot in the same process, in every way.
 
 use std::future::IntoFuture;
 use std::net::{IpAddr, Ipv4Addr};
@@ -49,7 +49,7 @@ fn above(robot: &Robot, metres: f64) -> Pose {
     Pose::translation(0.0, 0.0, metres) * robot.pose()
 }
 
-/// Waits until the control thread has taken so many states more.
+/// Waits until the control thread has received this many more states.
 async fn states(robot: &Robot, count: u64) {
     let states = &robot.stats().states;
     let end = states.get() + count;
@@ -62,7 +62,7 @@ async fn until(holds: impl Fn() -> bool) {
     }
 }
 
-/// Holds the simulator up until `noticed` completes.
+/// Delays the simulator until `noticed` completes.
 async fn in_silence<T>(sim: &Running, noticed: impl Future<Output = T>) -> T {
     let (go_on, held) = mpsc::channel::<()>();
     let noticed = async {
@@ -200,7 +200,7 @@ async fn every_kind_of_goal(robot: &Robot, arm: &Arm) {
     );
 }
 
-/// A control function that answers so many states with a command, and calls `also` each time.
+/// A control function that answers this many states with a command, and calls `also` each time.
 fn holding<C: Finish + Copy + Send + 'static>(
     command: C,
     mut also: impl FnMut() + Send + 'static,
@@ -236,7 +236,8 @@ fn generators(robot: &Robot) -> [Control; 4] {
     ]
 }
 
-/// Control functions of all nine kinds, with filter and limiter; then one that causes a reflex.
+/// Control functions of all nine kinds, with filter and limiter; then a function that causes a
+/// reflex.
 pub(crate) async fn functions() {
     let (robot, sim) = simulated().await;
     let torques = || holding(Torques([0.0; 7]), || {});
@@ -285,7 +286,7 @@ fn hold(mut control: Active<Torques>) {
     end.expect("it ends").expect("with a report");
 }
 
-/// Targets between which the robot plans by itself.
+/// Targets between which the robot itself plans.
 pub(crate) async fn asynchronous() {
     let (robot, _sim) = simulated().await;
     let options = AsynchronousOptions::default();

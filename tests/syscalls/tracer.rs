@@ -85,7 +85,7 @@ pub(crate) fn run(test: &str, names: &[&str]) -> io::Result<Vec<Calls>> {
     Ok(tracer.done)
 }
 
-/// How closely a thread is followed.
+/// Tracing level of a thread.
 enum Followed {
     /// Only its end and its new threads.
     Free,
@@ -148,7 +148,7 @@ impl Tracer<'_> {
             Err(error) => return Err(error.into()),
         };
         let entry = (info.op == libc::PTRACE_SYSCALL_INFO_ENTRY).then(|| {
-            // SAFETY: `op` says that the kernel has filled in this member of the union, which is
+            // SAFETY: `op` states that the kernel has filled in this member of the union, which is
             // plain integers.
             let entry = unsafe { info.u.entry };
             (entry.nr.cast_signed(), entry.args)

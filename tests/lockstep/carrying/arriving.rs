@@ -1,4 +1,4 @@
-//! Where the bar comes to when nothing holds the arms.
+//! Final position of the bar when nothing holds the arms.
 
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Tolerance;
@@ -49,7 +49,7 @@ fn two_arms_carry_one_bar_and_hardly_pull_at_each_other() {
             assert!(gap < 0.7e-3, "{gap} m");
             // Half of the distance at which the other one halts.
             assert!(lag < 7.5e-3, "{lag} m");
-            // Arms that disagree about where they are pull at each other as far as they may.
+            // Arms with different errors of position pull at each other up to the cap.
             let most = if pair == 0 { 4.0 } else { CAP + 3.0 };
             assert!(carriers.strain < most, "{} N", carriers.strain);
         }
@@ -58,7 +58,7 @@ fn two_arms_carry_one_bar_and_hardly_pull_at_each_other() {
 
 #[test]
 fn a_motion_that_is_tighter_than_both_arms_can_keep_says_so() {
-    // Both arms have a tolerance of their own here, so none is given for what they disagree by.
+    // Both arms have an individual tolerance here, so none is added for the distance between them.
     let mut carriers = Carriers::pair(9);
     let to = raised(&carriers.bar(), 0.1, 0.0, 0.0);
     let goals = carriers.carry_within(to, Some(Tolerance::default()));

@@ -1,4 +1,4 @@
-//! What holds or stops one arm, and what becomes of the bar.
+//! Hindrances and stops of one arm, and their effect on the bar.
 
 use franka_lockstep::pose_of;
 use franka_model::{EndEffector, READY};
@@ -33,7 +33,7 @@ fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() 
             carriers.strain
         );
         assert!(height < 0.06, "{height} m");
-        // The one that is free halts within this way: 12.8 to 17.1 mm.
+        // The free arm halts within this distance: 12.8 to 17.1 mm.
         assert!(gap < 0.018, "{gap} m");
         let most = if pair == 0 { 12.0 } else { 2.0 * CAP };
         assert!(carriers.strain < most, "{} N", carriers.strain);
@@ -45,7 +45,7 @@ fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() 
     }
 }
 
-/// Of two arms that halt, the one that is held back gives up after 5 s, not the one that waits.
+/// If two arms halt, the hindered arm gives up after 5 s, not the waiting one.
 #[test]
 fn who_waits_for_the_other_arm_gives_up_with_it_and_not_before() {
     let mut carriers = Carriers::new();

@@ -20,7 +20,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 /// Distance of the bases, which face each other, `[m]`.
 const APART: f64 = 1.2;
 
-/// Mass of the bar, `[kg]`; neither robot is told of it.
+/// Mass of the bar, `[kg]`; neither robot knows it.
 const MASS: f64 = 0.6;
 
 /// With how much force the springs of each arm may press, `[N]`.
@@ -60,7 +60,7 @@ fn scene() -> Scene {
         numbers(&((base * flange).inverse() * end))
     });
     let z = bar().translation.z;
-    // A grasp gives way by less than a millimetre under the forces here.
+    // A grasp yields by less than a millimetre under the forces here.
     let grasp = "solref='0.01 1'";
     Scene::mjcf(format!(
         "<mujoco><worldbody><body name='bar' pos='{} 0 {z}'><freejoint/>
@@ -154,14 +154,14 @@ impl Carriers {
         self.arm(0).body_pose("bar").expect("there is a bar")
     }
 
-    /// What the bar does to a flange, in the axes of the world, `[N]`.
+    /// Force of the bar on a flange, in the axes of the world, `[N]`.
     fn force_on(&self, member: usize) -> Vector3<f64> {
         let q = self.robots[member].robot.q();
         bases()[member].rotation * force_of(q, &self.arm(member).contact_torque())
     }
 
-    /// The force with which the arms pull at each other through the bar, `[N]`: what neither
-    /// carries nor moves it.
+    /// The force with which the arms pull at each other through the bar, `[N]`: the part that
+    /// neither carries nor moves it.
     fn internal(&self) -> Vector3<f64> {
         (self.force_on(0) - self.force_on(1)) / 2.0
     }
@@ -185,7 +185,7 @@ impl Carriers {
 /// arms add by their inertia.
 const MOST: f64 = CAP + 15.0;
 
-/// Pairs of arms. The bounds below are those of all 12; the sample has the worst ones.
+/// Pairs of arms. The bounds below hold for all 12; the sample has the worst ones.
 fn pairs(sample: &'static [u64]) -> Vec<u64> {
     match thorough() {
         true => (0..12).collect(),
@@ -225,8 +225,8 @@ impl Carriers {
         self.references().map(|hand| hand.inverse() * bar)
     }
 
-    /// How far the bar is from its reference by the arm that is farther behind, as each measures it
-    /// and with turns as far as 0.2 m per radian, `[m]`.
+    /// Distance of the bar from its reference, for the arm that is farther behind, as each measures
+    /// it. Turns count as 0.2 m per radian, `[m]`.
     fn lag(&self, grasps: &[Isometry3<f64>; 2]) -> f64 {
         let of = |i: usize| {
             let robot = &self.robots[i];
@@ -238,7 +238,7 @@ impl Carriers {
         of(0).max(of(1))
     }
 
-    /// How far the references of the arms are apart from holding the bar as they began, `[m]`.
+    /// Change of the distance between the arms' references since they began to hold the bar, `[m]`.
     fn gap(&self, begun: &Isometry3<f64>) -> f64 {
         let [left, right] = self.references();
         (left.inverse() * right)

@@ -75,8 +75,8 @@ fn commands_that_did_not_arrive_are_counted() {
 fn a_jump_after_a_loss_is_attributed_to_the_loss() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
-        // Accelerates, so that the robot's extrapolation over the lost cycles goes on accelerating,
-        // while the function's velocity swings back.
+        // Accelerates, so that the robot's extrapolation over the lost cycles continues to
+        // accelerate, while the function's velocity swings back.
         let work = velocities(&mut lockstep, move |cycle| {
             let mut dq = [0.0; 7];
             dq[0] = 0.2 * (0.03 * f64::from(cycle)).sin() * (f64::from(cycle) / 500.0).min(1.0);

@@ -275,7 +275,7 @@ fn setpoints_continue_from_the_robots_own_extrapolation() {
     }
 }
 
-/// How far the robot's own setpoint is from `target`, `[rad]` or `[m]`.
+/// Distance of the robot's own setpoint from `target`, `[rad]` or `[m]`.
 fn off_setpoint(lockstep: &Lockstep, target: Target) -> f64 {
     let q_d = JointVector::from(lockstep.client.state.q_d);
     match target {

@@ -78,7 +78,7 @@ fn the_chunk_after_a_deadman_timeout_says_so_once_whatever_its_points_are() {
         let is_late = matches!(refused, Err(MotionError::Goal(GoalError::Late { .. })));
         assert!(is_late, "{refused:?}");
 
-        // A goal in between is what the program goes on with.
+        // The program continues with a goal in between.
         lockstep.chunk(engaged, chunk(0.0, 0.3)).expect("in time");
         lockstep.run(1500);
         token.keep_alive();

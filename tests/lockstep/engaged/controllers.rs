@@ -77,7 +77,7 @@ fn is_near(report: &MotionReport, backend: Backend) {
     assert!(error.rotation <= most.rotation, "{report:?}");
 }
 
-/// How far the robot's own setpoint is from where the reference is, `[rad]`.
+/// Distance of the robot's own setpoint from the reference, `[rad]`.
 fn off_reference(lockstep: &Lockstep) -> f64 {
     let record = &lockstep.client.record;
     (JointVector::from(lockstep.client.state.q_d) - JointVector::from(record.q_ref)).amax()
@@ -105,8 +105,8 @@ fn it_arrives_within_its_tolerance_whatever_is_lost() {
     }
 }
 
-/// In any phase of a motion: the goal alone, whose session holds the arm and goes on; then the
-/// session.
+/// Dropped in any phase of a motion: first the goal alone, whose session holds the arm and
+/// continues; then the session.
 #[test]
 fn it_brakes_to_rest_when_its_goal_or_its_session_is_dropped() {
     for after in [30, 120, 333, 470] {
@@ -269,9 +269,9 @@ fn push_on(lockstep: &mut Lockstep, engaged: GoalId, way: Vector3<f64>) -> (Erro
     (lockstep.client.state.reflex_reason, force, torque)
 }
 
-/// The robot's controllers do not give way further than their springs do: the force of a hand that
-/// goes on grows until the robot stops itself, by its thresholds or, without those, where a torque
-/// sensor of the wrist is out of its range.
+/// The robot's controllers yield only as far as their springs do. The force of a hand that
+/// continues to push grows until the robot stops. The stop comes from its thresholds or, without
+/// those, from a torque sensor of the wrist that is out of its range.
 #[test]
 fn it_bears_a_push_and_stops_itself_where_a_hand_pushes_on() {
     let without = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);

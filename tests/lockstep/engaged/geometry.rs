@@ -18,7 +18,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 /// Largest drift that counts as holding still, `[m/s]`: 0.05 mm in ten minutes.
 const CREEP_MAX: f64 = 0.05e-3 / 600.0;
 
-/// How near ideal arms come to a target by the robot's own report: springs rest some hundredths of
+/// Distance of ideal arms from a target by the robot's own report: springs rest some hundredths of
 /// a millimetre off with any geometry.
 const IDEAL: Tolerance = Tolerance {
     translation: 1e-4,
@@ -33,7 +33,7 @@ struct Case {
 }
 
 impl Case {
-    /// How near the arm has to come.
+    /// Tolerance of the arm.
     fn tolerance(&self) -> Tolerance {
         match self.backend {
             _ if self.is_ideal => IDEAL,

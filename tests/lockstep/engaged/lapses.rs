@@ -97,7 +97,7 @@ fn a_deadman_timeout_holds_the_arm_until_the_deadman_is_kept_alive_again() {
     });
 }
 
-/// What leads somewhere is refused, a goal as well as a chunk.
+/// Asserts that motions are refused, a goal as well as a chunk.
 fn assert_refused(lockstep: &mut Lockstep, engaged: GoalId, held: &MotionError) {
     let goal = lockstep.within(engaged, turned(0.3), OnArrival::ReportAndHold);
     assert_eq!(goal.as_ref(), Err(held));

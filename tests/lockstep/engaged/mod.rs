@@ -57,7 +57,7 @@ fn chunk(from: f64, to: f64) -> Chunk {
     Chunk::joints((0..=10).map(point)).expect("points 50 ms apart")
 }
 
-/// Submits a held goal whose stream times out after so many milliseconds.
+/// Submits a held goal whose stream times out after this many milliseconds.
 fn watched(
     lockstep: &mut Lockstep,
     target: Target,
@@ -73,7 +73,7 @@ fn watched(
     }
 }
 
-/// Returns an arm with a session bound to a deadman that times out after so many milliseconds.
+/// Returns an arm with a session bound to a deadman that times out after this many milliseconds.
 fn guarded(ready: &dyn Fn() -> Lockstep, milliseconds: u64) -> (Lockstep, GoalId, Deadman) {
     let (token, monitor) = Deadman::new(Duration::from_millis(milliseconds));
     let mut lockstep = ready();

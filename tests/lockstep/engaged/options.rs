@@ -19,7 +19,7 @@ fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
         lockstep.robot.push_end_effector(push, 100_000);
         lockstep.run(1500);
         let before = lockstep.arm_pose();
-        // Compensation would hold the arm up.
+        // Compensation would support the arm.
         let soft = Gains::cartesian()
             .without_compensation()
             .with_cartesian_stiffness([300.0, 300.0, 300.0, 15.0, 15.0, 15.0]);
@@ -124,8 +124,8 @@ fn a_leash_that_is_tightened_in_mid_motion_steps_neither_the_reference_nor_the_t
             );
             assert!(before.0 > 0.037 && before.1 > 0.026, "{before:?}");
             assert!(after.0 < 0.0301 && after.1 < 0.025, "{after:?}");
-            // The whole change of the leash in 0.3 s: 1.24 mrad and 0.32 mm a cycle, beside what
-            // the reference gains on the arm by itself.
+            // The whole change of the leash in 0.3 s: 1.24 mrad and 0.32 mm a cycle, in addition to
+            // the reference's own gain on the arm.
             assert!(joints < 1.5e-3 && hand < 0.8e-3, "{most:?}");
             assert!(torque < 0.6, "{most:?}");
         }

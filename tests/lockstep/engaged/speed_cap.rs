@@ -104,7 +104,7 @@ fn no_point_of_the_arm_is_faster_than_the_cap_on_the_way_to_a_pose() {
                     println!("{case}");
                 }
                 too_fast += u32::from(given_up);
-                // The brake is that of the joints: the hand may get faster before it rests.
+                // The joints brake, so the hand may get faster before it rests.
                 let most = if given_up { cap + 0.1 } else { cap };
                 assert!(arm <= most, "{case}");
                 slowed += u32::from(bound);
@@ -176,7 +176,7 @@ fn the_hand_keeps_to_the_cap_where_an_object_in_it_leads() {
     assert!(bound && most < CAP, "{most} m/s");
 }
 
-/// What is not slowed is given up, and the session goes on.
+/// A goal that cannot be slowed is given up, and the session continues.
 #[test]
 fn a_goal_over_joints_that_is_too_fast_is_given_up() {
     for_each_robot(|ready| {

@@ -99,7 +99,7 @@ fn an_invalid_message_ends_the_connection() {
     matrix.finish();
 }
 
-/// The reply is unreadable: the robot is told to stop, and the connection stays open.
+/// The reply is unreadable: the robot receives a stop, and the connection stays open.
 #[test]
 fn an_invalid_reply_ends_the_motion() {
     let mut matrix = Matrix::new("nonsense");

@@ -11,7 +11,7 @@ use crate::faults::trial::{Moment, Trial};
 use crate::faults::variant::{Channel, Variant, Way};
 use crate::faults::{Matrix, course};
 
-/// What is lost.
+/// Messages that are lost.
 #[derive(Clone, Copy, Debug)]
 enum Lost {
     States,
@@ -29,7 +29,7 @@ impl Lost {
     }
 }
 
-/// How many are lost in a row: around the limit each number.
+/// Numbers of losses in a row: every number around the limit.
 fn counts() -> impl Iterator<Item = u64> {
     const SAMPLE: [u64; 10] = [1, 2, 7, 13, 18, 19, 20, 21, 22, 30];
     (1..=30).filter(|count| franka_tests::thorough() || SAMPLE.contains(count))
@@ -185,7 +185,7 @@ fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
     matrix.finish();
 }
 
-/// The robot plans between sparse targets and keeps moving by itself.
+/// The robot plans between sparse targets and keeps moving without commands.
 #[test]
 fn sparse_targets_need_no_command_per_cycle() {
     let mut matrix = Matrix::new("lost-asynchronous");

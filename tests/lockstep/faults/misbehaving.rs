@@ -39,7 +39,7 @@ fn a_panic_in_any_cycle_is_reported_and_the_robot_stopped() {
     matrix.finish();
 }
 
-/// How commands are shaped.
+/// Shaping of commands.
 #[derive(Clone, Copy, Debug)]
 enum Shaping {
     /// Neither filter nor limiter.
@@ -128,8 +128,8 @@ fn writing_a_nan_is_refused_and_the_motion_continues() {
     matrix.finish();
 }
 
-/// Targets are checked where they are set. The real-time thread does not send an invalid one that
-/// gets past that check.
+/// Targets are checked where they are set. The real-time thread does not send an invalid target
+/// that passes this check.
 #[test]
 fn an_invalid_sparse_target_ends_the_motion() {
     let mut matrix = Matrix::new("sparse-nan");

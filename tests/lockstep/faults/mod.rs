@@ -6,8 +6,8 @@
 //!
 //! A case begins a motion of a [`Variant`](variant::Variant), runs it up to a
 //! [`Moment`](trial::Moment), injects its fault, and checks the outcome against an
-//! [`Expect`](expect::Expect). For every fault: everything resolves, once, with the text of the
-//! reference client where it has one; the thread is back to watching; and the next motion works,
+//! [`Expect`](expect::Expect). For every fault, everything resolves once, with the text of the
+//! reference client if it has one. Afterwards the thread watches again, and the next motion works,
 //! after a recovery or on a new connection if necessary.
 //!
 //! All failing cases of a test are listed at its end. `FRANKA_FAULT=<name>` runs the cases whose

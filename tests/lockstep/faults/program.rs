@@ -13,12 +13,12 @@ use crate::faults::course::{
 };
 use crate::faults::variant::Channel;
 
-/// How a program departs from the course.
+/// Deviation of a program from the course.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Misbehaviour {
     /// It follows the course to its end.
     Faultless,
-    /// It finishes so many milliseconds after its first command.
+    /// It finishes this many milliseconds after its first command.
     FinishesAt(u64),
     /// It panics in the call of this number, the first being 0.
     PanicsIn(u64),
@@ -102,7 +102,7 @@ impl CourseFollower {
     }
 }
 
-/// The functions of a channel. The one that commands the generator, or else the torques,
+/// The functions of a channel. The function that commands the generator, or else the torques,
 /// misbehaves.
 pub(crate) fn callback(version: Version, channel: Channel, misbehaviour: Misbehaviour) -> Callback {
     let mut follower = CourseFollower::new(misbehaviour);

@@ -1,5 +1,5 @@
-//! What a robot does when commands are lost, computed on one number: the share of the course that
-//! is done.
+//! The robot's reaction to lost commands, computed on one number: the completed share of the
+//! course.
 //!
 //! Source: FCI documentation, control parameters and "handling of packet losses". The robot
 //! extrapolates a lost command of a generator with the acceleration of the last. Twenty losses in a
@@ -16,9 +16,9 @@ use crate::faults::variant::Channel;
 /// Commands lost in a row that end a motion.
 pub(crate) const LOST_LIMIT: u64 = 20;
 
-/// The distance that each quantity has to keep from its limit, on either side, for a clear verdict:
-/// a robot judges by what it publishes, in single precision, and the joints of a Cartesian motion
-/// are computed from its beginning and its end.
+/// The distance that each quantity must keep from its limit, on either side, for a clear verdict. A
+/// robot judges by the published values, in single precision. The joints of a Cartesian motion are
+/// computed from its beginning and its end.
 const MARGIN: f64 = 0.005;
 
 /// Returns the reasons for which the robot stops a motion along the course when `lost` commands

@@ -20,11 +20,11 @@ use crate::faults::variant::{Channel, Gesture, Variant, Way};
 /// A moment of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Moment {
-    /// So many milliseconds after the start, before the client has seen the motion in a state.
+    /// This many milliseconds after the start, before the client has seen the motion in a state.
     Armed(u64),
     /// This many states have been answered.
     Cycle(u64),
-    /// The finishing command has been sent for so many milliseconds and lost each time; with 0 it
+    /// The finishing command has been sent for this many milliseconds and lost each time; with 0 it
     /// has just been sent.
     Finishing(u64),
 }
@@ -47,7 +47,7 @@ pub(crate) struct Trial {
     ended: bool,
 }
 
-/// What controls the motion from outside the real-time thread.
+/// Control of the motion from outside the real-time thread.
 enum ExternalControl {
     /// Nothing.
     None,
@@ -274,7 +274,7 @@ impl Trial {
         panic!("{moment:?} does not come");
     }
 
-    /// True if the motion has run and ended, as far as the thread knows.
+    /// True if the thread knows that the motion has run and ended.
     pub(crate) fn has_ended(&self) -> bool {
         self.ended
     }

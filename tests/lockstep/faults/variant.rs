@@ -22,8 +22,8 @@ pub(crate) enum Way {
     Target(Gesture),
 }
 
-/// What is commanded, and which controller turns it into torques. No generator with an external
-/// controller means torques alone.
+/// The commanded quantity, and the controller that turns it into torques. No generator with an
+/// external controller means torques alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Channel {
     pub(crate) generator: MoveGeneratorMode,
@@ -92,7 +92,7 @@ impl Variant {
         Self::all().filter_map(|variant| variant.channel().map(|channel| (variant, channel)))
     }
 
-    /// What a program commands in every cycle.
+    /// Command of a program in every cycle.
     pub(crate) fn channel(self) -> Option<Channel> {
         match self.way {
             Way::Callback(channel) | Way::Active(channel) => Some(channel),

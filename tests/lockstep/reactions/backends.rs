@@ -57,7 +57,7 @@ fn the_robots_controller_reacts_to_a_table_as_well() {
     }
 }
 
-/// The robot goes on by itself meanwhile, and the reference is put where it went.
+/// The robot continues without commands meanwhile, and the reference moves to its position.
 #[test]
 fn lost_commands_during_a_reaction_do_not_keep_it_from_its_end() {
     for_each_robot(|ready| {

@@ -14,14 +14,15 @@ use super::{
     MS, above, at, felt, goes_on, reacted, realistic, report, says_so, table, tolerate, with_arm,
 };
 
-/// Of a padded table, and of a firm one, `[N/m]`.
+/// Stiffness of a padded table, and of a firm one, `[N/m]`.
 const SOFT: f64 = 2000.0;
 const FIRM: f64 = 20_000.0;
 
 /// The threshold that the book recommends, `[N]`.
 const THRESHOLD: f64 = 8.0;
 
-/// Of both kinds: as the model says, worn, and two that stick; thoroughly more that stick.
+/// Arms of both kinds: an exact one, a worn one, and two that stick. Thorough runs have more that
+/// stick.
 fn arms() -> Vec<(String, Lockstep)> {
     let [fr3, fer] = [RobotKind::Fr3, RobotKind::Fer];
     let family = Family::realistic();
@@ -42,7 +43,7 @@ fn arms() -> Vec<(String, Lockstep)> {
     others.into_iter().chain(sticking).collect()
 }
 
-/// What a guarded move did, in milliseconds of the robot's clock and newtons.
+/// Result of a guarded move, in milliseconds of the robot's clock and newtons.
 #[derive(Debug, Default)]
 struct Contact {
     /// From the contact to the state that was reacted to.
@@ -246,7 +247,7 @@ fn a_hand_in_the_way_stops_the_arm() {
         let reacted = reacted(&mut lockstep, goal);
         println!("{} ms, {:.1?}", reacted.time - pushed, reacted.wrench);
         assert!((1..200).contains(&(reacted.time - pushed)), "{reacted:?}");
-        // What the arm does to the hand.
+        // Action of the arm on the hand.
         assert!(reacted.wrench[1] > 5.0, "{reacted:?}");
         lockstep.robot.release(hand);
     }

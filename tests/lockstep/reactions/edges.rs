@@ -13,7 +13,7 @@ use nalgebra::Translation3;
 
 use super::{MS, above, at, goes_on, reacted, report, says_so};
 
-/// A motion of 12 cm upwards, under way, until so many milliseconds have passed.
+/// A motion of 12 cm upwards, under way, until this many milliseconds have passed.
 fn until(
     lockstep: &mut Lockstep,
     milliseconds: u32,
@@ -114,7 +114,7 @@ fn a_condition_counts_until_the_arrival_is_reported_and_not_after() {
     });
 }
 
-/// In the cycles around that of the reaction.
+/// Runs `each` in the cycles around the reaction.
 fn around(mut each: impl FnMut(u64)) {
     for cycle in 498..=502 {
         each(cycle);
@@ -210,7 +210,7 @@ fn lost_states_delay_a_reaction_to_the_next_one_that_comes() {
                 lockstep.run(begins);
                 lockstep.link.drop_states(lost);
                 let seen = reacted(&mut lockstep, goal);
-                // That of millisecond `begins` was the last before the gap.
+                // The state of millisecond `begins` was the last before the gap.
                 let expected = (begins + lost + 1).max(500);
                 assert_eq!(seen.time - first, expected, "{lost} after {begins}");
                 assert_eq!(seen.after, expected as u32 * MS);

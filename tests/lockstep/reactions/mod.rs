@@ -1,5 +1,5 @@
-//! Motions that go on until a condition is true: contacts, free ways, and every way in which a
-//! condition and something else come at once.
+//! Motions that continue until a condition is true: contacts, free ways, and every coincidence of a
+//! condition with another event.
 
 mod backends;
 mod contact;
@@ -73,13 +73,13 @@ fn table(lockstep: &mut Lockstep, below: f64, stiffness: f64) -> TouchId {
     lockstep.robot.touch(table.stiffness(stiffness))
 }
 
-/// What a touch does to the arm, `[N]`.
+/// Action of a touch on the arm, `[N]`.
 fn felt(lockstep: &Lockstep, touch: TouchId) -> f64 {
     let felt = lockstep.robot.felt(touch).expect("it has not ended");
     felt.fixed_rows::<3>(0).norm()
 }
 
-/// True if the record of the last cycle says that the goal has reacted.
+/// True if the record of the last cycle reports the goal's reaction.
 fn says_so(lockstep: &Lockstep) -> bool {
     lockstep.client.record.bindings.contains(Guard::Reaction)
 }

@@ -1,4 +1,4 @@
-//! What a push on the way leaves behind in the motions after it.
+//! Effect of a push during a motion on the motions after it.
 
 use franka_lockstep::{Lockstep, Outcome};
 use franka_model::{READY, RobotKind};
@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 use super::{MS, above, realistic, with_arm};
 
-/// In a motion of its own, from rest to rest.
+/// Moves to a target in a separate motion, from rest to rest.
 fn go(lockstep: &mut Lockstep, target: Target) -> Outcome {
     let goal = lockstep.begin(target);
     let outcome = lockstep.until_resolved(goal, 20_000);
@@ -17,8 +17,8 @@ fn go(lockstep: &mut Lockstep, target: Target) -> Outcome {
     outcome
 }
 
-/// Moves down until a steady push comes, which does not let it go back to where it began either;
-/// then the push is over.
+/// Moves down until a steady push comes, which also keeps the arm from its start; then the push is
+/// over.
 fn push(lockstep: &mut Lockstep, force: f64, reacts: bool) -> Outcome {
     let start = lockstep.arm_pose();
     let down = above(lockstep, -0.2);
@@ -39,8 +39,8 @@ fn push(lockstep: &mut Lockstep, force: f64, reacts: bool) -> Outcome {
     outcome
 }
 
-/// The push is no friction and no load of the arm: what is learned from it would have to be
-/// unlearned, and way enough for that comes late.
+/// The push is no friction and no load of the arm. Anything learned from it would have to be
+/// unlearned, and motions long enough for that come late.
 #[test]
 fn an_arm_that_was_pushed_arrives_in_the_next_motion() {
     let kind = RobotKind::Fr3;

@@ -1,4 +1,4 @@
-//! Reactions in a session that goes on, and of goals that follow a stream.
+//! Reactions in a session that continues, and of goals that follow a stream.
 
 use std::time::Duration;
 
@@ -28,7 +28,7 @@ fn on_a_table(seed: u64) -> (Lockstep, GoalId, franka_sim::TouchId) {
     (lockstep, engaged, table)
 }
 
-/// The force goes on; its condition was that of the goal before.
+/// The force continues; its condition belonged to the previous goal.
 #[test]
 fn after_a_reaction_the_arm_is_tuned_and_moved_like_any_that_is_held() {
     let (mut lockstep, engaged, table) = on_a_table(2);
@@ -208,7 +208,7 @@ fn a_stream_ends_at_a_reaction_whatever_comes_after_it() {
                     false => seen.pose.translation.vector,
                 };
                 let off = lockstep.arm_pose().translation.vector - rests;
-                // It went on for as long as the brake takes.
+                // The arm continued while it braked.
                 let most = if then { 2e-3 } else { 0.04 };
                 assert!(off.norm() < most, "{off}");
             }
@@ -267,7 +267,7 @@ fn a_deadman_that_falls_silent_on_the_way_to_the_other_target_brakes_the_arm() {
     });
 }
 
-/// The gains of guiding would let it go.
+/// The gains of guiding would release it.
 #[test]
 fn a_guided_arm_is_held_where_it_reacts() {
     for_each_robot(|ready| {

@@ -14,7 +14,7 @@ const APART: u64 = 80;
 #[derive(Debug, Default)]
 pub(super) struct Causes {
     possible: Errors,
-    /// When datagrams were last lost, and how many were lost since the last pause.
+    /// Time of the last lost datagrams, and the number lost since the last pause.
     gap: Option<(u64, u64)>,
     /// The arm was pushed.
     pub(super) pushed: bool,

@@ -2,9 +2,8 @@
 //!
 //! At least every fourth schedule is calm: it has no faults, so no error may be reported. The
 //! others lose datagrams, push the arm, trip the robot and press its user stop. In all of them
-//! every goal resolves once, with an outcome that its events explain, the arm comes to rest, and
-//! the next motion works. The harness checks every command and its reference against the limits
-//! meanwhile.
+//! every goal resolves once, with an outcome that its events explain, the arm stops, and the next
+//! motion works. The harness checks every command and its reference against the limits meanwhile.
 //!
 //! Ten thousand schedules take minutes with an optimised build, and some four times as long with
 //! the MuJoCo plant. Each test is one thread. `FRANKA_SCHEDULE_SEED` is the first seed and
@@ -20,10 +19,10 @@
 //! `every_schedule_ends` are the motions. A schedule that fails prints its seed, which replays it
 //! with the same build.
 //!
-//! * `motions`: motions that supersede one another, each with an end of its own.
+//! * `motions`: motions that supersede one another, each with a separate end.
 //! * `sessions`: sessions that go from goal to goal, of all kinds, with both backends.
-//!   `submission`: what each goal may come to.
-//! * `causes`: what was done from outside, and what a robot owes to it.
+//!   `submission`: the permitted outcomes of each goal.
+//! * `causes`: external events, and the robot's necessary reactions.
 //! * `draw`: random goals.
 
 mod causes;

@@ -46,7 +46,7 @@ pub(super) struct Submission {
     pub(super) work: Work,
     pub(super) on_arrival: OnArrival,
     pub(super) watchdog: Option<Watchdog>,
-    /// Where it goes if its condition becomes true.
+    /// Target if its condition becomes true.
     pub(super) reaction: Option<Target>,
     /// The times of its updates, `[ms]`.
     pub(super) heard: Vec<u64>,
@@ -55,13 +55,13 @@ pub(super) struct Submission {
     pub(super) cancelled: bool,
     /// Stopped as part of something else.
     pub(super) stopped: bool,
-    /// Of a session: its end was asked for. Of a goal: its session was ending.
+    /// For a session: its end was requested. For a goal: its session was ending.
     pub(super) released: bool,
-    /// Ended by a goal that was to end the session.
+    /// Ended by a goal that had to end the session.
     pub(super) finishing: bool,
     /// Its deadman timed out.
     pub(super) deadman: bool,
-    /// What counts as arrived, unless it is soft.
+    /// Tolerance of arrival, unless it is soft.
     pub(super) tolerance: Tolerance,
     /// The springs may be too soft to reach the target.
     pub(super) soft: bool,
@@ -119,7 +119,7 @@ impl Submission {
             return false;
         }
         match self.work {
-            // A goal whose motion is ending was reached, whatever comes after that.
+            // A goal whose motion is ending was reached, regardless of later events.
             Work::Goal(_) if self.on_arrival == OnArrival::ReportAndFinish && self.stopped => true,
             Work::Goal(_) | Work::Chunks => {
                 (self.on_arrival != OnArrival::Hold || reacted)
@@ -132,7 +132,7 @@ impl Submission {
         }
     }
 
-    /// True if the arm is where the report says, and that is the target.
+    /// True if the arm is in the reported pose, and that pose is the target.
     fn is_there(&self, report: &MotionReport, lockstep: &Lockstep) -> bool {
         let target = match (self.work, self.reaction, report.reacted) {
             (Work::Goal(_), Some(then), Some(_)) => then,
@@ -182,10 +182,10 @@ impl Submission {
                 let (off, most) = (short.error, Tolerance::default());
                 let far = off.translation > most.translation || off.rotation > most.rotation;
                 let may = causes.pushed || self.hindered;
-                // Under gains that were drawn an arm may also swing about its target for ever.
+                // Under drawn gains an arm may also swing about its target indefinitely.
                 (far && may || self.soft) && (goal || self.finishing)
             }
-            // A session ends with the error of the goal that was to end it.
+            // A session ends with the error of the goal that had to end it.
             MotionError::AfterReaction { error, .. } => {
                 let reacts = self.reaction.is_some() || (!goal && self.finishing);
                 reacts && self.may_fail(error, now, causes)

@@ -1,11 +1,11 @@
-//! What is told of one robot, and whether one thing may follow on another.
+//! Events of one robot, and the permitted sequences of them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use franka_rt::supervision::{Event, EventKind};
 
-/// What has been told of a robot so far.
+/// Events of a robot so far.
 #[derive(Debug, Default)]
 pub(super) struct Chronicle {
     at: Duration,
@@ -21,7 +21,7 @@ pub(super) struct Chronicle {
     motions: BTreeSet<u64>,
     /// All of it.
     pub(super) text: String,
-    /// How often each kind was told.
+    /// Number of events of each kind.
     pub(super) counts: BTreeMap<&'static str, u64>,
 }
 

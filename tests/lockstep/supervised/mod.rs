@@ -1,16 +1,16 @@
 //! Supervised robots, and a thousand mishaps in random order: simulators that are killed and
 //! started again, reflexes, user stops, hands on the arm, brakes, networks that are cut.
 //!
-//! Each robot has a policy of its own. What its supervision asks for is checked against the policy,
-//! what the arm does against what was asked for since the last mishap, and what is told against
-//! what may follow on what. Every motion resolves once; in the end every robot moves again.
+//! Each robot has a separate policy. The requests of its supervision are checked against the
+//! policy. The arm's motion is checked against the requests since the last mishap, and the events
+//! against the permitted sequences. Every motion resolves once; in the end every robot moves again.
 //!
 //! `FRANKA_MISHAP_SEED` is the seed, which replays a run with the same build, and `FRANKA_MISHAPS`
 //! how many there are.
 //!
 //! * `trial`: one robot, what happens to it, and the rules that it keeps.
-//! * `chronicle`: what may follow on what.
-//! * `settings`: what a program has set holds on every connection.
+//! * `chronicle`: permitted sequences of events.
+//! * `settings`: a program's settings are valid on every connection.
 
 mod chronicle;
 mod settings;
@@ -26,7 +26,7 @@ fn count() -> u64 {
     if franka_tests::thorough() { 1000 } else { 250 }
 }
 
-/// Robots with all their mishaps; returns what was told of each.
+/// Robots with all their mishaps; returns the events of each.
 fn play(seed: u64, mishaps: u64) -> Vec<String> {
     let mut random = SmallRng::seed_from_u64(seed);
     let rules = Rules::all().into_iter().zip(seed..);

@@ -1,5 +1,5 @@
-//! What a program has set at a robot, across connections. The harness checks at each motion that
-//! begins that the robot has it.
+//! Settings of a program at a robot, across connections. The harness checks at the start of each
+//! motion that the robot has them.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ fn robot() -> Supervised {
     Supervised::new(Lockstep::config_of(RobotKind::Fr3), policy)
 }
 
-/// A load that is not there: so light that the arm arrives all the same.
+/// A declared load that does not exist, so light that the arm still arrives.
 pub(super) fn load(mass: f64) -> Request {
     Request::SetLoad(Load {
         m_load: mass,
@@ -169,7 +169,7 @@ fn newest_of_two_settings_of_a_kind_holds() {
         restart(&mut robot);
         moves_with(&mut robot, &[load(0.05)]);
     }
-    // One that the robot refuses counts for nothing.
+    // A refused setting does not count.
     let mut robot = robot();
     let answers = set(&mut robot, &[load(0.02), load(50.0)]);
     assert!(
@@ -253,7 +253,7 @@ fn robot_that_refuses_a_setting_again_takes_no_motion() {
     assert!(told.iter().any(is_told), "{told:?}");
     run(&mut robot, 1000);
     assert_eq!(refused(&mut robot), not_ready(why));
-    // Another one that is refused changes nothing, and one of another kind is no help.
+    // Another refused setting changes nothing, and a setting of another kind is no help.
     set(&mut robot, &[load(0.04), end_effector(0.06)]);
     run(&mut robot, 100);
     assert_eq!(robot.health().condition, NOT_SET);

@@ -19,7 +19,7 @@ use super::settings::{end_effector, load};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
     kind: RobotKind,
-    /// How many recoveries within how many milliseconds.
+    /// Permitted number of recoveries, and their period in milliseconds.
     recover: Option<(u32, u64)>,
     only: Option<RobotError>,
     asks: bool,
@@ -93,14 +93,14 @@ const BACKOFF: Backoff = Backoff {
     jitter: 0.5,
 };
 
-/// What ends a mishap.
+/// End of a mishap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Restart,
     Release,
     LetGo,
     Open,
-    /// Of the network; whether both ends have given up by then.
+    /// End of a cut network; true if both ends have given up by then.
     Mend(bool),
 }
 
@@ -109,15 +109,15 @@ pub(super) struct Trial {
     robot: Supervised,
     rules: Rules,
     random: SmallRng,
-    /// What is to end, and when.
+    /// Ends that are due, and their times.
     ends: BTreeMap<End, u64>,
     submitted: BTreeMap<GoalId, u64>,
-    /// When the robot last left its motions for something that its client can see.
+    /// Time at which the robot last left its motions for something that its client can see.
     ended: u64,
     mode: RobotMode,
     /// Since when no motion has been shown.
     still: u64,
-    /// When it was asked to recover.
+    /// Times of the requests to recover.
     recoveries: VecDeque<u64>,
     /// A person's answers to come: when, to which reflex, and whether it is yes.
     answers: Vec<(u64, u64, bool)>,
@@ -126,7 +126,7 @@ pub(super) struct Trial {
     unrecognised: BTreeSet<u64>,
     /// True if it was started again since it was last connected to.
     is_restarted: bool,
-    /// When it was last asked to connect, since the connection was lost.
+    /// Time of the last request to connect, since the connection was lost.
     attempt: Option<u64>,
     /// Motions that have waited and begun.
     waited: u64,
@@ -205,7 +205,7 @@ impl Trial {
                 self.ends.insert(End::Mend(gave_up), now + long);
             }
             14 => {
-                // A person, or the program itself, whatever the policy.
+                // A person, or the program itself, regardless of the policy.
                 if self.robot.state().robot_mode == RobotMode::Reflex {
                     self.robot.recover();
                 }
@@ -388,7 +388,7 @@ impl Trial {
         }
     }
 
-    /// Ends all mishaps, checks that the robot moves again, and returns what was told of it.
+    /// Ends all mishaps, checks that the robot moves again, and returns its events.
     pub(super) fn finish(mut self) -> String {
         let now = self.robot.now();
         for at in self.ends.values_mut() {

@@ -1,4 +1,4 @@
-//! What brakes the other arm, and what does not.
+//! Events that brake the other arm, and events that do not.
 
 use std::time::Duration;
 
@@ -17,14 +17,14 @@ use nalgebra::{Translation3, Vector3};
 
 use super::{Pair, stopped_by};
 
-/// What happens to the first robot, and what the second one's motion ends with.
+/// An event of the first robot, and the end of the second robot's motion.
 struct Case {
     name: &'static str,
     happen: fn(&mut Pair, GoalId),
     fault: MemberFault,
     /// Cycles from that to the one in which the thread of the first robot has to have seen it.
     seen_after: core::ops::RangeInclusive<u64>,
-    /// True if its session goes on.
+    /// True if its session continues.
     goes_on: bool,
 }
 
@@ -161,7 +161,7 @@ fn a_fault_of_one_brakes_the_other_within_two_cycles() {
                 matches!(own, None | Some(Err(_))),
                 "{name}: its own error names the cause: {own:?}"
             );
-            // The other session goes on, alone or with the next joint motion.
+            // The other session continues, alone or with the next joint motion.
             let back = [0, 1].map(|i| pair.robots[i].robot.q()[0] - READY[0] + 0.1);
             if case.goes_on {
                 let goals = pair.both(back);
@@ -228,7 +228,7 @@ fn each_silence_of_one_brakes_the_other_anew() {
     for (by, silence) in [(0.5, 4), (-0.5, 8), (0.5, 8)] {
         let goals = pair.both([by, by]);
         pair.run(300);
-        // Too short for the robot to stop by itself.
+        // Too short for a stop by the robot.
         pair.robots[0].link.drop_states(silence);
         let [_, other] = pair.until_resolved(goals, 20_000);
         let braked = stopped_by(MemberFault::Silent);
@@ -316,7 +316,7 @@ fn a_goal_that_takes_an_arm_out_of_its_round_is_pursued() {
     }
 }
 
-/// Whether it brakes or is held at the last target.
+/// The timeout brakes the arm or holds it at the last target.
 #[test]
 fn a_stream_of_one_that_falls_silent_brakes_the_other() {
     type Ended = fn(Lapse) -> MotionError;
@@ -394,7 +394,7 @@ fn a_reaction_and_a_motion_of_one_arm_alone_concern_no_other() {
     pair.robots[0].cancel(alone);
     pair.run(1000);
     assert_eq!(pair.stopped, None);
-    // But the end of its session brakes whatever the other one does.
+    // The end of its session brakes the other one in any case.
     let other = pair.submit(1, None, turned(0.0));
     pair.run(300);
     pair.robots[0].robot.press_user_stop(true);

@@ -1,5 +1,5 @@
-//! Teams of two robots in sessions: goals that begin together, and a fault of one that brakes the
-//! other, both in one thread, millisecond by millisecond.
+//! Teams of two robots in sessions, in one thread, millisecond by millisecond: goals that begin
+//! together, and a fault of one robot that brakes the other.
 
 mod beginning;
 mod faults;
@@ -28,7 +28,7 @@ struct Pair {
     stopped: Option<u64>,
     braked: [Option<u64>; 2],
     ticks: u64,
-    /// That of the first robot, which is silent for good once it is dropped.
+    /// Deadman of the first robot, which is silent for good once it is dropped.
     deadman: Option<Deadman>,
 }
 

@@ -133,7 +133,7 @@ fn no_condition_that_comes_true_after_a_stop_sets_an_arm_in_motion() {
     }
 }
 
-/// It has arrived, and its spring is let go: nothing is left to brake.
+/// It has arrived, and its spring is released: nothing is left to brake.
 #[test]
 fn a_motion_that_is_about_to_finish_ends_as_it_was_when_the_team_stops() {
     let mut pair = Pair::new(false);

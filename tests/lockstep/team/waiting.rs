@@ -1,4 +1,4 @@
-//! References that wait for each other, as those of arms that carry one object do.
+//! References that wait for each other, as references of arms with a common object do.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ impl Pair {
         })
     }
 
-    /// How far an arm is behind its reference, turns as far as 0.2 m per radian, `[m]`.
+    /// Distance of an arm behind its reference, with turns as 0.2 m per radian, `[m]`.
     fn lag(&self, member: usize) -> f64 {
         let robot = &self.robots[member];
         let (reference, arm) = (robot.reference_pose(), robot.arm_pose());
@@ -65,8 +65,8 @@ fn push(robot: &mut Lockstep, force: f64) {
     robot.robot.push_end_effector(up, 1);
 }
 
-/// The clock of the second robot runs at half the speed of the first one's, which would so be ahead
-/// by 5 cm with what both hold, and is with what they do not hold together.
+/// The clock of the second robot runs at half the speed of the first one's. The first would be
+/// ahead by 5 cm with a common object, and is ahead without one.
 #[test]
 fn a_reference_halts_while_it_is_ahead_of_another_one_of_the_same_object() {
     for together in [true, false] {
@@ -124,8 +124,8 @@ fn references_that_halt_for_an_arm_go_on_when_it_has_caught_up_by_three_millimet
     assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
 }
 
-/// The second arm is drawn back at the end of a short leash, and so held back, too, and for longer
-/// than the first one: the clock of that one runs at a third of its speed.
+/// The second arm is drawn back at the end of a short leash, and so also hindered, and for longer
+/// than the first one. The clock of the first one runs at a third of its speed.
 #[test]
 fn of_two_arms_that_are_held_back_the_one_that_is_waited_for_gives_up() {
     let mut pair = Pair::new(false);
@@ -240,7 +240,7 @@ fn an_arm_that_has_lagged_with_the_object_does_not_lag_without() {
     assert!(pair.ticks - begun > 6000, "{} ms", pair.ticks - begun);
 }
 
-/// What holds it 3 mm short of its target is, where others have the same object, that.
+/// If others have the same object, the hindrance 3 mm short of its target counts as the object's.
 #[test]
 fn an_arm_that_is_near_its_target_has_arrived_if_it_carries_with_others() {
     for together in [true, false] {

@@ -1,8 +1,8 @@
 //! Passes only if none of `franka-proto`, `franka-model` and `franka-otg`, nor anything they depend
 //! on, uses the standard library or an allocator. A program may have only one panic handler. The
 //! standard library defines one, so a crate that uses it conflicts with the handler below, on every
-//! target. A crate that uses `alloc` needs a global allocator, and there is none. On a bare target
-//! there is no standard library at all.
+//! target. A crate that uses `alloc` needs a global allocator, which does not exist here. A bare
+//! target has no standard library at all.
 
 #![no_std]
 

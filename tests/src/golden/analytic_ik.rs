@@ -10,10 +10,10 @@ use serde::Deserialize;
 
 use super::{Case, Report};
 
-/// Of joint angles, `[rad]`: no pose of the file is nearer than 1e-7 to a double root, where
-/// rounding weighs a thousand times.
+/// Tolerance of joint angles, `[rad]`: no pose of the file is nearer than 1e-7 to a double root,
+/// where rounding weighs a thousand times.
 const ANGLE: f64 = 1e-10;
-/// Of the pose that a solution has, `[m]` and elements of the rotation.
+/// Tolerance of the pose of a solution, `[m]` and elements of the rotation.
 const POSE: f64 = 1e-12;
 
 #[derive(Deserialize)]

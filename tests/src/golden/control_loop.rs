@@ -1,8 +1,8 @@
 //! Control functions against libfranka's control loops: `control_loop_vectors.json`.
 //!
-//! A trace is what a loop did with four states: which function it called with which state and time
-//! step, and what it sent once the values that they returned had passed filter, limiter and checks.
-//! Here the driver runs the same functions.
+//! A trace is the record of a loop over four states: the function that it called with each state
+//! and time step, and the command that it sent after the returned values had passed filter, limiter
+//! and checks. Here the driver runs the same functions.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -20,11 +20,11 @@ use serde::Deserialize;
 
 use super::{Case, Report, Versions};
 
-/// Of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for poses,
-/// which go through quaternions.
+/// Tolerance of every number of a command, in its SI unit. The vectors allow 1e-12, and 1e-11 for
+/// poses, which go through quaternions.
 const TOLERANCE: f64 = 5e-15;
 
-/// What the reference did with a control loop.
+/// The reference's run of a control loop.
 #[derive(Deserialize)]
 struct Trace {
     /// Kinds of the functions, for example `torque+joint_position`.
@@ -80,7 +80,7 @@ struct Call {
     finished: u8,
 }
 
-/// What was handed to the robot. The finishing flag is not set yet there.
+/// Data passed to the robot. The finishing flag is not set yet there.
 #[derive(Deserialize)]
 struct Sent {
     motion: Option<SentMotion>,
@@ -131,10 +131,10 @@ enum Function {
     Torque,
 }
 
-/// What the reference did with one state.
+/// The reference's result for one state.
 struct Cycle {
     calls: Vec<Noted>,
-    /// What was sent then.
+    /// The command sent then.
     command: RobotCommand,
     /// True if that was the last command.
     finished: bool,

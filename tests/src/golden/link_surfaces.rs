@@ -18,7 +18,7 @@ struct File {
     hand: Vec<[f64; 3]>,
 }
 
-/// Checks `link_surfaces.json`: each point is inside a capsule of its own link. A case is a link.
+/// Checks `link_surfaces.json`: each point is inside a capsule of its link. A case is a link.
 pub(super) fn covered(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
     let file: File = serde_json::from_slice(text)?;
@@ -34,8 +34,7 @@ pub(super) fn covered(text: &[u8]) -> anyhow::Result<Report> {
     Ok(report)
 }
 
-/// How far the outermost of the points is outside of the capsules of its body, `[m]`; negative
-/// inside.
+/// Distance of the outermost point from the capsules of its body, `[m]`; negative inside.
 fn outermost(kind: RobotKind, body: Body, points: &[[f64; 3]]) -> f64 {
     let placed = Shape::covering(kind).with_hand().at(&READY);
     let own = placed.capsules().filter(|(of, _)| *of == body);
@@ -60,7 +59,7 @@ fn frame_of(body: Body, kind: RobotKind, q: &JointVector) -> Isometry3<f64> {
     transform::isometry(&pose).expect("the pose of a frame is rigid")
 }
 
-/// How far a point is outside of a capsule, `[m]`; negative inside.
+/// Distance of a point from a capsule, `[m]`; negative inside.
 fn outside(capsule: &Capsule, point: &Point3<f64>) -> f64 {
     let axis = capsule.end - capsule.start;
     let along = (point.coords - capsule.start).dot(&axis) / axis.norm_squared();

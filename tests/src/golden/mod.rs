@@ -94,7 +94,7 @@ pub const SUITES: &[Suite] = &[
 pub struct Outcome {
     /// Path below the directory of the vectors.
     pub file: &'static str,
-    /// What the check found; `None` if the directory does not hold the file.
+    /// Result of the check; `None` if the directory does not hold the file.
     pub result: Option<anyhow::Result<Report>>,
 }
 
@@ -115,7 +115,7 @@ pub fn run(dir: &Path, suites: &[Suite]) -> Vec<Outcome> {
     suites.iter().map(outcome).collect()
 }
 
-/// Whether a run proves nothing or something wrong: a failed case, an unreadable file, or every
+/// True if a run proves nothing or something wrong: a failed case, an unreadable file, or every
 /// file absent.
 pub fn failed(outcomes: &[Outcome]) -> bool {
     outcomes.iter().all(Outcome::absent) || outcomes.iter().any(Outcome::failed)
@@ -137,7 +137,7 @@ impl Outcome {
     }
 }
 
-/// One line; the first failures follow on lines of their own.
+/// One line; the first failures follow on separate lines.
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let word = match (self.absent(), self.failed()) {

@@ -9,14 +9,14 @@ use serde::Deserialize;
 use super::loads::{Parts, Total};
 use super::{Case, Report};
 
-// What the numbers of the files may differ by: they went through other orders of summation. The
+// Tolerances of the numbers in the files, which went through other orders of summation. The
 // vendor's own two routes to the Coriolis torques differ by 2.5e-14.
 const POSE: f64 = 1e-13;
 const JACOBIAN: f64 = 1e-13;
 const MASS: f64 = 1e-13;
 const TORQUE: f64 = 1e-12;
-/// How far the physically consistent FER may be from the vendor's without a load: what its
-/// description says, rounded up.
+/// Largest deviation of the physically consistent FER from the vendor's without a load: the figures
+/// of its documentation, rounded up.
 const FIT_MASS: f64 = 0.02;
 const FIT_GRAVITY: f64 = 0.02;
 const FIT_CORIOLIS: f64 = 0.09;

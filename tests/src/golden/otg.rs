@@ -1,8 +1,8 @@
 //! The trajectory generator against time-optimal motions made with Ruckig 0.19.4.
 //!
-//! Optimal motions of one axis are unique, so all of it is compared. Motions of several axes are
-//! not: of the axes that wait for the slowest one only the common duration is, and what they must
-//! keep is checked.
+//! Optimal motions of one axis are unique, so they are compared completely. Motions of several axes
+//! are not unique: for axes that wait for the slowest one, only the common duration is. The test
+//! checks the constraints of these axes instead.
 
 use anyhow::bail;
 use franka_otg::{Generator, Limits, PlanError, State, Synchronisation};
@@ -10,12 +10,13 @@ use serde::Deserialize;
 
 use super::{Case, Report};
 
-/// Of durations, relative. The files hold what independent solutions agree on to 4e-8 at worst,
-/// near stop points and in their own arithmetic; the two generators agree to 1e-11.
+/// Tolerance of durations, relative. The files hold the durations on which independent solutions
+/// agree to 4e-8 at worst, near stop points and in their own arithmetic. The two generators agree
+/// to 1e-11.
 const DURATION: f64 = 1e-9;
-/// Of samples, relative to the distance of the motion and to the limits.
+/// Tolerance of samples, relative to the distance of the motion and to the limits.
 const SAMPLE: f64 = 1e-8;
-/// Of limits, relative.
+/// Tolerance of limits, relative.
 const EXCESS: f64 = 1e-9;
 /// Samples of a motion whose limits are checked.
 const SAMPLES: u32 = 200;
@@ -221,9 +222,9 @@ impl<const N: usize> Problem<N> {
         case.near("duration", &[got], &[duration], tolerance);
     }
 
-    /// The motion leads to the target: a millionth of the duration before it, it is as far away as
-    /// the target's motion and the jerk make it in that time, but for the rounding of positions.
-    /// One that ends there ends there exactly.
+    /// The motion leads to the target. A millionth of the duration earlier, its distance is the
+    /// distance that the target's motion and the jerk cause in that time, except for the rounding
+    /// of positions. A motion that ends at rest ends exactly at the target.
     fn check_end(&self, case: &mut Case<'_>, plan: &Generator<N>) {
         let duration = plan.time_to_target();
         if self.target.is_at_rest() {
@@ -241,8 +242,8 @@ impl<const N: usize> Problem<N> {
         }
     }
 
-    /// The largest velocity and acceleration that a motion from the start has to have: those of the
-    /// limits, or more if the start is outside them or cannot stay inside.
+    /// The largest velocity and acceleration that a motion from the start must reach at least. They
+    /// are the limits, or more if the start is outside them or cannot stay inside.
     fn unavoidable(&self, axis: usize) -> [f64; 2] {
         let (start, jerk) = (self.start.axis(axis), self.jerk[axis]);
         let rise = 0.5 * start.acceleration * start.acceleration.abs() / jerk;
@@ -263,7 +264,7 @@ impl<const N: usize> Problem<N> {
             let now = plan.sample(dt * f64::from(k));
             for i in 0..N {
                 let jerk = (now.acceleration[i] - before.acceleration[i]) / dt;
-                // What the last bit of an acceleration at its limit looks like as a jerk.
+                // The last bit of an acceleration at its limit, expressed as a jerk.
                 let rounding = 4.0 * f64::EPSILON * self.acceleration[i] / dt;
                 let [velocity, acceleration] = self.unavoidable(i);
                 let parts = [
@@ -319,8 +320,8 @@ impl Problem<1> {
         velocity.abs() + 0.5 * acceleration * acceleration / self.jerk[0] <= self.velocity[0]
     }
 
-    /// Which durations are possible shows beside an axis that takes a duration of our choice from
-    /// rest to rest: both arrive as soon after that as this one can.
+    /// Checks the possible durations with a second axis that takes a chosen duration from rest to
+    /// rest: both arrive as soon after that duration as the first axis can.
     fn check_blocked(
         &self,
         case: &mut Case<'_>,

@@ -1,4 +1,4 @@
-//! What the check of one file found.
+//! Result of the check of one file.
 
 use std::fmt::{self, Debug, Display};
 
@@ -70,7 +70,7 @@ impl Report {
     }
 }
 
-/// The counts on one line; the first failures follow on lines of their own.
+/// The counts on one line; the first failures follow on separate lines.
 impl Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let worst = self.worst.as_ref();
@@ -137,7 +137,7 @@ impl Case<'_> {
         }
     }
 
-    /// Fails the case for a reason of its own.
+    /// Fails the case for the given reason.
     pub fn fail(&mut self, what: impl Into<String>) {
         self.comparisons += 1;
         self.failure.get_or_insert_with(|| what.into());

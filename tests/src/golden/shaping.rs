@@ -1,7 +1,7 @@
 //! The limiters and the bounds of commands against libfranka's: `rate_limiting_vectors.json`.
 //!
-//! Scalars and joints are compared to the last bit. What goes through rotations and norms is not
-//! the same arithmetic to the last bit, and gets [`CARTESIAN`].
+//! Scalars and joints are compared to the last bit. Rotations and norms use another arithmetic in
+//! the last bits, so their results have the tolerance [`CARTESIAN`].
 
 use std::collections::BTreeMap;
 
@@ -17,8 +17,8 @@ use super::loads::{Parts, Total};
 use super::shaping_errors::{self, Refused};
 use super::{Report, Versions};
 
-/// Of Cartesian values, `[m]`, `[m/s]`, `[rad/s]` and elements of rotations: some steps of a double
-/// at 1.
+/// Tolerance of Cartesian values, `[m]`, `[m/s]`, `[rad/s]` and elements of rotations: some steps
+/// of a double at 1.
 const CARTESIAN: f64 = 2e-14;
 
 #[derive(Deserialize)]
@@ -158,7 +158,7 @@ pub(super) fn limiters(text: &[u8]) -> anyhow::Result<Report> {
     Ok(report)
 }
 
-/// Every constant of the file, by name; one that is not known here is an error.
+/// Every constant of the file, by name; an unknown one is an error.
 fn constants(
     report: &mut Report,
     part: &str,
@@ -282,7 +282,7 @@ impl Section {
                     I_load: parts.I_load,
                     ..RobotState::default()
                 };
-                // The functions behind the file take `f64`, whatever the version.
+                // The functions behind the file use `f64` in every version.
                 let got = state.total_load(Version::V5);
                 case.near("mass of a state", &[got.m_total], &[total.m_total], 0.0);
                 let (centre, inertia) = (&total.F_x_Ctotal, &total.I_total);

@@ -1,4 +1,4 @@
-//! What limiters and filters refuse, and how they say it.
+//! Refusals of limiters and filters, and their error texts.
 //!
 //! The vectors describe each input in words; the rest of it is at rest.
 
@@ -13,7 +13,7 @@ const IDENTITY: [f64; 16] = [
     1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 0.2, 0.1, 1.0,
 ];
 
-/// What a function refuses, or in some cases of the filters does not.
+/// A refusal by a function. In some cases the filters accept the input.
 #[derive(Deserialize)]
 pub(super) struct Refused {
     function: String,
@@ -52,7 +52,7 @@ pub(super) fn limiters(
     Ok(())
 }
 
-/// What is unusual in a command.
+/// Unusual input in a command.
 #[derive(Debug)]
 enum Input {
     /// One element has another value.

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::shaping_errors::{self, Refused};
 use super::{Report, Versions};
 
-/// Of elements of poses: some steps of a double at 1.
+/// Tolerance of elements of poses: some steps of a double at 1.
 const CARTESIAN: f64 = 2e-14;
 
 #[derive(Deserialize)]

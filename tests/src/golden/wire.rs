@@ -293,7 +293,7 @@ impl Golden {
     }
 }
 
-/// What a server session sends to give this reply to a request of this id.
+/// Bytes that a server session sends for this reply to a request of this id.
 fn server_bytes(
     version: Version,
     command: Command,
@@ -350,7 +350,7 @@ fn deliver(
     Ok(session.on_message(message)?)
 }
 
-/// The vendor's name of a status: that of the variant behind a `k`.
+/// The vendor's name of a status: the variant's name after a `k`.
 pub(super) fn status_of(reply: &Reply<'_>) -> String {
     match reply {
         Reply::Connect { status, .. } => format!("k{status:?}"),

@@ -46,7 +46,7 @@ pub(super) fn command(
     Ok(())
 }
 
-/// Where `elbow_c` is in a command of both versions.
+/// Position of `elbow_c` in a command of both versions.
 const ELBOW: std::ops::Range<usize> = 296..312;
 
 /// Checks one state, with the mass that libfranka derives from it.

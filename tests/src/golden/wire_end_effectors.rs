@@ -32,7 +32,7 @@ pub(super) fn vacuum_headers(text: &[u8]) -> anyhow::Result<Report> {
     headers::<vacuum::Version>(text)
 }
 
-/// What the checks ask of a device.
+/// Requirements of the checks on a device.
 trait Device: for<'a> Protocol<Reply<'a> = gripper::Reply> + Default {
     const PORT: u16;
     const COMMANDS: &'static [Self::Command];
@@ -295,7 +295,7 @@ fn server_bytes<D: Device>(
     Ok(answer.as_bytes().to_vec())
 }
 
-/// What the vendor's headers declare.
+/// Declarations of the vendor's headers.
 #[derive(Deserialize)]
 struct Headers {
     version: u16,

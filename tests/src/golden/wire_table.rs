@@ -15,7 +15,7 @@ use serde::Deserialize;
 use super::wire::status_of;
 use super::{Case, Report};
 
-/// What the vendor's headers declare.
+/// Declarations of the vendor's headers.
 #[derive(Deserialize)]
 struct File {
     fci_version: u16,
@@ -189,8 +189,8 @@ fn check_enum(report: &mut Report, version: Version, declared: &DeclaredEnum) {
 /// The vendor's name for a byte, if it has one.
 type Meaning = Box<dyn Fn(u8) -> Option<String>>;
 
-/// How this crate reads the bytes of an enum; `None` for enums that it has no reader for: numbers
-/// of commands, checked on their own, and what other enums are derived from.
+/// This crate's reader for the bytes of an enum. `None` for enums without a reader: command
+/// numbers, which are checked separately, and enums from which others are derived.
 fn reader(name: &str, version: Version) -> Option<Meaning> {
     let status = |command: Command| -> Meaning {
         Box::new(move |byte| {
@@ -206,7 +206,7 @@ fn reader(name: &str, version: Version) -> Option<Meaning> {
         "StopMove::Status" => status(Command::StopMove),
         "GetterSetterCommandBase::Status" => status(Command::SetLoad),
         "AutomaticErrorRecovery::Status" => status(Command::AutomaticErrorRecovery),
-        // The base of all other statuses; in protocol 10 `GetRobotModel` has no status of its own.
+        // The base of all other statuses; in protocol 10 `GetRobotModel` has no separate status.
         "CommandBase::Status" if version.supports(Command::GetRobotModel) => {
             status(Command::GetRobotModel)
         }
@@ -258,7 +258,7 @@ fn reader(name: &str, version: Version) -> Option<Meaning> {
     })
 }
 
-/// What these bytes of a `LoadModelLibrary` mean, if they do.
+/// Meaning of these bytes of a `LoadModelLibrary`, if any.
 fn library(version: Version, architecture: u8, system: u8) -> Option<(Architecture, System)> {
     let number = version.command_number(Command::LoadModelLibrary)?;
     match Request::decode(version, &message(number, &[architecture, system])) {

@@ -35,7 +35,7 @@ impl Sessions<'_> {
         }
     }
 
-    /// Stops whatever the robot does, and returns the stop if it does anything.
+    /// Stops any activity of the robot, and returns the stop if there is one.
     pub(super) fn end_by_stop(&mut self) -> Option<GoalId> {
         let now = self.lockstep.now();
         let stop = self.lockstep.stop()?;
@@ -47,7 +47,7 @@ impl Sessions<'_> {
         Some(stop)
     }
 
-    /// Stops the robot, and checks that the arm comes to rest in time and stays there.
+    /// Stops the robot, and checks that the arm stops in time and stays there.
     pub(super) fn stop_and_rest(&mut self) {
         let begin = self.lockstep.now();
         let stop = self.end_by_stop();

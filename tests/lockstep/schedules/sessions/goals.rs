@@ -98,7 +98,7 @@ impl Sessions<'_> {
         };
         let poses = session.backend.is_cartesian();
         let reaction = draw::reaction(&mut self.random, &self.home, poses);
-        // A paused goal that has reacted waits to be resumed, which nobody does here.
+        // A paused goal that has reacted waits until it is resumed, which never happens here.
         goal.reaction = reaction.filter(|_| !goal.paused);
         let taken = self.lockstep.submit_within(session.id, goal);
         self.note(goal, Work::Goal(target), soft, taken)
@@ -162,7 +162,7 @@ impl Sessions<'_> {
                     None => session.over && error == MotionError::Disengaged,
                 };
                 assert!(fits, "{error:?} of a session that ended as {ended:?}");
-                // A deadman that is kept alive again lets the session go on.
+                // A deadman that is kept alive again lets the session continue.
                 session.over |= ended.is_some() || error != MotionError::Held(Lapse::Deadman);
                 false
             }
@@ -225,7 +225,7 @@ impl Sessions<'_> {
         }
     }
 
-    /// Runs until the newest goal is resolved, if it ends by itself.
+    /// Runs until the newest goal is resolved, if it has an end.
     pub(super) fn wait(&mut self) {
         let Some(current) = self.session.as_ref().and_then(|session| session.current) else {
             return;

@@ -48,14 +48,14 @@ pub(super) struct Sessions<'a> {
     home: Isometry3<f64>,
     /// True if there are no disturbances from outside.
     calm: bool,
-    /// True if the disturbances may move the arm or end a motion by themselves.
+    /// True if the disturbances alone may move the arm or end a motion.
     forceful: bool,
     causes: Causes,
     session: Option<Session>,
     /// Unresolved work, the oldest first.
     open: Vec<Submission>,
     submitted: usize,
-    /// Chunks that continue others; one that comes too late resolves like a goal.
+    /// Chunks that continue others; a chunk that comes too late resolves like a goal.
     chunks: Vec<GoalId>,
 }
 
@@ -70,7 +70,7 @@ struct Session {
     over: bool,
 }
 
-/// What keeps a deadman alive.
+/// Source of a deadman's signs of life.
 struct DeadmanFeed {
     token: Option<Deadman>,
     silence: u64,

@@ -1,8 +1,9 @@
-//! The wake-up: what is published before a notification is found by a listener that looks after it.
+//! The wake-up: a listener that looks after a notification finds the value that was published
+//! before it.
 //!
-//! The eventfd itself belongs to the kernel. Its counter and its readiness are made of a lock and a
-//! condition variable here; what is explored is the order of our operations around it, which is
-//! that of the thread (publish, note the end, notify) and of the bridge (wait, drain, look).
+//! The eventfd itself belongs to the kernel. Here a lock and a condition variable replace its
+//! counter and its readiness. The model explores the order of our operations around it: the thread
+//! publishes, records the end and notifies; the bridge waits, drains and looks.
 
 use loom::sync::atomic::{AtomicU64, Ordering};
 use loom::sync::{Arc, Condvar, Mutex};
@@ -11,7 +12,7 @@ use loom::thread;
 use crate::lifetime::Lifetime;
 use crate::slot::{Read, slot};
 
-/// What an eventfd does.
+/// Model of an eventfd.
 #[derive(Default)]
 struct EventFd {
     count: Mutex<u64>,
@@ -34,8 +35,8 @@ impl EventFd {
     }
 }
 
-/// A listener that looks once after each notification has the newest value in the end,
-/// torn reads or not; one that misses it waits for good, which loom reports.
+/// A listener that looks once after each notification has the newest value in the end, torn reads
+/// or not. A listener that misses it would wait forever, which loom reports.
 #[test]
 fn a_look_after_each_notification_finds_the_newest_value() {
     loom::model(|| {
@@ -79,7 +80,7 @@ fn the_end_is_seen_with_all_that_was_left_before_it() {
             })
         };
         lifetime.ask_to_stop();
-        // A reader looks without having been told.
+        // A reader looks without a notification.
         if lifetime.has_ended() {
             assert_eq!(left.load(Ordering::Relaxed), 7);
         }

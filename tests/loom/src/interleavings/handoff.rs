@@ -1,5 +1,4 @@
-//! The handoff where the cycle changes hands. What is lent here is a count of the turns that it has
-//! run.
+//! The handoff where the cycle changes hands. The lent value is a count of its turns.
 
 use std::time::Duration;
 
@@ -9,14 +8,14 @@ use loom::thread;
 
 use crate::handoff::{BorrowError, Handoff};
 
-/// Ticks that never end: a thread that waits for a change has to be told of it.
+/// Ticks that never end: a thread that waits for a change must be notified.
 const FOREVER: Duration = Duration::MAX;
 
 /// Ticks that are over at once.
 const AT_ONCE: Duration = Duration::ZERO;
 
-/// The owner's loop, for as long as a borrower wants the value or `goes_on` says so; then it closes
-/// the handoff. Returns the turns that were run in all, if the value is back.
+/// The owner's loop. It runs while `goes_on` returns true, lends the value when a borrower wants
+/// it, and then closes the handoff. Returns the total number of turns, if the value is back.
 fn own(handoff: &Handoff<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
     while let Some(value) = turns.filter(|_| goes_on()) {
@@ -87,8 +86,7 @@ fn two_borrowers_get_it_or_hear_that_the_other_has_it() {
     });
 }
 
-/// The owner is told to stop at any moment: no thread waits for good, and the value ends in one
-/// state.
+/// The owner is stopped at any moment: no thread waits forever, and the value ends in one state.
 #[test]
 fn a_stop_at_any_moment_leaves_nobody_waiting() {
     loom::model(|| {

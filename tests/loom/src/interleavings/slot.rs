@@ -45,7 +45,7 @@ fn a_torn_value_never_surfaces_and_values_never_go_back() {
     });
 }
 
-/// Wherever the writer is held up in one write: there is a whole value.
+/// A writer that is delayed anywhere in one write leaves a whole value.
 #[test]
 fn a_write_under_way_keeps_no_reader_from_a_value() {
     loom::model(|| {

@@ -1,4 +1,4 @@
-//! Members of a team: whatever they do at once, a fault of one is seen by the others.
+//! Members of a team: the others see a fault of one member, with any simultaneous operations.
 
 use loom::thread;
 
@@ -68,7 +68,7 @@ fn a_stop_and_a_new_round_at_once_never_open_a_stopped_round() {
     });
 }
 
-/// What a member says of an object that the team carries.
+/// Reports of a member about an object that the team carries.
 const SAID: [Carrying; 2] = [
     Carrying {
         remaining: 0.25,
@@ -136,7 +136,7 @@ fn of_two_others_at_once_the_farthest_and_any_that_lags_count() {
             first.leave();
         });
         second.tell(round, SAID[0]);
-        // What it says itself does not count for a member.
+        // A member's own report does not count for itself.
         let others = second.others(round);
         assert!(
             [Carrying::default(), SAID[1]].contains(&others),

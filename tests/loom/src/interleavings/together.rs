@@ -1,4 +1,4 @@
-//! Members of a common start: whatever they do at once, they agree on whether it takes place.
+//! Members of a common start: they agree on its result, with any simultaneous operations.
 
 use loom::thread;
 
