@@ -180,8 +180,8 @@ fn places(kind: RobotKind) {
     assert!(errors.place < 0.03 && errors.force < 0.15, "{errors}");
 }
 
-/// Explanation for an arm that swings around the posture of the push, and is pushed in motion for
-/// 0.3 s.
+/// Explanation for an arm that swings around the posture of the push, and is pushed in motion
+/// for 0.3 s.
 fn pushed_on_its_way(push: &Push, arm: &Arm, seed: u64) -> Place {
     println!("{:?}, seed {seed}", push.body);
     let mut config = Config {

@@ -58,8 +58,8 @@ impl fmt::Display for Cost {
 /// Processor time of all programs that this process has run to their end, in seconds.
 fn processor_time() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
-    // The name of the program may contain spaces. After it, fields 16 and 17 of proc(5) are the
-    // 14th and 15th, in ticks of a hundredth of a second.
+    // The name of the program may contain spaces. After it, fields 16 and 17 of proc(5) are
+    // the 14th and 15th, in ticks of a hundredth of a second.
     let (_, fields) = stat.rsplit_once(')')?;
     let mut ticks = fields.split_whitespace().skip(13);
     let user: f64 = ticks.next()?.parse().ok()?;

@@ -5,8 +5,8 @@ use franka_model::{JointVector, RobotKind, joint_vector};
 /// Friction of the joints, as it opposes a torque command. The part of a motor's friction that the
 /// control box compensates is not included.
 ///
-/// With a [`Bristle`], a joint sticks. Without one, the torque at velocity `v` is `kinetic · tanh(v
-/// / stribeck_speed) + viscous · v`, which has no stiction.
+/// With a [`Bristle`], a joint sticks. Without one, the torque at velocity `v` is
+/// `kinetic · tanh(v / stribeck_speed) + viscous · v`, which has no stiction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// Torque at which a joint at rest breaks away, `[N·m]`. It has no effect without a bristle.

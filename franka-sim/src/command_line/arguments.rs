@@ -14,9 +14,9 @@ use crate::arm::SystemLimits;
 /// interrupted.
 ///
 /// Point a client at the address that is printed once the robot is ready, for example libfranka's
-/// `franka::Robot robot("127.0.0.1")` or pylibfranka's `Robot("127.0.0.1",
-/// RealtimeConfig.kIgnore)`. The robot accepts one client at a time and keeps its state between
-/// clients.
+/// `franka::Robot robot("127.0.0.1")` or pylibfranka's
+/// `Robot("127.0.0.1", RealtimeConfig.kIgnore)`. The robot accepts one client at a time and keeps
+/// its state between clients.
 ///
 /// The robot is as strict as a real one. A command beyond a limit, a step in velocity or torque, a
 /// collision, or 20 missing commands in a row end a motion in a reflex. The client clears it with

@@ -11,8 +11,8 @@ pub struct Unpublished {
     /// as commanded.
     pub start: StartTolerance,
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-    /// start. Default 0.05. A pose that a robot refuses has 0.011; ordinary poses have 0.14 to
-    /// 0.23.
+    /// start. Default 0.05. A pose that a robot refuses has 0.011; ordinary poses have 0.14
+    /// to 0.23.
     pub singular: f64,
     /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
     /// is zero. Default 0.1. Of two recorded Franka Research 3, one has no wrench at 0.076, in
@@ -62,8 +62,9 @@ pub struct Unpublished {
     pub observer_gain: f64,
     /// Bounds from which the arm counts as about to hit itself.
     pub self_collision: SelfCollision,
-    /// Mechanical power of all joints together that raises `power_limit_violation`, `[W]`. Default
-    /// 600, more than any motion within the limits of a Franka Research 3 requires without a load.
+    /// Mechanical power of all joints together that raises `power_limit_violation`, `[W]`.
+    /// Default 600, more than any motion within the limits of a Franka Research 3 requires without
+    /// a load.
     pub power: f64,
     /// Condition for `instability_detected`.
     pub instability: Instability,
@@ -232,11 +233,11 @@ pub enum ForceAxes {
 /// Collision of the arm with itself, by the vendor's capsules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfCollision {
-    /// Distance between two capsules below which they must not approach each other, `[m]`. Default
-    /// 0.05.
+    /// Distance between two capsules below which they must not approach each other, `[m]`.
+    /// Default 0.05.
     pub margin: f64,
-    /// Distance that they may still approach, from their largest distance so far, `[m]`. Default
-    /// 0.001. A motion out of the margin is always possible.
+    /// Distance that they may still approach, from their largest distance so far, `[m]`.
+    /// Default 0.001. A motion out of the margin is always possible.
     pub closing: f64,
     /// Least number of links between the two along the chain; a tool counts as link 8. Default 3:
     /// closer links come near each other in everyday postures.

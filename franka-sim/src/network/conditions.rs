@@ -148,17 +148,17 @@ impl Stalls {
     /// Stalls of the FER's network interface.
     ///
     /// Measured on robots: seven a second, of 2 to 7 ms, with no state lost. The longest silence
-    /// between two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest lasts
-    /// 2 ms + `excess` (ln `n` + 0.577) on average. The silence is half a millisecond longer, since
-    /// the last state was before the stall. In the middle between 4.8 and 6.9 ms, the excess is
-    /// 0.57 ms if a measurement took 30 s, and 0.69 ms if it took 10 s. The value is between the
+    /// between two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest
+    /// lasts 2 ms + `excess` (ln `n` + 0.577) on average. The silence is half a millisecond longer,
+    /// since the last state was before the stall. In the middle between 4.8 and 6.9 ms, the excess
+    /// is 0.57 ms if a measurement took 30 s, and 0.69 ms if it took 10 s. The value is between the
     /// two and also leads to the loss measured in clients.
     ///
-    /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms (Rayleigh
-    /// 0.70); the share on the grid and the spread around it are fitted to it. In that capture 40 %
-    /// are single late states, as [`single`](Self::single) makes them. With them, clients would
-    /// lose 16 states of 30 000, not the 28 that were measured on other robots, so this value has
-    /// none. The exponential distribution of lengths is a choice.
+    /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms
+    /// (Rayleigh 0.70); the share on the grid and the spread around it are fitted to it. In that
+    /// capture 40 % are single late states, as [`single`](Self::single) makes them. With them,
+    /// clients would lose 16 states of 30 000, not the 28 that were measured on other robots, so
+    /// this value has none. The exponential distribution of lengths is a choice.
     pub const FER: Self = Self {
         per_second: 7.0,
         shortest: Duration::from_millis(2),

@@ -9,8 +9,9 @@
 //! the torque, inertia and damping of [`LinkTorque`], and the torque and slope of [`External`].
 //!
 //! With rigid joints the apparent rotor inertia `B` and all friction act on the link. With elastic
-//! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with `s = h·D +
-//! h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and link is
+//! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with
+//! `s = h·D + h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and
+//! link is
 //!
 //! ```text
 //! T = T0 + s (τ − f − T0)/(B + s) − (s B/(B + s)) q̈
