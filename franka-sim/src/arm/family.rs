@@ -60,9 +60,9 @@ pub struct Family {
     pub rotor_inertia: Distribution,
     /// Drawn once.
     pub torque_loop_gain: Distribution,
-    /// Delay in whole cycles, at least 1, drawn once.
+    /// `[s]`, drawn once.
     pub torque_lag: Distribution,
-    /// Whole cycles, at least 1, drawn once.
+    /// Delay in whole cycles, at least 1, drawn once.
     pub command_delay: Distribution,
     /// Elasticity of the joints; `null` for rigid ones.
     // `Option::deserialize`, since a plain `Option` may be missing.
