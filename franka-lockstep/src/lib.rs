@@ -189,8 +189,8 @@ impl Lockstep {
         self.client.settle();
     }
 
-    /// Passes the client the states that arrive before the robot's next cycle. Returns whether
-    /// there was one.
+    /// Passes the client the states that arrive before the robot's next cycle. Returns true if one
+    /// arrived.
     fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
         let end = self.next_cycle();
         let mut heard = false;

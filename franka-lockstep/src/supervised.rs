@@ -191,7 +191,7 @@ impl Supervised {
                         }
                         _ => Err(RecoveryFailure::Other),
                     };
-                    // One request is out at a time.
+                    // Only one request is outstanding at a time.
                     if let Some(reflex) = self.health().reflex {
                         self.supervision.on_recovery(reflex, answer, now);
                     }
@@ -309,13 +309,13 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// Kills the simulator, which is gone at once.
+    /// Kills the simulator, which disappears immediately.
     pub fn kill(&mut self) {
         self.is_up = false;
         self.lose(CloseReason::ClosedByPeer);
     }
 
-    /// Starts it again where the arm stands.
+    /// Restarts it with the arm in its position.
     pub fn restart(&mut self) {
         let q: JointVector = *self.lockstep.robot.q();
         self.lockstep.robot = Robot::new(self.config.clone());
@@ -383,7 +383,7 @@ impl Supervised {
         goal.id
     }
 
-    /// Takes a motion back, as dropping its future does.
+    /// Cancels a motion, as dropping its future does.
     pub fn cancel(&mut self, goal: GoalId) {
         if self.supervision.withdraw(goal) {
             self.waiting = None;

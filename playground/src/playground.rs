@@ -73,7 +73,7 @@ pub struct View {
 }
 
 impl Playground {
-    /// Returns an arm at rest in the ready pose with a session begun: one like real ones, of this
+    /// Returns an arm at rest in the ready pose with a running session: a realistic arm of this
     /// seed, or an ideal one.
     pub fn new(kind: RobotKind, seed: Option<u64>) -> Self {
         let mut lockstep = Lockstep::new(Config {

@@ -110,7 +110,7 @@ fn an_arm_that_something_holds_stops_or_waits_and_goes_on_when_let_go() {
             until(&mut playground, |now| now.view().state == State::Following);
         }
         playground.advance(500);
-        // An arm that comes loose may be faster than the cap, and then gives its target up.
+        // An arm that is released may be faster than the cap, and then abandons its target.
         playground.target(target);
         until(&mut playground, |now| distance(now) < 2e-3);
     });

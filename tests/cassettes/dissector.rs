@@ -258,7 +258,7 @@ fn the_dissector_finds_what_went_wrong() {
     let late = robot.events[first].at + Duration::from_micros(2500);
     robot.events[first].at = late;
     robot.events.sort_by_key(|event| event.at);
-    // One state is not captured.
+    // The capture lacks one state.
     let state =
         |event: &Event| event.from == Side::Robot && matches!(event.what, Payload::Datagram(_));
     let states: Vec<_> = (0..robot.events.len())

@@ -68,8 +68,8 @@ async fn a_reflex_plays_again_with_the_same_error() {
     }
 }
 
-/// Reflexes that were recorded once and have to end the same way with every later driver. With
-/// `FRANKA_WRITE_CASSETTES` set, they are recorded anew.
+/// Recorded reflexes that must end in the same way with every later driver. With
+/// `FRANKA_WRITE_CASSETTES` set, the test records them again.
 #[tokio::test(flavor = "multi_thread")]
 async fn committed_cassettes_end_as_they_did() {
     let expected =

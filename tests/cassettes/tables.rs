@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-/// Commands whose reply comes when an action has ended.
+/// Commands whose reply follows at the end of an action.
 const LONG: [&str; 7] = [
     "Move",
     "AutomaticErrorRecovery",
@@ -20,7 +20,7 @@ const LONG: [&str; 7] = [
 const BEGIN: &str = "-- begin of the tables";
 const END: &str = "-- end of the tables";
 
-/// With `FRANKA_WRITE_TABLES` set, they are written anew.
+/// With `FRANKA_WRITE_TABLES` set, the test writes them again.
 #[test]
 fn the_dissector_has_the_tables_of_the_protocol() {
     let path = dissector();

@@ -24,7 +24,7 @@ fn command(motion: bool, torques: bool) -> Command {
     }
 }
 
-/// A motion that takes commands from outside.
+/// A motion under external commands.
 fn active(
     version: Version,
     controller: MoveControllerMode,

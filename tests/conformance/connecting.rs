@@ -1,4 +1,4 @@
-//! No robot, or one of another version.
+//! No robot, or a robot of another version.
 
 use std::net::{Ipv4Addr, TcpListener};
 

@@ -1,4 +1,4 @@
-//! The client beside a scripted robot, in one thread.
+//! The client and a scripted robot, in one thread.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub(crate) struct Running {
 
 impl Pair {
     /// Returns a connected pair: after the handshake, a state with the id 1, and the robot's model
-    /// where the version has one.
+    /// if the version has one.
     pub(crate) fn connected(version: Version) -> Self {
         Self::with_log_size(version, ControlLog::DEFAULT_CAPACITY)
     }

@@ -32,7 +32,7 @@ enum Way {
     Played(Box<Player>),
 }
 
-/// Runs a scenario, and once more against what it recorded. Its own assertions say whether the
+/// Runs a scenario, and again against its recording. The scenario's assertions check that the
 /// outcome is the same.
 pub(crate) fn recorded_and_replayed(scenario: impl Fn()) {
     let cassette = recorded(&scenario);

@@ -52,8 +52,8 @@ async fn rests(robot: &Robot, what: &str) {
     assert!(reason.is_empty(), "{what}: {reason:?}");
 }
 
-/// Drops what `make` makes after one poll, then after two, and so on until it comes to its end;
-/// returns how many it took.
+/// Drops the future of `make` after one poll, then after two, and so on until it completes; returns
+/// the number of polls.
 async fn drop_at_every_poll<'a>(
     robot: &Robot,
     what: &str,

@@ -206,7 +206,7 @@ async fn a_second_client_is_refused_and_the_first_is_not_disturbed() {
     let up = franka_async::Pose::translation(0.0, 0.0, 0.02) * robot.pose();
     robot.move_to(up).await.unwrap();
     robot.shutdown().await;
-    // With the first gone there is room.
+    // Without the first connection the queue has room.
     let robot = crate::connect(&sim).await;
     robot.shutdown().await;
 }
@@ -217,7 +217,7 @@ async fn without_a_real_time_kernel_enforcing_fails_before_anything_is_sent() {
     if franka_rt::sched::kernel_is_realtime() {
         return;
     }
-    // No server listens there: the host is asked first.
+    // No server listens at this port, but the host is checked first.
     let error = Robot::connect("127.0.0.1:1").await.expect_err("refused");
     let ConnectError::Realtime(error) = error else {
         panic!("{error:?}")

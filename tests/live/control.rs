@@ -37,8 +37,7 @@ fn smooth(t: f64, seconds: f64) -> (f64, f64) {
     (value, (1.0 - (2.0 * PI * phase).cos()) / seconds)
 }
 
-/// The command of a motion over `seconds`, made by `at` of the time; the last one once they are
-/// over.
+/// The command of a motion over `seconds`, computed by `at` from the time; the last one afterwards.
 fn timed<C: Finish>(
     seconds: f64,
     mut at: impl FnMut(&RobotState, f64) -> C + Send + 'static,
@@ -122,7 +121,7 @@ async fn each_generator_takes_the_arm_where_the_function_says() {
 async fn torques_alone_and_beside_a_generator() {
     let _alone = alone();
     for (robot, _sim) in each().await {
-        // A damped spring to where the arm is.
+        // A damped spring to the arm's position.
         let spring = |state: &RobotState, q: &[f64; 7]| {
             Torques(std::array::from_fn(|i| {
                 80.0 * (q[i] - state.q[i]) - 10.0 * state.dq[i]
@@ -532,7 +531,7 @@ fn a_function_that_never_returns_keeps_neither_the_connection_nor_the_program() 
         timeout(SOON, robot.shutdown()).await.expect("it ends");
         drop(stuck);
     });
-    drop(runtime); // waits for what blocks a thread of it
+    drop(runtime); // waits for its blocked threads
     drop(forever);
 }
 

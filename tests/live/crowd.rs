@@ -1,4 +1,4 @@
-//! Ten simulators and ten driven robots in one process: none gets what belongs to another, and
+//! Ten simulators and ten driven robots in one process: no robot gets data of another, and
 //! everything resolves.
 //!
 //! The arms keep to separate lanes, have different loads and tools, and move from goal to goal.
@@ -45,7 +45,7 @@ struct Counts {
     success_rate_min: f64,
 }
 
-/// One arm and the simulator behind it.
+/// One arm and its simulator.
 struct Member {
     number: usize,
     robot: Robot,
@@ -70,7 +70,7 @@ fn reach(number: usize) -> f64 {
     0.01 * (number + 1) as f64
 }
 
-/// Holds a state against what only this robot has.
+/// Checks a state against the values that only this robot has.
 fn assert_own(number: usize, state: &RobotState) {
     let aside = state.q[0] - home(number)[0];
     assert!(aside.abs() < LANE / 2.0, "robot {number}: {aside} rad off");
@@ -147,7 +147,7 @@ impl Member {
         q
     }
 
-    /// The outcome of a motion, which comes.
+    /// The outcome of a motion, which must resolve.
     async fn outcome(&self, motion: impl IntoFuture<Output = Outcome>) -> Outcome {
         let number = self.number;
         let outcome = timeout(LONGEST, motion.into_future()).await;
@@ -197,7 +197,7 @@ impl Member {
     /// Waits until a motion has begun, or has failed to.
     async fn head_start(&self) {
         let begun = until(&self.robot, RobotState::motion_running);
-        // How it ended is seen where its outcome is.
+        // The outcome is checked elsewhere.
         let _ = timeout(HEAD_START, begun).await;
     }
 
@@ -252,7 +252,7 @@ impl Member {
 
     /// Runs rounds until `end`; then disconnects, and reports.
     async fn run(mut self, end: Instant) -> (usize, Counts) {
-        // States from before what was set have arrived.
+        // By then, all states from before the settings have arrived.
         robot_time(&self.robot, 100).await;
         let watching = watch(self.number, &self.robot);
         let mut round = 0;

@@ -241,7 +241,7 @@ async fn a_session_says_why_it_ended_after_another_one_has() {
 #[tokio::test(flavor = "multi_thread")]
 async fn an_observer_sees_the_records_that_the_stream_has() {
     let _alone = alone();
-    // At the client's pace, records come faster than a reader on a busy machine takes them.
+    // At the client's pace, records come faster than a reader on a busy machine reads them.
     let (robot, _sim) = by_the_clock(Sim::fr3().ideal().tool(Tool::hand())).await;
     let mut records = robot.records();
     let streamed = tokio::spawn(async move {

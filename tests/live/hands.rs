@@ -173,7 +173,7 @@ async fn dropping_an_action_stops_it_and_nothing_else() {
         assert!(width > 0.06 && width < 0.08, "{action}: {width}");
         assert!(!gripper.state().is_grasped);
     }
-    // One whose place a newer one has taken stops nothing.
+    // A superseded action stops nothing.
     assert!(gripper.move_to(0.08, 0.1).await.expect("a move"));
     let mut older = Box::pin(gripper.move_to(0.06, 0.001));
     tokio::select! {

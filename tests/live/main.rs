@@ -100,7 +100,7 @@ async fn connect(sim: &Running) -> Robot {
     builder.connect().await.expect("a simulator takes a client")
 }
 
-/// A motion that takes the robot some twenty seconds: long enough to be met on its way.
+/// A motion of some twenty seconds of robot time, long enough for events during the motion.
 fn long_way(robot: &Robot) -> Motion {
     robot
         .move_to(Pose::translation(0.0, 0.0, 0.1) * robot.pose())

@@ -28,7 +28,7 @@ struct Family {
 /// Reads OpenMetrics text 1.0.0.
 ///
 /// # Panics
-/// If a line does not keep to the format.
+/// If a line violates the format.
 fn parse(text: &str) -> Samples {
     let body = text.strip_suffix("# EOF\n").expect("the end is marked");
     let (mut samples, mut family) = (Samples::new(), Family::default());

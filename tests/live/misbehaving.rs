@@ -160,8 +160,8 @@ async fn a_motion_whose_start_cannot_be_read_is_stopped() {
         }
     });
     still.await.expect("the robot was told to stop");
-    // A motion that is asked for at once may meet the end of the abandoned one; it resolves, and
-    // another one arrives.
+    // An immediate motion may meet the end of the abandoned one. It resolves, and another motion
+    // arrives.
     let arrived = timeout(SOON, async {
         while let Err(error) = robot.move_to(robot.pose()).await {
             assert!(

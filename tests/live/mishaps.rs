@@ -20,11 +20,11 @@ use crate::{SOON, alone, at_the_clients_pace, long_way, until};
 /// Counters of the driver while it was connected over such a network.
 #[derive(Debug)]
 struct Seen {
-    /// States that never came.
+    /// States that never arrived.
     lost: u64,
-    /// Those that were not newer than another one.
+    /// States that were not newer than an earlier arrival.
     stale: u64,
-    /// Lowest share of commands that came in time.
+    /// Lowest share of commands in time.
     success_rate_min: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A robot with bad manners: the simulated robot as a value, on sockets that do what a test asks.
+//! A misbehaving robot: the simulated robot as a value, on sockets under the control of a test.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream, UdpSocket};
@@ -89,7 +89,7 @@ impl Peer {
                 match listener.accept() {
                     Ok((stream, _)) => {
                         server.robot.connect();
-                        // However it ended, the next one is served.
+                        // After any end, the next client is served.
                         let _ = server.serve(&stream);
                         let speed = server.robot.dq().amax();
                         shared_by_server
@@ -130,7 +130,7 @@ impl Peer {
         gone.then(|| f64::from_bits(self.shared.speed.load(Ordering::Relaxed)))
     }
 
-    /// Stops reading the stream, for good.
+    /// Stops reading the stream permanently.
     pub(crate) fn stop_reading(&self) {
         self.shared.deaf.store(true, Ordering::Relaxed);
     }
@@ -191,7 +191,7 @@ impl Server {
             if let Some(datagram) = self.robot.tick() {
                 self.shared.udp_port.store(datagram.port, Ordering::Relaxed);
                 let client = (Ipv4Addr::LOCALHOST, datagram.port);
-                // The client may have gone.
+                // The client may have disconnected.
                 let _ = self.udp.send_to(datagram.bytes, client);
             }
             while let Some(part) = self.robot.take_reply() {

@@ -138,7 +138,7 @@ fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
         let end = scene.way[1].translation.vector;
         assert!((robot.pose().translation.vector - end).norm() < 1e-3);
 
-        // Of very many, the oldest ones end at once.
+        // If very many wait, the oldest end at once.
         let release = hold();
         let mut back = Vec::new();
         for _ in 0..6 {

@@ -82,7 +82,7 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
     for refusal in &granted.refusals {
         println!("this host refuses: {refusal}");
     }
-    // The gate knows whether it can be had.
+    // The test step sets this variable if the right is available.
     if std::env::var_os("FRANKA_REALTIME_GRANTED").is_some() {
         assert_eq!(granted.priority, Some(42), "{:?}", granted.refusals);
     }

@@ -29,8 +29,7 @@ fn collect(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     tokio::spawn(stream.map(entry).collect())
 }
 
-/// The same of the records, of which there is one for each state that the control thread has
-/// received.
+/// The same for the records: one for each state that the control thread has received.
 fn records(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     let mut records = robot.records();
     tokio::spawn(async move {
@@ -122,7 +121,7 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
 
     let eager = eager.await.unwrap();
     let between = eager.range(first.state.message_id + 1..late.state.message_id);
-    // Those that came meanwhile, and those that never came.
+    // States that came meanwhile, and states that never came.
     let came = between.clone().count() as u64;
     let lost = eager
         .range(first.state.message_id + 1..=late.state.message_id)

@@ -53,7 +53,7 @@ async fn a_replay_moves_to_the_begin_and_says_how_far_off_it_was() {
     let mut cycles = robot.cycles(20_000).unwrap();
     let report = robot.replay(&plan(&robot, &samples, 0.5)).await.unwrap();
     println!("{report:?}");
-    // The way to the begin is the recorded one back: it is as slow as what follows it.
+    // The path to the start is the recorded one in reverse, as slow as the following part.
     let recorded = samples.windows(20).map(|it| it[19].q[0] - it[0].q[0]);
     let recorded = recorded.fold(0.0, |most: f64, it| most.max(it.abs())) / 0.019;
     let mut fastest = 0.0_f64;

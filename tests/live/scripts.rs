@@ -114,7 +114,7 @@ fn what_is_beside_motions_is_there_for_a_plain_thread() {
     });
     report.wait().unwrap();
 
-    // Of one arm: it waits for no other one's, which a busy machine may keep from its cycles.
+    // Only one arm: it must not wait for cycles of another, which a busy machine may delay.
     let team = Team::engage_tolerating(SOON, [(&robot, Engage::default())]);
     let team = team.wait().unwrap();
     let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();

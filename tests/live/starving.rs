@@ -104,8 +104,8 @@ impl Setting {
         };
         let before = missed();
         disturb(self);
-        // Of the motion, whose first state the robot lets wait for some milliseconds only, this
-        // part: a thread without priority may come too late for that one.
+        // Counted from here, because the robot waits only some milliseconds for the answer to the
+        // first state, and a thread without priority may be too late.
         assert_eq!(missed(), before, "lost and skipped");
         assert!(!moving.is_finished(), "it is still under way");
         drop(sender);

@@ -24,7 +24,7 @@ fn latched<T>() -> Result<T, MotionError> {
     })
 }
 
-/// Asks for every kind of motion.
+/// Requests every kind of motion.
 async fn nothing_is_admitted(robot: &Robot) {
     assert_eq!(long_way(robot).await, latched());
     let way = [robot.pose(), up(0.01) * robot.pose()];
@@ -156,7 +156,7 @@ async fn stop_waits_for_the_next_connection_and_a_latch_outlives_it() {
         .await
         .expect("no hang")
         .expect("no panic");
-    // Taken back if it was asked for first.
+    // Cancelled if it was requested first.
     assert!(
         [latched(), Err(MotionError::Stopped)].contains(&outcome),
         "{outcome:?}"

@@ -23,7 +23,7 @@ async fn realistic() -> (Robot, Running) {
     (robot, sim)
 }
 
-/// Pulls at the hand, besides what pulls already.
+/// Pulls at the hand, in addition to the current load.
 async fn pull(sim: &Running, force: Vector3<f64>) {
     let pull = move |robot: &mut franka_sim::Robot| {
         robot.touch(Touch::force(force));

@@ -74,7 +74,7 @@ async fn joint_motions_have_one_outcome_per_arm_in_their_order() {
     }
     assert_eq!(two.team.stopped(), None);
 
-    // One follows targets, the other one goes to its own.
+    // One arm follows a stream of targets, the other goes to a single target.
     let (sender, targets) = watch::channel(up(0.02) * left.pose());
     let mixed = two.team.run(|member, arm| -> MemberMotion {
         match member {
@@ -192,7 +192,7 @@ async fn joint_motions_may_be_dropped_at_every_poll() {
             assert!(robot.state().errors.is_empty());
         }
     }
-    // However few polls a motion takes, its first one cannot be the last.
+    // The first poll of a motion cannot be the last.
     assert!(polls > 1, "dropped {polls} times on the way");
     // A dropped motion leaves nothing behind.
     for outcome in two.team.move_to(start).await {

@@ -22,7 +22,7 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 use crate::{SOON, ahead_of_the_client, alone};
 
-/// One event, with the thread that it came from and the spans that it is in, the outermost first.
+/// One event, with its thread and its spans, the outermost first.
 pub(crate) struct Told {
     thread: String,
     spans: Vec<&'static str>,

@@ -113,7 +113,7 @@ async fn an_arm_whose_other_does_not_come_stays_where_it_is_and_moves_again() {
         other => panic!("{other:?}"),
     };
 
-    // Never asked for.
+    // Never requested.
     let [first, second] = StartBarrier::new().tickets();
     drop(goal(&right).start_with(second));
     let fault = fault_of(goal(&left).start_with(first).await);

@@ -1,6 +1,6 @@
-//! A goal cancelled in any millisecond of its motion, as dropping its future does: in each of the
-//! first ones and in every fifth after them, thoroughly in every one. The harness checks every
-//! command against the limits, jerk included.
+//! A goal cancelled in any millisecond of its motion, as dropping its future does. The tests cover
+//! each of the first milliseconds and every fifth after them; thorough runs cover all. The harness
+//! checks every command against the limits, jerk included.
 
 use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::RobotMode;
@@ -32,8 +32,8 @@ fn goal(lockstep: &mut Lockstep, turn: usize, on_arrival: OnArrival, joints: boo
     }
 }
 
-/// Cancels a goal in its first millisecond, the next one in a later one, and so on until one
-/// arrives before it is cancelled.
+/// Cancels a goal in its first millisecond, the next goal in a later millisecond, and so on until a
+/// goal arrives before it is cancelled.
 fn in_any_millisecond(
     lockstep: &mut Lockstep,
     mut submit: impl FnMut(&mut Lockstep, usize) -> GoalId,

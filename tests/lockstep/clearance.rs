@@ -188,7 +188,7 @@ fn successive_chunks_come_no_nearer_than_one_does() {
 }
 
 /// A goal with a slow budget supersedes a fast one on its way to the table: braking within the slow
-/// budget would take far longer.
+/// budget would require a far longer distance.
 #[test]
 fn a_gentler_goal_that_takes_over_comes_no_nearer() {
     for_each_robot(|ready| {

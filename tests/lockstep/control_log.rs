@@ -1,4 +1,4 @@
-//! A reflex, and what libfranka's table and text of it still tell.
+//! A reflex, and the information in libfranka's table and text about it.
 
 use crate::diagnosis::{begin, stepping};
 use franka_diagnosis::{Diagnose, Diagnosis};

@@ -233,7 +233,7 @@ fn losses_that_the_robot_tolerates_do_not_end_a_motion() {
     });
 }
 
-/// A robot whose collision thresholds let a hand push.
+/// A robot whose collision thresholds permit a hand to push.
 fn tolerant(ready: &dyn Fn() -> Lockstep) -> Lockstep {
     let mut lockstep = ready();
     let behavior = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);

@@ -92,7 +92,7 @@ fn a_blow_on_the_forearm_is_explained_from_the_log_of_the_error() {
     });
 }
 
-/// A log without cycles, and one with the last one only, which shows no change.
+/// A log without cycles, and a log with only the last cycle, which shows no change.
 #[test]
 fn a_log_that_shows_no_stop_has_the_cause_all_the_same() {
     for cycles in [0, 1] {
@@ -214,7 +214,7 @@ fn pushed_on_its_way(push: &Push, arm: &Arm, seed: u64) -> Place {
             explainer.push_state(&lockstep.client.state);
         }
     };
-    // Where it is fastest.
+    // At its highest speed.
     run(&mut lockstep, 2400);
     lockstep.robot.touch(push.touch());
     run(&mut lockstep, 300);

@@ -49,8 +49,8 @@ fn aside(lockstep: &Lockstep, by: f64) -> Isometry3<f64> {
     Translation3::new(0.0, by, 0.0) * lockstep.arm_pose()
 }
 
-/// Under every back end, frozen at rest before the goal comes and on the way. The second robot only
-/// under one of them, unless thorough.
+/// With every back end, frozen at rest before the goal comes, and in motion. The second robot with
+/// only one back end, unless the run is thorough.
 #[test]
 fn a_frozen_arm_is_named_within_a_second() {
     for kind in RobotKind::ALL {
@@ -84,7 +84,7 @@ fn a_frozen_arm_is_named_within_a_second() {
                         assert_eq!((backend, freeze), (Backend::Torques, Freeze::Controllers));
                         continue;
                     }
-                    // The arm continues from where it stands.
+                    // The arm continues from its position.
                     let back = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
                     let back = back.expect("within reach");
                     let outcome = lockstep.until_resolved(back, 10_000);
@@ -158,7 +158,7 @@ fn named(lockstep: &mut Lockstep) -> Option<u64> {
     })
 }
 
-/// Lets the arm obey again once its goal was given up, and checks that it does not leap.
+/// Makes the arm obey again once its goal was given up, and checks that it does not jump.
 fn leaps_not(lockstep: &mut Lockstep, what: &str) {
     lockstep.run(1000);
     let stood = lockstep.arm_pose();

@@ -226,7 +226,7 @@ fn a_slow_push_meets_little_more_with_compensation_than_without() {
     let seeds = 0..if thorough() { 3 } else { 1 };
     let realistic = seeds.map(|seed| Arm::sample(RobotKind::Fer, seed, &Family::realistic()));
     for arm in realistic.chain([Arm::ideal(RobotKind::Fer)]) {
-        // Near what friction takes, far beyond it, and in between.
+        // Near the range of friction, far beyond it, and in between.
         let distances = [(0.008, 2.0), (0.06, 1.0), (0.015, 2.0)];
         for &(distance, more) in &distances[..if thorough() { 3 } else { 2 }] {
             for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
@@ -266,7 +266,7 @@ fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
             let target = Translation3::new(0.0, 0.05, 0.0) * home;
             let goal = lockstep.within(engaged, target.into(), OnArrival::Hold);
             goal.expect("within reach");
-            // Once it is there, something holds it.
+            // Something holds it at its target.
             let mut block = None;
             let mut felt = 0.0_f64;
             for cycle in 0..5000 {

@@ -162,7 +162,7 @@ fn bad_arms_are_found_roughly() {
     assert!(mass_off < 0.3, "{mass_off} kg");
 }
 
-/// The same load, declared or not, is found at the same place.
+/// The estimate of the load is the same, declared or not.
 #[test]
 fn a_load_is_found_whether_it_is_declared_or_not() {
     let [hidden, declared] = [false, true].map(|declared| {

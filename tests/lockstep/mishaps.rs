@@ -97,8 +97,8 @@ fn a_delay_within_the_cycle_costs_nothing() {
     });
 }
 
-/// The command is delayed as long as the state, so that it misses its cycle from a delay of half a
-/// millisecond on. The robot waits for the first one, and counts from when it comes.
+/// The command is delayed as long as the state, so it misses its cycle from a delay of half a
+/// millisecond on. The robot waits for the first command, and counts from its arrival.
 #[test]
 fn a_delay_beyond_the_cycle_leaves_no_command_in_time() {
     for_each_robot(|ready| {

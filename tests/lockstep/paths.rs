@@ -372,7 +372,7 @@ fn a_chunk_supersedes_a_path_that_is_under_way() {
     assert!(away.amax() < 0.05, "{away}");
 }
 
-/// Robots of both kinds, with an ideal arm and with one like a real one.
+/// Robots of both kinds, with an ideal and with a realistic arm.
 fn robots() -> Vec<(String, Lockstep)> {
     let mut robots = Vec::new();
     for kind in [RobotKind::Fr3, RobotKind::Fer] {

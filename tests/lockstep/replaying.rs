@@ -186,7 +186,7 @@ fn cycles_before_and_after_the_arm_is_told_where_to_be_are_left_out() {
     };
     let inner = made(&samples[told], ReplaySource::Reference);
     assert_eq!(made(&edged, ReplaySource::Reference), inner);
-    // Where it was is known of all of them.
+    // All samples have the measured position.
     let whole = made(&samples, ReplaySource::Measured);
     assert_eq!(made(&edged, ReplaySource::Measured), whole);
     assert!(whole.1 > inner.1);

@@ -171,7 +171,7 @@ fn random_reachable_poses_are_reached_or_refused() {
                     } else {
                         &mut ended
                     } += 1;
-                    // The way on that the refusal names is one.
+                    // The alternative in the refusal is valid.
                     let Some(posture) = posture else {
                         lost += 1;
                         continue;

@@ -58,7 +58,7 @@ fn the_report_counts_the_states_that_the_link_drops() {
     let report = outcome.expect("the robot bridges such gaps");
     assert_eq!((report.lost_states, report.skipped_states), (dropped, 0));
     assert!(report.success_rate_min < 1.0, "{report:?}");
-    // In virtual time, work takes no time.
+    // In virtual time, work has no duration.
     assert_eq!(report.overruns, 0);
     let interval = report.interval.expect("states came");
     assert_eq!(interval.max, Duration::from_millis(8));

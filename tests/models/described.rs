@@ -127,7 +127,7 @@ async fn goals_keep_the_range_that_the_description_gives() {
 
 #[tokio::test]
 async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
-    // The range is 1.25 rad smaller than the vendor's: the arm has to brake where the constants
+    // The range is 1.25 rad smaller than the vendor's, so the arm must brake where the constants
     // would still allow full speed.
     let mut start = READY;
     start[0] = 1.2;

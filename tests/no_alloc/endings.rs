@@ -31,7 +31,7 @@ const MODES: Modes = Modes {
 enum End {
     /// Its `Move` is refused.
     Disarmed,
-    /// The program finishes, and the robot goes to rest.
+    /// The program finishes, and the robot stops.
     Finished,
     Reflex,
     /// Its program returns a non-finite value.
@@ -213,7 +213,7 @@ impl Counted {
         for _ in 0..=RUNNING {
             self.state(RobotMode::Move);
         }
-        // A program that comes while another runs is returned.
+        // A program that arrives while another runs is returned.
         self.arm(Program::Active(ActiveControl));
         if let End::Abandoned = end {
             self.order(Order::Abandon { motion });

@@ -104,7 +104,7 @@ fn carrying_an_object_allocates_and_frees_nothing() {
             match (number % 5, ms) {
                 (2, 300) => coordinator.stop(),
                 (3, 300) => sessions[1].0.cancel(goals[1]),
-                // The next way supersedes this one.
+                // The next motion supersedes this one.
                 (4, 300) => break,
                 _ => {}
             }
@@ -114,7 +114,7 @@ fn carrying_an_object_allocates_and_frees_nothing() {
             for (robot, _) in &mut sessions {
                 robot.tick_around(|_, work| calls += calls_during(work));
             }
-            // The other one waits for the one at the wall.
+            // The other arm waits for the arm at the wall.
             let waits = &sessions[1].0.client;
             let rests = waits.record.dq_ref.iter().all(|dq| dq.abs() < 1e-3);
             let halts = waits.outcome(goals[1]).is_none() && rests;

@@ -6,8 +6,8 @@ use std::os::fd::{AsRawFd, FromRawFd, OwnedFd, RawFd};
 
 use nix::libc;
 
-/// Lets every receive from a socket fail at once, with `ENOTSOCK`, until it is dropped: its
-/// descriptor leads to `/dev/null` meanwhile.
+/// Makes every receive from a socket fail at once, with `ENOTSOCK`, until it is dropped: its
+/// descriptor refers to `/dev/null` meanwhile.
 #[derive(Debug)]
 pub struct BrokenSocket {
     descriptor: RawFd,
@@ -38,7 +38,7 @@ impl Drop for BrokenSocket {
     }
 }
 
-/// Lets `descriptor` lead where `target` does.
+/// Makes `descriptor` refer to the file of `target`.
 fn lead(descriptor: RawFd, target: &impl AsRawFd) -> io::Result<()> {
     // SAFETY: the call takes numbers. Its owner still owns `descriptor`, which is open before and
     // after it.

@@ -1,4 +1,4 @@
-//! Random contacts on a simulated arm, and what the external torques tell of them.
+//! Random contacts on a simulated arm, and their estimates from the external torques.
 
 use std::fmt;
 

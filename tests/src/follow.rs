@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 
 use franka_lockstep::Lockstep;
 
-/// A robot with an arm like a real one.
+/// A robot with a realistic arm.
 pub fn realistic() -> Lockstep {
     Lockstep::new(franka_sim::Config {
         arm: Some(Arm::realistic(RobotKind::Fr3)),
@@ -38,8 +38,8 @@ pub struct Lag {
     pub arm: f64,
 }
 
-/// The lag behind a target at [`twist`], once it is followed; a new target comes every `period`
-/// milliseconds, with its velocity or without.
+/// The lag behind a target at [`twist`], once the arm follows it. A new target comes every `period`
+/// milliseconds, with or without its velocity.
 ///
 /// # Panics
 /// If a target is refused.

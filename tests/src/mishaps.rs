@@ -32,7 +32,7 @@ pub fn bursts(seed: u64) -> Network {
     both(seed, losing(Loss::Bursts(BurstLoss::of(LOST, ROW))))
 }
 
-/// Each direction takes `time`.
+/// Each direction has a delay of `time`.
 pub fn delay(time: Duration) -> Network {
     both(
         0,

@@ -40,7 +40,7 @@ async fn simulated() -> (Robot, Running) {
     (robot, sim)
 }
 
-/// A motion that takes the robot some twenty seconds.
+/// A motion of some twenty seconds of robot time.
 fn long_way(robot: &Robot) -> <Motion as IntoFuture>::IntoFuture {
     robot.move_to(above(robot, 0.1)).speed(0.05).into_future()
 }

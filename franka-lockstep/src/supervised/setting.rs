@@ -47,7 +47,7 @@ pub fn shows(request: &Request, state: &RobotState) -> bool {
 }
 
 impl Supervised {
-    /// Sets something, once what is with the robot is answered.
+    /// Sends a setting, once the previous one is answered.
     pub fn set(&mut self, request: Request) {
         self.sender.queue.push_back(request);
         self.send_settings();
@@ -63,7 +63,7 @@ impl Supervised {
         self.sender.is_due = true;
     }
 
-    /// Passes on what has come of the setting that is with the robot, and sends the next ones.
+    /// Passes on the answer to the current setting, and sends the next ones.
     pub(super) fn send_settings(&mut self) {
         if let Some(sent) = self.sender.sent.take() {
             match self.answer_to(&sent) {
@@ -81,7 +81,7 @@ impl Supervised {
         while self.sender.sent.is_none() && self.send_next() {}
     }
 
-    /// The answer to a setting, once it has come and is shown, or will not be.
+    /// The answer to a setting, once it has arrived and a state shows it, or none will.
     fn answer_to(&self, sent: &Sent) -> Option<Answer> {
         let text = String::new();
         if !self.is_up_or_silent() {
@@ -118,7 +118,7 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// Sends the next setting, if there is one. Returns whether there may be another one at once.
+    /// Sends the next setting, if any. Returns true if another one may follow immediately.
     fn send_next(&mut self) -> bool {
         let now = self.time();
         let is_program = !self.sender.queue.is_empty();
@@ -128,7 +128,7 @@ impl Supervised {
             None => return false,
         };
         self.sender.is_due &= next.is_some();
-        // Which may ask for it anew.
+        // The supervision may request it again.
         self.carry_out();
         let Some((id, request)) = next else {
             return self.sender.is_due;

@@ -104,7 +104,7 @@ impl FingerMotion {
         }
     }
 
-    /// Releases what is held; the fingers stay where they are.
+    /// Releases the held object; the fingers stay in their position.
     pub(super) fn rest(&mut self) {
         if let Means::Driven { drive, .. } = &mut self.means {
             // Fingers at the target hold their width exactly.
@@ -156,7 +156,7 @@ impl Stall {
         }
     }
 
-    /// Takes in a millisecond at `speed`.
+    /// Processes a millisecond at `speed`.
     fn watch(&mut self, width: f64, speed: f64) -> bool {
         self.age += 1;
         if self.age == STALL_WINDOW_MS {

@@ -131,7 +131,7 @@ impl<M: Mechanism> EndEffector<M> {
         self.client.as_ref()?.udp_port()
     }
 
-    /// Takes bytes from the client's stream, in any portions.
+    /// Accepts bytes of the client's stream, in any portions.
     ///
     /// # Errors
     /// [`SessionError`] if the client left the protocol or speaks another version. It is then

@@ -12,7 +12,7 @@ use franka_model::{CYCLE, JointVector};
 use crate::brake::Brake;
 use crate::signal::JointSignal;
 
-/// The generator of one asynchronous motion.
+/// Generator of an asynchronous motion.
 #[derive(Debug, Clone)]
 pub(crate) struct PointToPoint {
     bounds: Bounds,

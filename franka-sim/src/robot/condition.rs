@@ -66,7 +66,7 @@ impl Robot {
         if let Some((id, _)) = self.waiting.replace((id, request)) {
             self.reply(id, Reply::Move(MoveStatus::Preempted));
         }
-        // The state of this millisecond has gone out.
+        // The state of this millisecond has been sent.
         self.start_waiting(self.clock + 1);
     }
 

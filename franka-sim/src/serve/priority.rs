@@ -1,6 +1,6 @@
 //! The priority of the thread that keeps the millisecond.
 
-/// Gives the calling thread a real-time priority.
+/// Raises the calling thread to a real-time priority.
 ///
 /// # Errors
 /// The host's error: in practice, the user has no right to real-time priority.

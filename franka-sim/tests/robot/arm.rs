@@ -122,7 +122,7 @@ fn the_state_has_the_models_pose_and_the_robot_the_true_one() {
     let ideal = Pair::fr3().robot.true_pose().translation.vector;
     assert!((shown - ideal).norm() < 1e-4, "{shown} {ideal}");
     assert!((truth - ideal).norm() > 2e-3, "{truth} {ideal}");
-    // A wall between where the end effector is and where the state has it.
+    // A wall between the end effector's true and reported positions.
     let apart = shown.z - truth.z;
     assert!(apart.abs() > 1e-3, "{apart}");
     let wall = Vector3::new(0.0, 0.0, truth.z + 0.5 * apart);

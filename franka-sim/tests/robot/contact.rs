@@ -166,8 +166,8 @@ fn the_wrench_is_told_at_the_stiffness_frame() {
     assert!((seen[0] + 4.0).abs() < 0.1, "{seen:?}");
     // The tool points down, so the force acts above the frame's origin: about y.
     assert!((seen[4] + 4.0 * lever).abs() < 0.05, "{seen:?}");
-    // In the axes of the base the torque is about its origin, where the flange is the lever: no
-    // matter where the stiffness frame is.
+    // In the axes of the base the torque is about the base's origin, with the flange as the lever,
+    // for any stiffness frame.
     let [x, y, z] = pair.position();
     let moment = Vector3::new(x, y, z).cross(&Vector3::new(-4.0, 0.0, 0.0));
     let about_base = Vector3::from_column_slice(&pair.state.O_F_ext_hat_K[3..]);

@@ -33,7 +33,7 @@ impl Threshold {
         CollisionBehavior::uniform([HIGH; 7], [torque; 7], [HIGH; 6], [force; 6])
     }
 
-    /// The largest of what it is compared with.
+    /// The largest of the values that it is compared with.
     fn felt(self, state: &RobotState) -> f64 {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         match self {

@@ -86,7 +86,7 @@ fn extrapolation_of_orientation() {
     assert_eq!(default, Extrapolation::BaseAxes);
     let (before, after, _) = turn(default);
     assert!(after > before);
-    // About one axis the two are the same.
+    // About one axis both are the same.
     assert_eq!(turn(Extrapolation::BodyAxes).1, after);
     let (_, _, mode) = turn(Extrapolation::Held);
     assert_eq!(mode, RobotMode::Reflex, "which costs a step in velocity");

@@ -24,7 +24,7 @@ pub(crate) fn noisy() -> Arm {
     }
 }
 
-/// Both ends of a session, and what the client has got so far.
+/// Both ends of a session, and the data that the client has received so far.
 pub(crate) struct Pair {
     pub(crate) robot: Robot,
     /// As decoded from the newest datagram.
@@ -76,7 +76,7 @@ impl Pair {
         Self::of(RobotKind::Fer)
     }
 
-    /// Sends stream bytes, and reads what the robot answers at once.
+    /// Sends stream bytes, and reads the robot's immediate answers.
     pub(crate) fn send(&mut self, bytes: &[u8]) {
         self.robot.receive(bytes).expect("a conforming client");
         self.read();
@@ -114,7 +114,7 @@ impl Pair {
         self.answers.iter().filter(of_id).map(|a| a.2).collect()
     }
 
-    /// The only answer to a request, which has come at once.
+    /// The only answer to a request, which has come immediately.
     pub(crate) fn ask(&mut self, request: &Request) -> Status {
         let id = self.request(request);
         match self.statuses(id)[..] {

@@ -6,8 +6,8 @@ use franka_sim::plant::{MujocoArm, Scene};
 use crate::pair::*;
 use franka_sim::config::Tool;
 
-/// A robot of every kind on every plant, with its client, and what it is. Those in MuJoCo stand on
-/// the table, and have the Hand's body and fingers if that is the tool.
+/// A robot of every kind on every plant, with its client and its description. Robots in MuJoCo are
+/// on the table, and have the Hand's body and fingers if the Hand is the tool.
 pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     let mut robots = Vec::new();
     for kind in RobotKind::ALL {

@@ -110,7 +110,7 @@ impl Binary {
         self.signal(libc::SIGCONT);
     }
 
-    /// Asks the process to end.
+    /// Requests the end of the process.
     pub(crate) fn interrupt(&self) {
         self.signal(libc::SIGINT);
     }

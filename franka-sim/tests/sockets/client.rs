@@ -54,7 +54,7 @@ impl Client {
         (self.robot, self.udp.local_addr().expect("bound"))
     }
 
-    /// Waits for a state; of several, takes the newest.
+    /// Waits for a state; returns the newest of several.
     pub(crate) fn next_state(&mut self) -> &RobotState {
         let mut bytes = [0; RobotState::MAX_SIZE];
         let mut length = receive(&self.udp, &mut bytes).0;

@@ -11,7 +11,7 @@ use crate::each_robot;
 use crate::good::{assert_moves, assert_moves_during, assert_served};
 use crate::port::receive;
 
-/// From the client's host, and from another one.
+/// From the client's host, and from another host.
 const SOURCES: [&str; 2] = ["127.0.0.1:0", "127.0.0.2:0"];
 
 /// Commands of another socket, of the client's host too, are not the client's.
@@ -48,7 +48,7 @@ const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 #[test]
 fn garbage_disturbs_no_client_in_a_motion_or_without_one() {
     each_robot(|binary| {
-        // Where the states come from, which stays the same from client to client.
+        // The source of the states, which is the same for all clients.
         let targets = binary.ports().each_ref().map(|port| {
             let (_connection, udp) = port.shake_hands();
             receive(&udp, &mut []).1
@@ -78,7 +78,7 @@ fn a_flood_is_over_when_it_is_over() {
         let (robot, _) = Client::connect(binary).addresses();
         let socket = UdpSocket::bind(SOURCES[0]).expect("a port");
         for _ in 0..100_000 {
-            // A full buffer drops what does not fit.
+            // A full buffer drops the rest.
             let _ = socket.send_to(&[0xff; 371], robot);
         }
         assert_served(binary);

@@ -11,7 +11,7 @@ use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::{Connection, SOON};
 
-/// One abuse of each kind that is over at once, on every port.
+/// One abuse of each immediate kind, on every port.
 fn round(binary: &Binary) {
     for port in binary.ports() {
         let hello = port.connect(port.version, 4711);

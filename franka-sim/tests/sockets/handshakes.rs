@@ -28,7 +28,7 @@ fn a_first_message_that_is_none_closes_the_connection() {
                 port.announcing(port.header() as u32 - 1, 0, 0),
                 port.announcing(1025, 0, 0),
                 port.announcing(u32::MAX, 0, 0),
-                // Not the handshake, or less than one.
+                // No handshake, or an incomplete one.
                 stop,
                 port.message(0, 0, &[]),
                 port.message(0, 0, &[10, 0, 1]),

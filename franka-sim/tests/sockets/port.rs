@@ -163,7 +163,7 @@ impl Connection {
         }
     }
 
-    /// Reads to the end, which has to come.
+    /// Reads to the end, which must come.
     pub(crate) fn read_to_end(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         match self.stream.read_to_end(&mut bytes) {
@@ -190,7 +190,7 @@ impl Connection {
     }
 }
 
-/// Waits for a state, also while the process is stopped; returns its length and where it came from.
+/// Waits for a state, also while the process is stopped; returns its length and source.
 pub(crate) fn receive(udp: &UdpSocket, bytes: &mut [u8]) -> (usize, SocketAddr) {
     loop {
         match udp.recv_from(bytes) {

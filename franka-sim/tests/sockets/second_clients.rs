@@ -65,7 +65,7 @@ fn clients_that_crowd_at_the_door_do_not_disturb_a_motion() {
     });
 }
 
-/// A client whose network is gone cannot close the connection: the kernel has to find out.
+/// A client without a network cannot close the connection: the kernel must detect that.
 #[test]
 fn the_host_of_an_idle_client_is_asked_whether_it_is_there() {
     each_robot(|binary| {

@@ -10,7 +10,7 @@ use franka_sim::{Fingers, Running, Sim, Tool};
 
 use crate::alone;
 
-/// More than a busy machine takes from a thread.
+/// Longer than a busy machine delays a thread.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 async fn start(sim: Sim, patience: Duration) -> (Running, Robot) {
@@ -155,7 +155,7 @@ async fn a_hand_grasps_in_the_time_of_the_robot() {
         .await
         .expect("a grasp");
     assert!(grasped);
-    // Both are on the same clock, by which a homing takes more than a second.
+    // Both use the same clock, on which a homing takes more than a second.
     let took = robot.state().message_id - begun;
     assert!((1000..10_000).contains(&took), "{took} ms");
     sim.stop().await;

@@ -86,7 +86,7 @@ async fn a_recording_goes_on_when_a_supervised_robot_is_there_again() {
 
     let (cycles, events) = folder.read("");
     assert_eq!((cycles.len() as u64, status.dropped), (status.cycles, 0));
-    // The clock of the robot begins anew.
+    // The clock of the robot starts again.
     let parts = divided(&cycles);
     let [first, second] = parts[..] else {
         panic!("{} parts", parts.len());

@@ -128,7 +128,7 @@ async fn a_motion_is_recorded_with_every_cycle_and_what_was_asked_for() {
         assert_eq!(cycles.len() as u64, status.cycles);
         assert_no_gap(&cycles);
         assert!(cycles.is_sorted_by_key(|cycle| cycle.time));
-        // Also of what is asked for before the first cycle has come.
+        // Also of requests before the first cycle.
         let times: Vec<_> = events.iter().map(|event| event.robot_time).collect();
         assert!(times.iter().all(|time| *time >= attached), "{times:?}");
         let moving: Vec<_> = cycles

@@ -44,8 +44,8 @@ impl Resources {
 /// Mishaps before the count begins: by then everything that the runtime starts permanently exists.
 const WARM_UP: u64 = 10;
 
-/// A motion is under way at each, and ends with an error. One thing that is left behind by the
-/// rarest kind of mishap is one too many.
+/// Each mishap happens during a motion, which ends with an error. A single leak of the rarest kind
+/// of mishap fails the test.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn nothing_is_left_behind_by_mishaps_in_random_order() {
     let _alone = alone();

@@ -52,7 +52,7 @@ pub(crate) async fn started_at(address: SocketAddr, sim: impl Fn() -> Sim) -> Ru
         loop {
             match sim().bind(address).start().await {
                 Ok(sim) => return sim,
-                // The port is not free at once.
+                // The port is not free immediately.
                 Err(_) => sleep(Duration::from_millis(5)).await,
             }
         }
@@ -93,7 +93,7 @@ impl Relay {
             loop {
                 match TcpListener::bind(self.address).await {
                     Ok(listener) => return listener,
-                    // The port is not free at once.
+                    // The port is not free immediately.
                     Err(_) => sleep(Duration::from_millis(5)).await,
                 }
             }

@@ -1,4 +1,4 @@
-//! Reflexes and user stops, and what follows on them.
+//! Reflexes and user stops, and their consequences.
 
 use std::future::IntoFuture;
 use std::sync::Arc;
@@ -59,7 +59,7 @@ async fn a_reflex_is_diagnosed_and_recovered_from_as_the_policy_says() {
     small_motion(&robot).await.expect("the next one works");
     robot.shutdown().await;
 
-    // A function is asked, and declines the first.
+    // A function decides, and declines the first request.
     let asked = Arc::new(AtomicU64::new(0));
     let count = asked.clone();
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
@@ -86,7 +86,7 @@ async fn a_reflex_is_diagnosed_and_recovered_from_as_the_policy_says() {
     assert_eq!(asked.load(Ordering::Relaxed), 2);
     robot.shutdown().await;
 
-    // A person is asked.
+    // A person decides.
     let robot = supervised(&sim, policy().ask_first()).await;
     trip().await;
     condition(&robot, Condition::Unready(Unready::AgreementAwaited)).await;

@@ -31,7 +31,7 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
     let superseded = asked_for(robot.move_joints(target(0))).await;
     let stopped = asked_for(robot.move_joints(target(1))).await;
     assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
-    // Without a connection it is not known whether the arm rests: it waits for one.
+    // Without a connection the arm's motion is unknown: the stop waits for a connection.
     let mut stop = Box::pin(robot.stop());
     let first = poll_fn(|context| Poll::Ready(stop.as_mut().poll(context))).await;
     assert!(first.is_pending(), "{first:?}");

@@ -21,7 +21,7 @@ async fn polled<F: Future + Unpin>(future: &mut F, polls: u32) -> Option<F::Outp
     .await
 }
 
-/// A team of both, once what was dropped before has ended.
+/// A team of both, once earlier dropped motions have ended.
 async fn engaged(robots: &[Robot; 2]) -> Team<2> {
     for _ in 0..500 {
         match engaging(robots).await {

@@ -96,8 +96,8 @@ async fn an_object_on_its_way_stops_with_its_future_and_with_a_stopper() {
     assert_eq!(outcomes.map(Result::err), expected);
     both_rest(&two).await;
     assert_on_its_way(&grasp, &to);
-    // Both brake on the same line. On the way one may be 2 mm ahead, twice here, and is not much
-    // more where the robots' clocks are not the same, at 3 cm/s.
+    // Both brake on the same line. In motion, one may be 2 mm ahead, twice here. Different clocks
+    // of the robots add little at 3 cm/s.
     let gap = distance(&between(&two), &begun);
     assert!(gap < 6e-3, "{gap} m");
 

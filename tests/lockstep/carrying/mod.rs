@@ -42,7 +42,7 @@ fn bases() -> [Isometry3<f64>; 2] {
     [Isometry3::identity(), other]
 }
 
-/// The bar where the arms begin, in the world.
+/// Pose of the bar at the start, in the world.
 fn bar() -> Isometry3<f64> {
     let flange = pose_of(&READY, &EndEffector::default());
     Translation3::new(APART / 2.0, 0.0, flange.translation.z).into()
@@ -79,8 +79,8 @@ impl Carriers {
         Self::pair(0)
     }
 
-    /// The central arm of the realistic family twice, or two sampled ones of it: they stick
-    /// differently, and each believes its hand to be some millimetres from where it is.
+    /// The central arm of the realistic family twice, or two sampled arms of it. They stick
+    /// differently, and each reports its hand some millimetres from its true position.
     fn pair(number: u64) -> Self {
         let (kind, family) = (RobotKind::Fr3, Family::realistic());
         let sampled = |seed| Arm::sample(kind, seed, &family);
@@ -219,7 +219,7 @@ impl Carriers {
         })
     }
 
-    /// The bar in each hand, where its reference is.
+    /// Pose of the bar in each hand, according to the hand's reference.
     fn grasps(&self) -> [Isometry3<f64>; 2] {
         let bar = self.bar();
         self.references().map(|hand| hand.inverse() * bar)
@@ -251,7 +251,7 @@ impl Carriers {
         [0, 1].map(|i| bases()[i] * self.robots[i].reference_pose())
     }
 
-    /// A wall so far above the left hand, which takes no end of force.
+    /// A wall at this distance above the left hand, which withstands any force.
     fn wall_above(&mut self, distance: f64) -> TouchId {
         let hand = self.robots[0].robot.true_pose().translation.vector;
         let wall = Touch::wall(hand + Vector3::z() * distance, -Vector3::z());

@@ -196,7 +196,7 @@ fn points_too_large_to_plan_are_refused() {
     }
 }
 
-/// The blend of a chunk whose only point is due at once takes the arm there.
+/// The blend of a chunk moves the arm to its only point, which is due immediately.
 #[test]
 fn a_chunk_of_one_point_without_a_delay_is_followed() {
     for_each_robot(|ready| {

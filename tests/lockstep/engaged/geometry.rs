@@ -25,7 +25,7 @@ const IDEAL: Tolerance = Tolerance {
     rotation: 1.5e-4,
 };
 
-/// One session with a robot of some geometry.
+/// A session with a robot of some geometry.
 struct Case {
     name: String,
     backend: Backend,
@@ -117,7 +117,7 @@ fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) 
 }
 
 /// Logs of poses and joints from two topics are microns off with the right lengths. The check at
-/// connect compares what is in one state.
+/// connect compares the values of one state.
 #[test]
 fn the_pose_of_a_state_belongs_to_its_joints_and_not_to_those_of_another() {
     for kind in RobotKind::ALL {

@@ -168,7 +168,7 @@ fn tuning_does_not_keep_a_silent_stream_alive() {
     });
 }
 
-/// Tuning writes once more what the arm is held at.
+/// Tuning rewrites the target that holds the arm.
 #[test]
 fn a_stream_that_was_closed_is_watched_no_more() {
     let mut lockstep = Lockstep::ready();

@@ -52,7 +52,7 @@ impl Shared {
         self.lockstep.within(engaged, turned(by), on_arrival)
     }
 
-    /// Lets the arm move, with heartbeats.
+    /// Moves the arm, with heartbeats.
     fn lead(&mut self, holder: &Holder, milliseconds: u64) {
         for _ in 0..milliseconds / 10 {
             self.run(10);
@@ -85,7 +85,7 @@ fn silent_holder_loses_the_lease_and_the_arm_brakes() {
             arm.lead(&first, led);
             let name = "Ada".to_owned();
             assert_eq!(arm.take("Grace").err(), Some(Taken { name }), "{case}");
-            // No heartbeat comes any more.
+            // No more heartbeats come.
             arm.run(SILENCE.as_millis() as u64 + 1);
             let second = arm.take("Grace").expect("it is free again");
             arm.run(BRAKING);
@@ -97,7 +97,7 @@ fn silent_holder_loses_the_lease_and_the_arm_brakes() {
             assert_eq!(first.keep_alive(arm.now), lost, "{case}");
             assert_eq!(arm.head_for(engaged, 0.4).err(), held.err(), "{case}");
             arm.assert_at_rest(&case);
-            // The next one moves it once the first has released it.
+            // The next holder moves it once the first has released it.
             assert_eq!(second.keep_alive(arm.now), lost, "it was silent, too");
             let second = arm.take("Grace").expect("it is free again");
             arm.lockstep.disengage(engaged);

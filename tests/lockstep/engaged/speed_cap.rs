@@ -38,8 +38,8 @@ fn fastest(lockstep: &Lockstep) -> [f64; 2] {
     ]
 }
 
-/// Goes to a goal at 1.5 times the default pace. Returns how it ended, and the greatest of
-/// [`fastest`] and whether the cap bound on the way.
+/// Moves to a goal at 1.5 times the default pace. Returns its outcome, the greatest value of
+/// [`fastest`], and true if the cap bound during the motion.
 fn go(
     lockstep: &mut Lockstep,
     engaged: GoalId,

@@ -23,7 +23,7 @@ const CARTESIAN_SPEED: f64 = 0.02;
 /// one lost cycle is bridged.
 const TORQUE: f64 = 5.0;
 
-/// The joint that moves, or takes the torque.
+/// The joint that moves, or receives the torque.
 pub(crate) const JOINT: usize = 0;
 /// The direction in which the end effector moves: upwards.
 pub(crate) const AXIS: usize = 2;

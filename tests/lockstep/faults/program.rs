@@ -71,7 +71,7 @@ impl CourseFollower {
         }
     }
 
-    /// Returns the command that answers `state`, `step` after the previous one, and whether it is
+    /// Returns the command that answers `state`, `step` after the previous one, and true if it is
     /// the last.
     pub(crate) fn command(
         &mut self,

@@ -1,4 +1,4 @@
-//! One motion in one way, and the faults that it meets.
+//! One motion of one variant, and its faults.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ pub(crate) enum Moment {
     Finishing(u64),
 }
 
-/// An active motion, and what acts on it.
+/// An active motion, and the external actions on it.
 pub(crate) struct Trial {
     pub(crate) lockstep: Lockstep,
     /// The id under which the motion resolves.

@@ -210,7 +210,7 @@ fn an_engaged_arm_rests_on_what_it_met_and_does_not_press_harder() {
         let goal = at(0.05, down, touched, OnArrival::ReportAndHold, &mut lockstep);
         let goal = lockstep.submit_within(engaged, goal).expect("within reach");
         reacted(&mut lockstep, goal);
-        // It may bounce on what it hit, and settles.
+        // It may bounce on the obstacle, and then settles.
         let (mut most, mut last) = (0.0_f64, 0.0);
         let mut moved = 0.0_f64;
         for _ in 0..3000 {

@@ -76,8 +76,8 @@ fn a_condition_counts_until_the_arrival_is_reported_and_not_after() {
         let duration = report(&mut lockstep, goal).duration.as_millis() as u32;
         let ended = lockstep.client.state.message_id - first;
         println!("arrived after {duration} ms, ended after {ended} ms");
-        // While it settles; in the last cycles before the report and the first after it, which
-        // comes 250 ms after the arrival, one more or less; released; ended.
+        // During settling; in the last cycles before the report and the first after it; released;
+        // ended. The report comes 250 ms after the arrival, plus or minus one cycle.
         let early = [duration + 10, duration + 200, duration + 247];
         let late = [duration + 253, duration + 300, ended as u32 + 50];
         for (milliseconds, counts) in early

@@ -80,7 +80,7 @@ impl Most {
     }
 }
 
-/// A threshold of 5 N, chosen by what one wants to feel, reacts to nothing on some arms.
+/// A threshold of 5 N, chosen without regard to friction, reacts without contact on some arms.
 #[test]
 fn realistic_arms_that_touch_nothing_do_not_react_at_the_recommended_thresholds() {
     let velocities: &[f64] = match thorough() {

@@ -43,7 +43,7 @@ fn tolerate(lockstep: &mut Lockstep) {
     lockstep.run(5);
 }
 
-/// The end effector's pose, so far above itself.
+/// The end effector's pose, raised by `by`.
 fn above(lockstep: &Lockstep, by: f64) -> Target {
     (Translation3::new(0.0, 0.0, by) * lockstep.arm_pose()).into()
 }
@@ -99,7 +99,7 @@ fn report(lockstep: &mut Lockstep, goal: GoalId) -> MotionReport {
     outcome.expect("an arrival or a reaction")
 }
 
-/// The reaction of a goal that has one.
+/// The reaction of a goal that must have reacted.
 fn reacted(lockstep: &mut Lockstep, goal: GoalId) -> Reacted {
     report(lockstep, goal).reacted.expect("a reaction")
 }

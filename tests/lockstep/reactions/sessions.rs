@@ -87,7 +87,7 @@ fn an_engaged_arm_is_held_at_its_other_target() {
     });
 }
 
-/// Tuning writes what the arm is held at once more.
+/// Tuning rewrites the target that holds the arm.
 #[test]
 fn the_condition_of_a_goal_ends_with_it() {
     for_each_robot(|ready| {

@@ -62,8 +62,8 @@ pub(super) fn leash(random: &mut SmallRng) -> Option<Leash> {
     })
 }
 
-/// A condition that becomes true sooner or later, or not, and where the arm goes then: to rest, or
-/// to a target. Some of the time.
+/// Sometimes a condition, which becomes true sooner or later, or never, and the arm's destination
+/// then: rest, or a target.
 pub(super) fn reaction(
     random: &mut SmallRng,
     near: &Isometry3<f64>,

@@ -7,7 +7,7 @@
 //!
 //! Ten thousand schedules take minutes with an optimised build, and some four times as long with
 //! the MuJoCo plant. Each test is one thread. `FRANKA_SCHEDULE_SEED` is the first seed and
-//! `FRANKA_SCHEDULES` how many follow:
+//! `FRANKA_SCHEDULES` the number of schedules:
 //!
 //! ```text
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=10000 cargo test --release --package franka-tests --test lockstep \

@@ -26,7 +26,7 @@ pub(super) struct Chronicle {
 }
 
 impl Chronicle {
-    /// Takes the next event.
+    /// Processes the next event.
     ///
     /// # Panics
     /// If it cannot follow on those before it.

@@ -8,7 +8,7 @@
 //! `FRANKA_MISHAP_SEED` is the seed, which replays a run with the same build, and `FRANKA_MISHAPS`
 //! how many there are.
 //!
-//! * `trial`: one robot, what happens to it, and the rules that it keeps.
+//! * `trial`: one robot, its mishaps, and the rules that it must keep.
 //! * `chronicle`: permitted sequences of events.
 //! * `settings`: a program's settings are valid on every connection.
 

@@ -65,7 +65,7 @@ fn wait(robot: &mut Supervised, condition: Condition) {
     }
 }
 
-/// Moves once the robot takes motions, and checks that the robot has these settings.
+/// Moves once the robot accepts motions, and checks that the robot has these settings.
 fn moves_with(robot: &mut Supervised, settings: &[Request]) {
     wait(robot, Condition::Ready);
     let state = *robot.robot().state();

@@ -1,4 +1,4 @@
-//! One supervised robot, what happens to it, and the rules that it keeps.
+//! One supervised robot, its mishaps, and the rules that it must keep.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
@@ -119,7 +119,7 @@ pub(super) struct Trial {
     still: u64,
     /// Times of the requests to recover.
     recoveries: VecDeque<u64>,
-    /// A person's answers to come: when, to which reflex, and whether it is yes.
+    /// Future answers of a person: time, reflex, and true for yes.
     answers: Vec<(u64, u64, bool)>,
     agreed: BTreeSet<u64>,
     /// Reflexes of a robot that was not recognised.
@@ -158,7 +158,7 @@ impl Trial {
         this
     }
 
-    /// Has something happen, or a motion asked for. Returns whether it was a mishap.
+    /// Causes a mishap, or requests a motion. Returns true for a mishap.
     pub(super) fn act(&mut self) -> bool {
         let now = self.robot.now();
         let long = self.random.random_range(1..1500);
@@ -263,7 +263,7 @@ impl Trial {
         }
         let due = |answer: &mut (u64, u64, bool)| answer.0 <= now;
         for (_, reflex, agrees) in self.answers.extract_if(.., due).collect::<Vec<_>>() {
-            // Noted before: the request may follow at once.
+            // Recorded first, because the request may follow immediately.
             if agrees {
                 self.agreed.insert(reflex);
             }
@@ -273,7 +273,7 @@ impl Trial {
         self.judge();
     }
 
-    /// Checks what the supervision has asked for and told, and what the robot does.
+    /// Checks the requests and events of the supervision, and the robot's activity.
     fn judge(&mut self) {
         self.judge_motion();
         for asked in std::mem::take(&mut self.robot.requests) {
@@ -376,7 +376,7 @@ impl Trial {
         );
     }
 
-    /// After an attempt that failed comes no other before the pause is over.
+    /// After a failed attempt, the next one comes only after the pause.
     fn judge_attempt(&mut self) {
         let now = self.robot.now();
         if let Some(before) = self.attempt.replace(now) {
@@ -406,7 +406,7 @@ impl Trial {
                 )
             ) && self.robot.state().robot_mode == RobotMode::Reflex
             {
-                // A person does what the policy leaves.
+                // A person does the steps that the policy does not take.
                 self.robot.recover();
                 self.run(300);
             }

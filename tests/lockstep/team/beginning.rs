@@ -66,7 +66,7 @@ fn without_the_others_nothing_begins() {
     assert_eq!(outcome.map(drop), stopped_by(MemberFault::Refused));
     assert!(pair.moved(1) < 2e-3, "{}", pair.moved(1));
 
-    // It is taken back while it waits, or another one comes in its place.
+    // It is cancelled while it waits, or superseded.
     for superseded in [false, true] {
         let round = Some(pair.coordinator.begin());
         let first = pair.submit(0, round, turned(0.3));
@@ -143,7 +143,7 @@ fn a_path_made_before_the_goal_in_force_waits_for_the_others() {
     assert!(farthest > 0.19, "{farthest} rad");
 }
 
-/// A session whose goal of a round has come before its first state, and what that waits for.
+/// A session whose goal of a round came before its first state, and the reason for its wait.
 struct Waiting {
     robot: Lockstep,
     goal: GoalId,

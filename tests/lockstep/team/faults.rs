@@ -22,7 +22,7 @@ struct Case {
     name: &'static str,
     happen: fn(&mut Pair, GoalId),
     fault: MemberFault,
-    /// Cycles from that to the one in which the thread of the first robot has to have seen it.
+    /// Cycles from the event to the cycle in which the thread of the first robot must have seen it.
     seen_after: core::ops::RangeInclusive<u64>,
     /// True if its session continues.
     goes_on: bool,
@@ -176,7 +176,7 @@ fn a_fault_of_one_brakes_the_other_within_two_cycles() {
     }
 }
 
-/// The arms pursue their goals of a round until all goals of the next one are there.
+/// The arms pursue their goals of a round until all goals of the next round have arrived.
 #[test]
 fn a_fault_in_a_round_brakes_the_other_while_the_next_one_waits() {
     for early in [None, Some(0), Some(1)] {
@@ -236,7 +236,7 @@ fn each_silence_of_one_brakes_the_other_anew() {
     }
 }
 
-/// Tuning gives the session's name to what the arm is held at.
+/// Tuning gives the session's name to the target that holds the arm.
 #[test]
 fn an_arm_that_has_arrived_is_part_of_its_round_until_it_goes_elsewhere() {
     type Meanwhile = fn(&mut Pair);

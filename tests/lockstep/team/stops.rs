@@ -1,4 +1,4 @@
-//! The stop of a team, and what comes after it.
+//! The stop of a team, and the motions after it.
 
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ fn a_stop_is_not_lost_to_a_round_that_begins_before_the_arms_look() {
     }
 }
 
-/// A joint motion that is dropped, and the next one at once.
+/// A joint motion that is dropped, and the next one immediately after it.
 #[test]
 fn a_motion_taken_back_does_not_stop_the_motion_that_follows() {
     let mut pair = Pair::new(false);

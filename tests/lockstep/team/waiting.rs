@@ -97,7 +97,8 @@ fn a_reference_halts_while_it_is_ahead_of_another_one_of_the_same_object() {
     }
 }
 
-/// Further behind than where an arm lags, nearer than that, and nearer than where it has caught up.
+/// Farther behind than the threshold of a lag, nearer than that, and nearer than the threshold for
+/// having caught up.
 #[test]
 fn references_that_halt_for_an_arm_go_on_when_it_has_caught_up_by_three_millimetres() {
     let mut pair = Pair::new(false);
@@ -258,7 +259,7 @@ fn an_arm_that_is_near_its_target_has_arrived_if_it_carries_with_others() {
     }
 }
 
-/// Its plan was one for the hand.
+/// Its plan was for the hand.
 #[test]
 fn an_arm_that_takes_an_object_on_its_way_goes_on_from_where_that_is() {
     let mut robot = Lockstep::ready();

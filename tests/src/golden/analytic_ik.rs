@@ -46,8 +46,8 @@ struct WithJoint4 {
     solutions: Vec<[f64; 7]>,
 }
 
-/// Checks `ik_vectors.json`: the complete set of every pose for joint 7, which of it is within the
-/// limits of each robot, and the set for joint 4 where there is one.
+/// Checks `ik_vectors.json`: the complete set of every pose for joint 7, its part within the limits
+/// of each robot, and the set for joint 4 if one exists.
 pub(super) fn all(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
     let file: File = serde_json::from_slice(text)?;

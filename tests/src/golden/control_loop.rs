@@ -68,7 +68,7 @@ enum Event {
     Finish(Sent),
 }
 
-/// A call of a function, and what it returned.
+/// A call of a function, and its result.
 #[derive(Deserialize)]
 struct Call {
     /// Index of the state.
@@ -223,8 +223,8 @@ impl Trace {
         }
     }
 
-    /// The functions, which return what the callbacks of the trace did, and where their calls are
-    /// noted.
+    /// The functions, which return the values of the trace's callbacks, and the record of their
+    /// calls.
     fn functions(&self, version: Version) -> anyhow::Result<(Callback, Receiver<Noted>)> {
         let (sender, calls) = channel();
         let torques = player(Function::Torque, &self.events, &sender, |call| {

@@ -40,7 +40,7 @@ struct Meta {
 struct Tool {
     F_T_EE: [f64; 16],
     EE_T_K: [f64; 16],
-    /// The file of the FER gives totals only.
+    /// The file of the FER has totals only.
     #[serde(flatten)]
     parts: Option<Parts>,
     #[serde(flatten)]

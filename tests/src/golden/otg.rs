@@ -36,7 +36,7 @@ struct SingleAxis {
     v0: f64,
     a0: f64,
     target: f64,
-    /// Zero where the file does not say.
+    /// Zero if the file has none.
     #[serde(default)]
     target_velocity: f64,
     vmax: f64,
@@ -200,7 +200,7 @@ impl<const N: usize> Problem<N> {
         Ok(generator)
     }
 
-    /// One axis of it on its own.
+    /// One axis of the motion alone.
     fn axis(&self, axis: usize) -> Problem<1> {
         let alone = |state: &State<N>| State {
             position: [state.position[axis]],

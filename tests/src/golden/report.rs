@@ -9,7 +9,7 @@ pub struct Report {
     passed: usize,
     /// Share of the tolerance, and text.
     worst: Option<(f64, String)>,
-    /// The first failures: they tell what is wrong, a thousand more do not.
+    /// The first failures: they show the defect, a thousand more would not.
     failures: Vec<String>,
 }
 

@@ -42,7 +42,7 @@ pub(super) struct DeclaredEnum {
 }
 
 impl DeclaredEnum {
-    /// The name of each byte, if it has one.
+    /// The name of each byte, if any.
     pub(super) fn names(&self) -> [Option<&str>; 256] {
         let mut names = [None; 256];
         for (name, &value) in &self.values {

@@ -220,7 +220,7 @@ fn find(model: &MjModel, kind: MjtObjBase, prefix: &str, name: &str) -> Result<u
     model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
 }
 
-/// Prefixes: of the names of the robot's parts, and after it of the names of joints and their
+/// Prefix of the names of the robot's parts, and, after it, prefix of the names of joints and their
 /// dampers.
 const PREFIX: &str = "franka_";
 pub(super) const JOINT: &str = "joint";

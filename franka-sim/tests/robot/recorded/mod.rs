@@ -1,7 +1,7 @@
 //! Model and simulated arms against recordings of real arms.
 //!
-//! A recording is too large to stand here. `rows` has some of its states, and what was read from
-//! all of them.
+//! A recording is too large for the repository. `rows` has some of its states, and figures from all
+//! of them.
 
 mod four_gains;
 mod rows;

@@ -151,7 +151,7 @@ pub(super) const MOVING: [Reported; 12] = [
     },
 ];
 
-/// One of the cycles that stand for the whole recording, and the share that it stands for.
+/// One of the cycles that represent the whole recording, and its share.
 ///
 /// Torques of the model are linear in masses, moments and inertias. The weighted mean of each of
 /// their coefficients over these rows is that over 6942 rows, to 4 mN·m for any arm of this shape.

@@ -27,8 +27,7 @@ use super::submission::{Submission, Work};
 /// Period in which a deadman is kept alive, `[ms]`.
 const BEAT: u64 = 10;
 
-/// The longest time that any work may take to end, `[ms]`: a path at the slowest pace takes twenty
-/// seconds.
+/// The longest time until any work ends, `[ms]`: a path at the slowest pace takes twenty seconds.
 const TIME_MAX: u64 = 30_000;
 
 /// The longest time from a stop until it resolves, `[ms]`.
@@ -76,7 +75,7 @@ struct DeadmanFeed {
     silence: u64,
     /// The time of the last sign of life.
     beat: u64,
-    /// The time until which it gives none.
+    /// The time until which it gives no sign of life.
     silent: u64,
 }
 

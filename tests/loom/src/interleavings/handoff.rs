@@ -29,7 +29,7 @@ fn own(handoff: &Handoff<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     turns
 }
 
-/// Borrows, runs a turn and gives back.
+/// Borrows the value, runs a turn and returns the value.
 fn take_a_turn(handoff: &Handoff<u64>) -> Result<(), BorrowError> {
     let turns = handoff.borrow()?;
     handoff.give_back(Some(turns + 1));
@@ -117,7 +117,7 @@ fn a_stop_at_any_moment_leaves_nobody_waiting() {
     });
 }
 
-/// A borrower that panics gives nothing back.
+/// A borrower that panics returns nothing.
 #[test]
 fn a_value_that_is_spoilt_ends_the_owner() {
     loom::model(|| {

@@ -1,5 +1,5 @@
-//! Every interleaving of what crosses threads, and every value that the memory model lets a load
-//! return.
+//! Every interleaving of the data that crosses threads, and every value that the memory model
+//! permits a load to return.
 //!
 //! | module | crossing |
 //! |---|---|

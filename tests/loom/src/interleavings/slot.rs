@@ -9,7 +9,7 @@ fn value(n: u64) -> [u64; 2] {
     [n, 100 + n]
 }
 
-/// Reads once and checks that what comes is whole and newer than `newest`.
+/// Reads once and checks that the value is whole and newer than `newest`.
 fn read(reader: &mut SlotReader<[u64; 2]>, newest: u64) -> u64 {
     match reader.read_newer() {
         Read::Newer(words) => {
@@ -26,7 +26,7 @@ fn a_torn_value_never_surfaces_and_values_never_go_back() {
     loom::model(|| {
         let (mut writer, mut reader) = slot::<[u64; 2]>();
         let writing = thread::spawn(move || {
-            // The third value takes the place of the first.
+            // The third value replaces the first.
             for n in 1..=3 {
                 writer.write(&value(n));
             }

@@ -12,8 +12,8 @@ use serde_json::Value;
 use crate::metadata;
 use xtask::workspace::Workspace;
 
-/// The largest package that a registry takes, in bytes: 10 MB. Ours are far smaller; a larger one
-/// contains files that no user needs.
+/// The largest permitted package, in bytes. A registry accepts 10 MB, but ours are far smaller; a
+/// larger one contains files that no user needs.
 const SIZE_MAX: u64 = 1_000_000;
 
 /// Files that every package must have.
