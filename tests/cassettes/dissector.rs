@@ -1,4 +1,4 @@
-//! The dissector beside franka-proto: every field of every message and datagram of a session, as
+//! The dissector against franka-proto: every field of every message and datagram of a session, as
 //! tshark prints it and as franka-proto decodes it.
 
 use std::collections::BTreeMap;

@@ -10,7 +10,7 @@ use franka_record::cassette::{Device, Route, Tap};
 
 use crate::recorded::anywhere;
 
-/// A state of a thousand per second, of which each is answered at once.
+/// Number of states, at a thousand per second, each answered at once.
 const ROUNDS: usize = 5000;
 const CYCLE: Duration = Duration::from_millis(1);
 

@@ -16,7 +16,7 @@ use crate::recorded::{
 /// Time limit; longer means a hang, on a busy machine too.
 const LIMIT: Duration = Duration::from_secs(20);
 
-/// Plays a cassette to a client; returns what that returns.
+/// Plays a cassette to a client; returns the client's result.
 async fn played<T>(
     cassette: Cassette,
     matching: Matching,
@@ -24,7 +24,7 @@ async fn played<T>(
 ) -> (T, Result<PlayReport, PlayError>) {
     let mut options = PlayOptions::default();
     options.matching = matching;
-    // A machine that stands still for a while changes no verdict.
+    // A machine that stops for a while changes no verdict.
     options.patience = LIMIT;
     let server = CassetteServer::start_at(cassette, anywhere, options);
     let server = server.expect("a playable cassette");

@@ -87,7 +87,7 @@ fn a_control_function_that_gives_up_stops_the_robot_and_its_code_is_the_error() 
     });
 }
 
-/// The outcome is the panic, which caused everything else.
+/// The outcome is the panic, the cause of the other events.
 #[test]
 fn scenario_15_a_panic_is_reported_even_if_the_robot_does_not_stop() {
     for_each_version(|version| {

@@ -166,8 +166,8 @@ fn scenario_6_torques_alone() {
     pair.succeed(&motion);
 }
 
-/// Protocol 5 has no such motion: it cannot be requested, and torques run beside a generator that
-/// stands still.
+/// Protocol 5 has no such motion: it cannot be requested, and torques run together with a generator
+/// at rest.
 #[test]
 fn scenario_6_torques_alone_are_beside_a_standing_generator_in_protocol_5() {
     let version = Version::V5;

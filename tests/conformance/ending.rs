@@ -180,7 +180,7 @@ fn scenario_11_a_stop_resolves_itself_and_the_motion() {
 }
 
 /// libfranka throws when the stop is refused, and abandons the motion. This driver waits for the
-/// end of the motion: it requests the stop once more, sends no more commands, and then reports that
+/// end of the motion. It requests the stop once more, sends no more commands, and then reports that
 /// the robot neither ran nor stopped the motion.
 #[test]
 fn scenario_11_a_stop_that_is_refused() {

@@ -8,8 +8,8 @@ use franka_rt::lifecycle::ControlError;
 use crate::for_each_version;
 use crate::pair::Pair;
 
-/// Runs a motion of this many cycles whose commands all differ, and which a reflex ends in the last
-/// cycle. Returns the error, and the commands as the robot received them.
+/// Runs a motion of this many cycles with different commands; a reflex ends it in the last cycle.
+/// Returns the error, and the commands as the robot received them.
 fn reflex_after(
     pair: &mut Pair,
     version: Version,

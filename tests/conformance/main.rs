@@ -1,4 +1,4 @@
-//! The behaviour of libfranka's client, scenario by scenario, after libfranka's own tests: beside a
+//! The behaviour of libfranka's client, scenario by scenario, after libfranka's own tests: with a
 //! scripted robot, for both versions of the protocol.
 //!
 //! | module | scenarios |
@@ -12,7 +12,7 @@
 //! | [`connecting`] | 17: no robot, or one of another version |
 //! | [`end_effectors`] | 18: the Hand and the vacuum gripper |
 //!
-//! Each scenario runs twice: beside the scripted robot, and beside the [cassette](tape) of that.
+//! Each scenario runs twice: with the scripted robot, and with the [cassette](tape) of that run.
 //!
 //! Client and robot share one thread and a counted clock, see [`pair::Pair`]. They exchange bytes
 //! only: messages go through the sessions of both sides, datagrams over loopback through the socket

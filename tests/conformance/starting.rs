@@ -68,7 +68,7 @@ fn to_ready(pair: &mut Pair) -> Goal {
     )
 }
 
-/// A second start is refused before anything is sent, with the same error as beside a motion of
+/// A second start is refused before anything is sent, with the same error as during a motion of
 /// another caller. libfranka 0.21 has the text `Attempted to start multiple motions!` for callers
 /// that bypass its lock; here that is not possible.
 #[test]

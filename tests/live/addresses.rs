@@ -56,8 +56,7 @@ async fn an_arm_moves_over_ipv6() {
     moves_on(bind, |port| vec![format!("[::1]:{port}")]).await;
 }
 
-/// The address that a link gives itself, which means nothing without the name or the index of its
-/// interface.
+/// The link-local address, which is ambiguous without the name or the index of its interface.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn an_arm_moves_over_a_link_local_address() {
     let _alone = alone();

@@ -38,7 +38,7 @@ async fn ends_within(future: impl Future<Output = Result<(), MotionError>>, poll
     .await
 }
 
-/// Waits for the arm to rest after something was dropped, and holds it against its errors.
+/// Waits for the arm to rest after a drop, and checks its errors.
 async fn rests(robot: &Robot, what: &str) {
     let mut states = robot.states();
     let still = states.wait_for(|state| state.dq.iter().all(|dq| dq.abs() < 5e-3));

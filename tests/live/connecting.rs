@@ -1,4 +1,4 @@
-//! Connections that cannot be: each has its error, in time, and leaves nothing behind.
+//! Impossible connections: each returns its error in time, and leaves nothing behind.
 
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
@@ -40,7 +40,7 @@ async fn server<F: Future<Output = ()> + Send + 'static>(
     address
 }
 
-/// Answers the first message as a robot of `version` does, and gives back the stream.
+/// Answers the first message as a robot of `version` does, and returns the stream.
 async fn handshake(mut stream: TcpStream, version: Version) -> TcpStream {
     let mut received = Vec::new();
     let mut session = Session::new(version);

@@ -29,7 +29,7 @@ pub(crate) async fn each() -> Vec<(Robot, Running)> {
     robots
 }
 
-/// A smooth way from 0 to 1 within `seconds`, at rest at both ends; its slope per second beside it.
+/// A smooth path from 0 to 1 within `seconds`, at rest at both ends, and its slope per second.
 fn smooth(t: f64, seconds: f64) -> (f64, f64) {
     use std::f64::consts::PI;
     let phase = (t / seconds).min(1.0);

@@ -39,7 +39,7 @@ struct Counts {
     stopped: u32,
     /// Motions that the robot ended because commands were missing.
     starved: u32,
-    /// States that were held against what is this robot's own.
+    /// States that were checked against this robot's own values.
     states: u64,
     /// Smallest success rate of the motions that arrived.
     success_rate_min: f64,

@@ -56,7 +56,7 @@ async fn a_robot_that_dies_in_any_phase_of_a_motion_resolves_it() {
             matches!(outcome, Err(MotionError::ConnectionClosed { .. })),
             "{delay} ms: {outcome:?}"
         );
-        // The handle is kept, and holds nothing that runs.
+        // The handle is kept, and keeps nothing running.
         timeout(SOON, async {
             while control_threads() > 0 {
                 sleep(Duration::from_millis(5)).await;

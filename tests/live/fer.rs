@@ -40,7 +40,7 @@ async fn the_version_is_negotiated_and_a_pose_and_joints_are_reached() {
     robot.shutdown().await;
 }
 
-/// The straight line to the pose on the other side of the base leads into the arm itself.
+/// The straight line to the pose on the other side of the base collides with the arm itself.
 #[tokio::test(flavor = "multi_thread")]
 async fn the_joints_of_an_engaged_arm_go_where_it_has_no_line() {
     let _alone = alone();

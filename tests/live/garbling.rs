@@ -1,4 +1,4 @@
-//! A robot whose replies are whole and wrong, or right and not whole.
+//! A robot whose replies are complete and wrong, or correct and incomplete.
 
 use std::net::UdpSocket;
 use std::time::Duration;

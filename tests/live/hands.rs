@@ -310,7 +310,7 @@ async fn a_vacuum_gripper_holds_drops_and_stops() {
     assert_eq!(suck(50, -1).await.unwrap_err().to_string(), text);
 }
 
-/// A device that answers every request with the next of `statuses`, and the port of it.
+/// A device that answers every request with the next of `statuses`, and its port.
 fn scripted<P>(version: P, state: Vec<u8>, statuses: Vec<u16>) -> SocketAddr
 where
     P: franka_proto::Protocol + Send + 'static,

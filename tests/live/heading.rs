@@ -11,7 +11,7 @@ use franka_sim::{Sim, Tool};
 
 use crate::{SOON, alone, at_the_clients_pace, by_the_clock, shown};
 
-/// Half of what a wire of single precision rounds a position to, and some.
+/// A little more than half of the step of a position in single precision.
 const NEAR: f64 = 1e-6;
 
 fn close(pose: &Pose, expected: &Pose) -> bool {
@@ -38,7 +38,8 @@ async fn offsets_add_up_from_target_to_target() {
         panic!("{:?}", arm.target());
     };
     assert!(close(&target, &expected), "{target:?}");
-    // Dropped, it changes nothing. It is woken by every state: how often depends on the machine.
+    // A dropped future changes nothing. Every state wakes it, so the number of wake-ups depends on
+    // the machine.
     let dropped = tokio::time::timeout(Duration::ZERO, arm.at_rest()).await;
     assert!(dropped.is_err(), "under way");
     arm.at_rest().await.unwrap();
@@ -68,7 +69,7 @@ async fn offsets_add_up_from_target_to_target() {
     };
     assert!(close(&target, &expected), "{target:?}, by way of {lower:?}");
 
-    // Counted from the arm, an offset of nothing leads to where that is.
+    // From the arm, a zero offset leads to the arm's position.
     arm.set(Offset::base(Translation3::identity()).from_arm())
         .await
         .unwrap();

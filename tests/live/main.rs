@@ -77,7 +77,7 @@ async fn at_the_clients_pace(sim: Sim) -> (Robot, Running) {
     (connect(&sim).await, sim)
 }
 
-/// This robot, at no more than a thousand states per second, which waits for each command too.
+/// This robot, at no more than a thousand states per second; it also waits for each command.
 async fn by_the_clock(sim: Sim) -> (Robot, Running) {
     let sim = sim.wait_for_commands(PATIENCE).start().await;
     let sim = sim.expect("a simulator starts");
@@ -107,7 +107,7 @@ fn long_way(robot: &Robot) -> Motion {
         .speed(0.05)
 }
 
-/// Waits for a state of which `holds` is true.
+/// Waits for a state for which `holds` returns true.
 async fn until(robot: &Robot, mut holds: impl FnMut(&RobotState) -> bool) {
     let mut states = robot.state_stream();
     let shown = async {
@@ -121,7 +121,7 @@ async fn until(robot: &Robot, mut holds: impl FnMut(&RobotState) -> bool) {
     timeout(SOON, shown).await.expect("a state shows it");
 }
 
-/// Waits for what `look` finds with some state, and returns it.
+/// Waits until `look` returns a value for a state, and returns it.
 async fn shown<T>(robot: &Robot, mut look: impl FnMut() -> Option<T>) -> T {
     let mut found = None;
     until(robot, |_| {

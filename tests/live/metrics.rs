@@ -158,7 +158,7 @@ async fn the_text_has_the_counts_of_the_handle_and_the_mode_of_the_state() {
             ),
         ]
     };
-    // The thread counts on: the text lies between what was there before and after it.
+    // The thread continues to count: the text lies between the counts before and after it.
     let before = counts(&robot);
     let text = robot.metrics();
     let after = counts(&robot);

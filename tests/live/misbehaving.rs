@@ -23,7 +23,7 @@ const LOAD: Load = Load {
     I_load: [1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 1e-4],
 };
 
-/// Streams that end a connection, and what they are called.
+/// Streams that end a connection, and their names in the error.
 const GARBAGE: [(&[u8], &str); 5] = [
     (&[0; 40], "libfranka: Incorrect TCP message size."),
     // A size below the header's, and the largest there is.

@@ -2,7 +2,8 @@
 //! motion still arrives, and the driver's counters show the effect.
 //!
 //! The networks delay by the robots' time, which waits for the client's answer to each state that
-//! reaches it. How much of it there is, and up to where it is bridged: `tests/lockstep/mishaps.rs`.
+//! reaches it. `tests/lockstep/mishaps.rs` tests the amounts, and the limits up to which they are
+//! bridged.
 
 use std::future::IntoFuture;
 use std::time::Duration;
@@ -37,7 +38,7 @@ async fn behind(network: Network, sim: Sim) -> (Robot, Running) {
     at_the_clients_pace(sim.tool(Tool::hand()).network(network)).await
 }
 
-/// A motion of a second or two over this network, and what was seen.
+/// A motion of a second or two over this network, and its counters.
 async fn travel(sim: Sim, network: Network, speed: f64) -> Seen {
     let (robot, _sim) = behind(network, sim).await;
     let mut q = robot.state().q;

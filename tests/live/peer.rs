@@ -228,7 +228,7 @@ impl Server {
             let (header, size) = (message.header, message.size());
             match (self.manners.request)(Version::V10.command_from_number(header.command)) {
                 Treatment::Pass => {
-                    // A client that left the protocol is not what is tested here.
+                    // These tests do not cover clients that violate the protocol.
                     let _ = self.robot.receive(&received[..size]);
                 }
                 Treatment::Swallow => {}
@@ -240,7 +240,7 @@ impl Server {
     }
 }
 
-/// Cycles without a command after which a client counts as gone whose stream we have ended.
+/// Cycles without a command after which a client whose stream we have ended counts as gone.
 const GOODBYE: u32 = 100;
 
 /// A reply of one status byte to the request with this header.

@@ -17,7 +17,7 @@ use crate::{alone, robot_time, simulated};
 
 type Outcome = Result<MotionReport, MotionError>;
 
-/// A runtime whose only thread for work that blocks can be held.
+/// A runtime whose only thread for blocking work can be held.
 fn runtime() -> Runtime {
     let mut builder = Builder::new_multi_thread();
     let builder = builder.worker_threads(2).max_blocking_threads(1);
@@ -38,7 +38,7 @@ struct Scene {
     robot: Robot,
     _sim: Running,
     q: [f64; 7],
-    /// Two poses beside and above the arm.
+    /// Two poses at the side of and above the arm.
     way: [Pose; 2],
 }
 
@@ -119,7 +119,7 @@ fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
         let beyond = Pose::translation(2.0, 0.0, 0.0) * robot.pose();
         let refused = tokio::spawn(robot.move_through([scene.way[0], beyond]).into_future());
         robot_time(robot, 100).await;
-        // The line through the axis of the base leads into the arm itself.
+        // The line through the axis of the base collides with the arm itself.
         let across = Pose::translation(-2.0 * robot.pose().translation.x, 0.0, -0.2);
         let no_line = robot.move_to(across * robot.pose()).await.unwrap_err();
         assert!(

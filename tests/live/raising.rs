@@ -125,8 +125,8 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
     }
 }
 
-/// Under `Enforce` a host that refuses something gets no connection, and the thread that asks stays
-/// as it was.
+/// With `Enforce`, a host that refuses a setting gets no connection, and the calling thread is
+/// unchanged.
 #[tokio::test]
 async fn what_is_enforced_and_refused_connects_nothing_and_raises_nobody() {
     let _alone = alone();

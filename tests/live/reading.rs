@@ -16,12 +16,12 @@ use tokio::time::{sleep, timeout};
 
 use crate::{SOON, alone, by_the_clock, robot_time, under_way};
 
-/// A robot that does not mind what a busy machine loses.
+/// A robot that tolerates the losses of a busy machine.
 async fn patient() -> (Robot, Running) {
     by_the_clock(Sim::fr3().ideal().tool(Tool::hand())).await
 }
 
-/// `message_id` of all states of a stream, each with what was missed before it. Ends with the
+/// `message_id` of all states of a stream, each with the number missed before it. Ends with the
 /// connection.
 fn collect(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     let stream = robot.state_stream();

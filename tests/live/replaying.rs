@@ -9,7 +9,7 @@ use franka_async::{Engage, MotionError, Robot};
 
 use crate::{alone, robot_time, simulated, under_way};
 
-/// The motion of a session to the side, in every cycle of it.
+/// The sideways motion of a session, in every cycle.
 async fn recorded(robot: &Robot) -> Vec<Sample> {
     let arm = robot.engage(Engage::default()).await.unwrap();
     let mut cycles = robot.cycles(20_000).unwrap();

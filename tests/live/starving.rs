@@ -1,9 +1,8 @@
-//! A runtime whose every worker is blocked, and processors that are all busy, do not keep the
-//! control thread from its cycles.
+//! A runtime with all workers blocked, and busy processors, do not keep the control thread from its
+//! cycles.
 //!
-//! The robots run at the pace of the client's answers, so what decides is that each state was
-//! answered. How late the answers are on a busy machine is a measurement: `cargo xtask bench
-//! --starvation`.
+//! The robots run at the pace of the client's answers, so each test checks that every state was
+//! answered. `cargo xtask bench --starvation` measures the lateness of answers on a busy machine.
 
 use std::hint;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

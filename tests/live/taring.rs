@@ -1,4 +1,4 @@
-//! The external wrench without what a robot shows of it with nothing attached.
+//! The external wrench, without the part that a robot shows with nothing attached.
 
 use std::future::IntoFuture;
 use std::time::Duration;
@@ -75,7 +75,7 @@ async fn an_arm_that_moves_is_not_tared() {
     let refused = TareError::from(pushed_through(&robot).await);
     assert_eq!(refused.party(), Party::Caller);
     assert_eq!(refused.entry(), "tare-refused");
-    // A tare that is dropped leaves nothing: the next one is as good.
+    // A dropped tare leaves nothing behind: the next one is as good.
     robot.stop().await.expect("it brakes");
     drop(motion.await.expect("no panic"));
     robot_time(&robot, 500).await;

@@ -47,7 +47,7 @@ fn stopped_by(member: usize, fault: MemberFault) -> MotionError {
     MotionError::Braked(Lapse::Team(TeamStop::Member { member, fault }))
 }
 
-/// Waits until both have been on their way for a while.
+/// Waits until both have moved for a while.
 async fn under_way(two: &Two) {
     for robot in &two.robots {
         until(robot, |_| robot.reference().is_some_and(|it| moves(&it.dq))).await;

@@ -1,4 +1,4 @@
-//! Poses whose straight path leads through singular postures or out of the joints' ranges.
+//! Poses with a straight path through singular postures or out of the joints' ranges.
 
 use std::time::Duration;
 
@@ -40,7 +40,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
         // A straight path through the axis of the base.
         turned(-0.6, 0.0, 0.0),
     ];
-    // Where joints may fold further, one more of the paths leads into the arm itself.
+    // If joints may fold further, one more of the paths collides with the arm itself.
     for (limits, least) in [(SystemLimits::From5_9, 3), (SystemLimits::Before5_9, 4)] {
         let mut arm = Arm::ideal(RobotKind::Fr3);
         arm.limits = limits;

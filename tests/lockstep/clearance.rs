@@ -28,7 +28,7 @@ fn into_itself() -> Target {
     Target::Joints(q)
 }
 
-/// Runs until the goal is resolved. Returns the smallest `margin` at the reference, and whether
+/// Runs until the goal is resolved. Returns the smallest `margin` at the reference, and true if
 /// clearance bound.
 fn least_room(
     lockstep: &mut Lockstep,

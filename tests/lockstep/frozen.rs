@@ -80,7 +80,7 @@ fn a_frozen_arm_is_named_within_a_second() {
                     assert_eq!(outcome, Err(IGNORED), "{what}");
                     leaps_not(&mut lockstep, &what);
                     if lockstep.client.outcome(engaged).is_some() {
-                        // A robot that takes up torques again that have stepped ends the motion.
+                        // A robot that resumes with torques that have stepped ends the motion.
                         assert_eq!((backend, freeze), (Backend::Torques, Freeze::Controllers));
                         continue;
                     }
@@ -95,8 +95,8 @@ fn a_frozen_arm_is_named_within_a_second() {
     }
 }
 
-/// The longest time until a frozen arm is named, `[ms]`: a reference that begins at rest takes most
-/// of it to get far enough from the arm.
+/// The longest time until a frozen arm is reported, `[ms]`. A reference that begins at rest needs
+/// most of it to get far enough from the arm.
 const NAMED_WITHIN: u64 = 900;
 
 /// The longest time from there until its goal resolves, `[ms]`: the reference returns to the arm.
@@ -182,8 +182,8 @@ fn binds(lockstep: &mut Lockstep, milliseconds: u64) -> bool {
     bound
 }
 
-/// Friction against small commands; something that holds the arm on its way and at its goal; and an
-/// arm that rests there. The harness checks the same in every other test.
+/// Friction against small commands; an obstacle that holds the arm in motion and at its goal; and
+/// an arm that rests there. The harness checks the same in every other test.
 #[test]
 fn an_arm_that_is_held_or_rests_is_not_named() {
     let seeds = if thorough() { 10 } else { 1 };

@@ -39,7 +39,8 @@ fn submit(
     lockstep.submit(change(goal)).expect("within the bounds")
 }
 
-/// Goes there and returns the greatest torque of each joint, beside gravity, on the way, `[N m]`.
+/// Moves to a target and returns the greatest torque of each joint during the motion, without
+/// gravity, `[N m]`.
 fn arrive(
     lockstep: &mut Lockstep,
     target: Isometry3<f64>,

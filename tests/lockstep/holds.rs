@@ -1,5 +1,5 @@
-//! Arms that stick: how far from its target an arm rests after steps of 5 cm, how it holds, and
-//! what a person feels who pushes it.
+//! Arms that stick: the distance between arm and target at rest after steps of 5 cm, the hold, and
+//! the force on a person who pushes the arm.
 
 use std::time::Duration;
 
@@ -99,7 +99,7 @@ fn realistic_arms_rest_millimetres_away_by_their_springs_alone_and_at_the_target
     let (median, _) = medians(Gains::droid());
     assert!((2.3e-3..4.6e-3).contains(&median), "{median}");
     let (median, most) = medians(Gains::cartesian());
-    // The first steps know nothing of the arm.
+    // Nothing is known of the arm in the first steps.
     assert!(median < 0.5e-3 && most < 2.0e-3, "{median} {most}");
     for gains in [
         Gains::cartesian(),
@@ -178,7 +178,7 @@ fn an_arm_that_was_held_back_comes_home_without_a_kick() {
             lockstep.robot.release(push);
             let beyond = swing(&mut lockstep, &home, -way);
             println!("seed {seed}: {felt:.1} N, {:.2} mm beyond", beyond * 1e3);
-            // The cap, and what friction adds at the end effector.
+            // The cap, plus friction at the end effector.
             assert!(felt < 38.0, "{felt} N");
             assert!(beyond < 5e-3, "{beyond} m");
         }
@@ -335,8 +335,7 @@ fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
     assert!(lags[7] < 0.6 * lags[0], "{lags:?}");
 }
 
-/// The first motions of an arm of which nothing is known, and whose first joint creeps to its
-/// target in the third.
+/// The first motions of an unknown arm, whose first joint creeps to its target in the third motion.
 #[test]
 fn a_joint_that_creeps_to_its_target_gets_there() {
     let arm = Arm::sample(RobotKind::Fr3, 1046, &Family::realistic());

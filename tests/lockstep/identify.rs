@@ -57,7 +57,7 @@ fn declare(lockstep: &mut Lockstep) {
     lockstep.run(100);
 }
 
-/// Does what `Identify::run` of the async API does, and calls `meanwhile` in every cycle.
+/// Does the same as `Identify::run` of the async API, and calls `meanwhile` in every cycle.
 fn identify(
     lockstep: &mut Lockstep,
     mut meanwhile: impl FnMut(&mut Lockstep),
@@ -144,7 +144,7 @@ fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
     }
 }
 
-/// Their own masses are off by more than deviations tell.
+/// The errors of their own masses exceed the estimated deviations.
 #[test]
 fn bad_arms_are_found_roughly() {
     let (mut friction_off, mut mass_off) = (0.0_f64, 0.0_f64);

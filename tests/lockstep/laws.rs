@@ -58,7 +58,7 @@ fn poses_are_reached_under_every_law() {
 }
 
 /// Returns the mean force on a soft floor in the arm's way, over the last of three seconds, and
-/// whether the cap bound.
+/// true if the cap bound.
 fn force_on_floor(gains: Gains, force_cap: ForceCap) -> (f64, bool) {
     let mut lockstep = tolerant(Lockstep::ready());
     let start = lockstep.arm_pose();

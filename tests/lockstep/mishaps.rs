@@ -13,8 +13,8 @@ use franka_sim::Network;
 use franka_sim::network::Tally;
 use franka_tests::mishaps;
 
-/// Runs a motion of a bit more than a second over this network. Returns its outcome, and what
-/// happened to the states meanwhile.
+/// Runs a motion of a bit more than a second over this network. Returns its outcome, and the counts
+/// of the network.
 fn travel(ready: &dyn Fn() -> Lockstep, network: Network) -> (Lockstep, Outcome, Tally) {
     let mut lockstep = ready();
     lockstep.link = Link::over(network);

@@ -120,7 +120,7 @@ fn through(blend: f64) -> Way {
 fn corners_are_stopped_at_or_rounded_within_their_distance() {
     let [stopping, rounding] = [0.0, 0.05].map(through);
     let durations = [&stopping, &rounding].map(|way| {
-        // The limits of the default budget, and what a millimetre at the begin is worth.
+        // The limits of the default budget, plus the effect of a millimetre at the start.
         let (speed, acceleration) = way.fastest;
         assert!(speed < 0.301, "{way:?}");
         assert!(acceleration < 0.6, "{way:?}");
@@ -132,7 +132,7 @@ fn corners_are_stopped_at_or_rounded_within_their_distance() {
         stopping.from_places.iter().all(|off| *off < 5e-4),
         "{stopping:?}"
     );
-    // Each corner is cut, and by no more than it may be.
+    // Each corner is cut, within the permitted distance.
     assert!(rounding.aside < 0.05, "{rounding:?}");
     for off in &rounding.from_places[1..3] {
         assert!((0.003..0.05).contains(off), "{rounding:?}");
@@ -457,7 +457,7 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
             match lockstep.through(None, &rounded(&poses, random.random_range(0.0..0.08))) {
                 Ok(id) => match lockstep.until_resolved(id, 60_000) {
                     Ok(_) => arrived += 1,
-                    // The way leads too near to the arm itself.
+                    // The path comes too near to the arm itself.
                     Err(MotionError::Braked(Lapse::Blocked { .. })) => blocked += 1,
                     // Near a singular posture joints move at thrice their budget, which the robot
                     // may take for a contact of an arm that sticks.

@@ -61,7 +61,7 @@ fn random_targets(kind: RobotKind) {
         };
         let goal = lockstep.begin(goal);
         let report = match lockstep.until_resolved(goal, 60_000) {
-            // The straight path leads through the arm itself.
+            // The straight path collides with the arm itself.
             Err(MotionError::Braked(Lapse::Blocked { .. })) if anywhere => {
                 let distance = self_distance(lockstep.robot.q());
                 assert!(distance < SELF_STOP + 0.02, "{distance}");

@@ -77,8 +77,8 @@ fn an_unplanned_line_ends_where_the_joints_have_no_way_on() {
     }
 }
 
-/// The line to the other side of the base leads into the arm itself, with every elbow. The joints
-/// get to its end, with the arm clear of itself on the way.
+/// The line to the other side of the base collides with the arm itself, with every elbow. A joint
+/// motion reaches its end, with the arm clear of itself.
 #[test]
 fn a_line_into_the_arm_itself_is_refused_and_the_joints_get_there() {
     for_each_robot(|ready| {

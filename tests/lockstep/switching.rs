@@ -41,8 +41,7 @@ struct Switching {
     jerk: [f64; 7],
     /// The acceleration in the previous cycle, and the time of that cycle.
     last: (u64, [f64; 7]),
-    /// The largest jump of the acceleration so far, as a share of what the jerk limit allows per
-    /// cycle.
+    /// The largest jump of the acceleration so far, as a share of the jerk limit per cycle.
     worst: f64,
     /// The number of cycles in which the arm moved.
     moving: u64,

@@ -1,4 +1,4 @@
-//! The link statistics of a report match what the link did.
+//! The link statistics of a report match the link's events.
 
 use std::collections::VecDeque;
 use std::time::Duration;

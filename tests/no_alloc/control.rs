@@ -77,7 +77,7 @@ fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothi
     assert_eq!(calls, 0, "calls of the allocator in {cycles} cycles");
 }
 
-/// Lets `program` answer states of the motion of `request`, and returns the number of calls of the
+/// Makes `program` answer states of the motion of `request`, and returns the number of calls of the
 /// allocator meanwhile. `before` is called ahead of each state, outside the cycle.
 pub(crate) fn calls_of(
     version: Version,

@@ -51,7 +51,7 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
     lockstep.client.lifecycle.keep_out_of(regions);
     lockstep.run(5);
 
-    // A target inside the arm itself, which the lead limits as long as updates arrive.
+    // A target inside the arm itself, which the lead limits while updates arrive.
     let mut q: [f64; 7] = READY.into();
     q[1] += 1.9;
     let mut goal = lockstep.goal(Target::Joints(q), OnArrival::Hold);

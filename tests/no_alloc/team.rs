@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 
 use crate::calls_during;
 
-/// Joint motions, each of which is stopped, taken back or comes to its end.
+/// Number of joint motions, each of which is stopped, is cancelled or ends.
 const ROUNDS: u64 = 60;
 
 type Session = (Lockstep, GoalId);

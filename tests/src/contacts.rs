@@ -141,7 +141,7 @@ impl Push {
         }
     }
 
-    /// The push, for a simulated arm: it goes with the body that is pushed.
+    /// The push, for a simulated arm: it moves with the pushed body.
     pub fn touch(&self) -> Touch {
         let touch = Touch::force(self.force).at(self.frame());
         touch.offset(self.place().coords)
@@ -157,7 +157,8 @@ impl Push {
         linear + jacobian.fixed_rows::<3>(3).tr_mul(&moment)
     }
 
-    /// Lets an arm of its kind feel it: half a second of nothing, then the push for 0.3 s.
+    /// Applies the push to an arm of its kind: half a second without contact, then the push for 0.3
+    /// s.
     pub fn told(&self, arm: &Arm, seed: u64) -> Told {
         let mut robot = Robot::new(Config {
             kind: self.kind,

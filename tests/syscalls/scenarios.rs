@@ -261,7 +261,7 @@ pub(crate) async fn functions() {
     robot.shutdown().await;
 }
 
-/// A thread of the user's program is the cycle for a while.
+/// A thread of the user's program runs the cycle for a while.
 pub(crate) async fn active() {
     let (robot, _sim) = simulated().await;
     let control = robot.active_torques().await.expect("it begins");

@@ -1,4 +1,4 @@
-//! Recordings of robots whose link is silent, whose connection is made again, or that have none.
+//! Recordings of robots with a silent link, with a new connection, or without a connection.
 
 use std::future::IntoFuture;
 use std::time::Duration;

@@ -66,7 +66,7 @@ async fn a_robot_that_was_restarted_is_there_again_and_stands_still() {
     let seen = timeout(SOON, states.changed()).await.expect("no hang");
     seen.expect("the newest states go on");
 
-    // The session of before answers with its end, and nothing moves.
+    // The previous session answers with its end, and nothing moves.
     let ended = arm.set(up).await.unwrap_err();
     assert!(
         matches!(ended, MotionError::ConnectionClosed { .. }),
@@ -96,8 +96,8 @@ async fn a_robot_that_was_restarted_is_there_again_and_stands_still() {
     assert_eq!(robot.health().newest().condition, Condition::Closed);
 }
 
-/// While nothing is under way, so that the robot minds no missing command; longer than the link
-/// timeout, and than the supervisor bears with it.
+/// At rest, so that the robot does not count missing commands. The cut is longer than the link
+/// timeout, and than the supervisor's patience.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_network_that_is_cut_is_told_and_the_connection_given_up_for_it() {
     let _alone = alone();
@@ -248,7 +248,7 @@ async fn a_robot_that_reports_no_pose_when_it_is_back_is_the_same_robot() {
     sim.stop().await;
 
     let mut unreported = Tool::hand();
-    unreported.f_t_ne[(0, 0)] = 2.0; // No rotation, and none in what the robot reports.
+    unreported.f_t_ne[(0, 0)] = 2.0; // No rotation, and none in the robot's report.
     let sim = started_at(address, || at_odds(unreported)).await;
     told(&mut events, connected).await;
     let after = robot.geometry_check();

@@ -113,7 +113,7 @@ impl Relay {
     }
 }
 
-/// A simulator at no more than a thousand states per second, and the way to it.
+/// A simulator at no more than a thousand states per second, and the relay to it.
 pub(crate) async fn relayed(sim: Sim) -> (Running, Relay) {
     let sim = sim.ideal().tool(Tool::hand()).wait_for_commands(PATIENCE);
     let sim = sim.start().await.expect("a simulator starts");
@@ -131,7 +131,7 @@ pub(crate) async fn supervised_at(address: SocketAddr, policy: Policy) -> Robot 
     robot.expect("a simulator takes a client")
 }
 
-/// Waits for an event of which `is` finds something, and returns that.
+/// Waits for an event for which `is` returns a value, and returns the value.
 pub(crate) async fn told<T>(events: &mut Events, mut is: impl FnMut(&EventKind) -> Option<T>) -> T {
     let found = async {
         loop {

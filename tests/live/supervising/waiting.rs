@@ -148,7 +148,7 @@ async fn motion_that_waits_does_not_begin_with_a_robot_that_was_restarted() {
     sim.stop().await;
 }
 
-/// The straight line to the other side of the base leads into the arm itself.
+/// The straight line to the other side of the base collides with the arm itself.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_line_that_is_refused_leaves_the_motion_that_waits() {
     let _alone = alone();

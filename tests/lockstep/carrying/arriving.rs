@@ -44,7 +44,7 @@ fn two_arms_carry_one_bar_and_hardly_pull_at_each_other() {
                  {gap:.5} m, arms behind by {lag:.4} m",
                 carriers.ticks, carriers.strain
             );
-            // Both within what counts as arrived; turned by 9.4 mrad at most.
+            // Both within the tolerance of arrival; turned by 9.4 mrad at most.
             assert!(off < 2.1e-3 && turned < 10e-3, "{off} m, {turned} rad");
             assert!(gap < 0.7e-3, "{gap} m");
             // Half of the distance at which the other one halts.

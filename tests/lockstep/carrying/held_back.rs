@@ -101,7 +101,7 @@ fn what_stops_one_arm_stops_the_other_and_the_bar_is_not_torn_away() {
         assert!(left.is_err(), "{name}: {left:?}");
         let stop = TeamStop::Member { member: 0, fault };
         let braked = Err(MotionError::Braked(Lapse::Team(stop)));
-        // Both are held by a bar that is: either may be the first to give up.
+        // The held bar holds both arms: either may be the first to give up.
         let held = matches!(right, Err(MotionError::TargetNotReached(_)));
         assert!(
             right == braked || fault == MemberFault::NotReached && held,

@@ -181,8 +181,8 @@ impl Carriers {
     }
 }
 
-/// The most internal force when something is hit, `[N]`: the force cap, with what the bar and the
-/// arms add by their inertia.
+/// Largest internal force at an impact, `[N]`: the force cap, plus the forces from the inertia of
+/// the bar and the arms.
 const MOST: f64 = CAP + 15.0;
 
 /// Pairs of arms. The bounds below hold for all 12; the sample has the worst ones.

@@ -1,4 +1,4 @@
-//! The end of chunks: a cancelled or aborted goal follows no chunk any more, and a followed chunk
+//! The end of chunks: a cancelled or aborted goal no longer follows a chunk, and a followed chunk
 //! passes through its points.
 
 use std::time::Duration;

@@ -1,5 +1,5 @@
 //! Every controller of the robot with every kind of setpoint, on arms that stick and over links
-//! that lose packets: the robot checks each command, and may find nothing.
+//! that lose packets. The robot checks each command, and must find no violation.
 
 use std::time::Duration;
 

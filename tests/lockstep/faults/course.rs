@@ -14,8 +14,8 @@ pub(crate) const CRUISE: u64 = 40;
 /// The moment of the last command, `[ms]` from the first.
 pub(crate) const END: u64 = 2 * REST + 2 * RAMP + CRUISE;
 
-/// Full speed of a joint, `[rad/s]`. The steepest acceleration is 3.9 rad/s², half of what any
-/// joint of either robot may do.
+/// Full speed of a joint, `[rad/s]`. The steepest acceleration is 3.9 rad/s², half of the limit of
+/// every joint of either robot.
 const JOINT_SPEED: f64 = 0.05;
 /// Full speed of the end effector, `[m/s]`: some three times as many rad/s in a joint.
 const CARTESIAN_SPEED: f64 = 0.02;

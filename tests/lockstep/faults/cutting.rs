@@ -35,7 +35,7 @@ fn so_far(trial: &Trial) -> Option<Outcome> {
     trial.lockstep.client.outcome(trial.work).cloned()
 }
 
-/// Asserts that the outcome is the expected one, that no motion starts any more, and that the next
+/// Asserts that the outcome is the expected one, that no more motions start, and that the next
 /// motion works on a new connection.
 fn starts_over(mut trial: Trial, expected: &Expect) {
     let outcome = so_far(&trial).expect("resolved at once");
@@ -189,7 +189,7 @@ fn a_motion_whose_replies_are_lost_times_out_once_it_has_ended() {
     matrix.finish();
 }
 
-/// The robot gets no commands either, and stops itself meanwhile.
+/// The robot gets no commands either, and stops meanwhile.
 #[test]
 fn the_link_to_a_silent_robot_is_lost_after_the_timeout_and_not_before() {
     let mut matrix = Matrix::new("silent");

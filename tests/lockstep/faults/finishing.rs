@@ -1,4 +1,4 @@
-//! Motions that finish, and those whose finish the robot answers with a reflex.
+//! Motions that finish, and motions whose finish causes a reflex.
 
 use franka_proto::{MoveGeneratorMode, RobotError as E};
 

@@ -22,7 +22,7 @@ pub(crate) enum Misbehaviour {
     FinishesAt(u64),
     /// It panics in the call of this number, the first being 0.
     PanicsIn(u64),
-    /// The function that commands torques beside it panics in the call of this number.
+    /// The function that commands torques at the same time panics in the call with this number.
     TorquesPanicIn(u64),
     /// It commands a NaN in the call of this number.
     CommandsNanIn(u64),

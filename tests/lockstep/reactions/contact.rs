@@ -50,7 +50,7 @@ struct Contact {
     seen_after: u64,
     /// From that state to the one in which the reference rests.
     braked_after: u64,
-    /// From that state to the one in which nothing touches the arm.
+    /// From that state to the state in which nothing touches the arm.
     left_after: Option<u64>,
     at_reaction: f64,
     most: f64,
@@ -199,7 +199,7 @@ fn an_arm_that_approaches_gently_retreats_all_the_same() {
     assert!(fastest < 1.05 * slow, "{fastest} m/s");
 }
 
-/// The law may not push on with what it compensates.
+/// The law must not continue to push with its compensation.
 #[test]
 fn an_engaged_arm_rests_on_what_it_met_and_does_not_press_harder() {
     for (arm, mut lockstep) in arms() {
@@ -253,7 +253,7 @@ fn a_hand_in_the_way_stops_the_arm() {
     }
 }
 
-/// Without the condition the arm presses on with all that the force cap lets it.
+/// Without the condition the arm continues to press up to the force cap.
 #[test]
 fn a_missed_contact_is_no_reaction() {
     let mut lockstep = Lockstep::ready();

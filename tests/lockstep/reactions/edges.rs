@@ -1,4 +1,4 @@
-//! A condition that comes with something else, or too early, or too late.
+//! A condition that coincides with another event, or comes too early or too late.
 
 use std::time::Duration;
 

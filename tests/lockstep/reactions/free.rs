@@ -1,4 +1,4 @@
-//! Arms that touch nothing, whose friction shows in the robot's estimate.
+//! Arms without contact, whose friction appears in the robot's estimate.
 
 use franka_lockstep::Lockstep;
 use franka_model::RobotKind;

@@ -121,7 +121,7 @@ fn the_condition_of_a_goal_ends_with_it() {
     });
 }
 
-/// A condition of a goal that takes over in mid-motion begins with it.
+/// The condition of a goal that takes over in mid-motion starts with the goal.
 #[test]
 fn time_and_changes_count_from_the_goal_that_the_condition_belongs_to() {
     for_each_robot(|ready| {
@@ -295,7 +295,7 @@ fn a_guided_arm_is_held_where_it_reacts() {
     });
 }
 
-/// A goal at rest may wait for something, too.
+/// A goal at rest may wait for an event, too.
 #[test]
 fn an_arm_that_holds_may_wait_for_a_push() {
     let mut lockstep = realistic(RobotKind::Fer, 4);

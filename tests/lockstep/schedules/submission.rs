@@ -53,7 +53,7 @@ pub(super) struct Submission {
     pub(super) superseded: bool,
     /// Cancelled by its owner.
     pub(super) cancelled: bool,
-    /// Stopped as part of something else.
+    /// Stopped together with other work.
     pub(super) stopped: bool,
     /// For a session: its end was requested. For a goal: its session was ending.
     pub(super) released: bool,

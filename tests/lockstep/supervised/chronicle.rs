@@ -19,7 +19,7 @@ pub(super) struct Chronicle {
     reflex: Option<u64>,
     reflexes: u64,
     motions: BTreeSet<u64>,
-    /// All of it.
+    /// The whole text.
     pub(super) text: String,
     /// Number of events of each kind.
     pub(super) counts: BTreeMap<&'static str, u64>,

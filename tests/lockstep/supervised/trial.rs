@@ -212,7 +212,8 @@ impl Trial {
                 return false;
             }
             18 | 19 => {
-                // Light: nothing is attached, and what is declared pulls the arm up.
+                // Light: nothing is attached, and the compensation of the declared load pulls the
+                // arm up.
                 let random = self.random.random_range(0.0..0.002);
                 self.robot.set(match self.random.random_range(0..2) {
                     0 => load(random),
@@ -309,7 +310,7 @@ impl Trial {
             self.chronicle.take(&event);
             match event.kind {
                 EventKind::Unrecognised { differences } => {
-                    // No state may have shown what was set just before the loss.
+                    // Possibly no state has shown a setting from just before the loss.
                     let has_set = !self.robot.answers.is_empty();
                     let by_us = has_set && differences.frames && !differences.clock;
                     assert!(self.is_restarted || by_us, "{differences}");

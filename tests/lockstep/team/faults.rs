@@ -205,7 +205,7 @@ fn a_fault_in_a_round_brakes_the_other_while_the_next_one_waits() {
     }
 }
 
-/// The arms hold what they have arrived at meanwhile, as part of an older round.
+/// The arms meanwhile hold their reached targets, as part of an older round.
 #[test]
 fn a_goal_of_a_round_that_was_replaced_stops_no_other() {
     for cycles in 0..4 {

@@ -14,7 +14,7 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 use super::{Pair, stopped_by};
 
 impl Pair {
-    /// Begins to raise what both hold by 10 cm, at 3 cm/s.
+    /// Begins to raise the common object by 10 cm, at 3 cm/s.
     fn raise(&mut self, mut with: impl FnMut(usize, Goal) -> Goal) -> [GoalId; 2] {
         let round = Some(self.coordinator.begin());
         [0, 1].map(|i| {
@@ -88,7 +88,7 @@ fn a_reference_halts_while_it_is_ahead_of_another_one_of_the_same_object() {
         }
         println!("ahead by {ahead:.4} m");
         if together {
-            // 2 mm, and the way in which it halts at 3 cm/s.
+            // 2 mm, and the braking distance at 3 cm/s.
             assert!(ahead < 4e-3, "{ahead} m");
         } else {
             assert!(ahead > 0.03, "{ahead} m");
@@ -150,7 +150,8 @@ fn of_two_arms_that_are_held_back_the_one_that_is_waited_for_gives_up() {
         }
         let robot = &mut pair.robots[1];
         if ms < 7000 {
-            // A stiff hand that goes down by 3 cm/s: less than the arm may be displaced.
+            // A stiff hand that moves down at 3 cm/s, by less than the permitted displacement of
+            // the arm.
             let drawn = top - 3e-5 * f64::from(ms);
             push(robot, 2000.0 * (drawn - robot.arm_pose().translation.z));
         }
@@ -191,7 +192,8 @@ fn an_arm_that_has_reacted_on_its_way_with_the_object_holds_up_no_other() {
     assert_eq!(ended, Some([Ok(()), Ok(())]));
 }
 
-/// The clock of the second robot runs so slowly that it is on its last millimetres meanwhile.
+/// The clock of the second robot runs so slowly that the robot is on its last millimetres
+/// meanwhile.
 #[test]
 fn an_arm_that_has_arrived_with_the_object_holds_up_no_other() {
     let mut pair = Pair::new(false);
@@ -217,7 +219,7 @@ fn an_arm_that_has_arrived_with_the_object_holds_up_no_other() {
     panic!("the second one waits for ever");
 }
 
-/// A motion of more than the five seconds after which an arm that lags gives up.
+/// A motion longer than the five seconds after which a lagging arm gives up.
 #[test]
 fn an_arm_that_has_lagged_with_the_object_does_not_lag_without() {
     let mut pair = Pair::new(false);

@@ -1,5 +1,5 @@
-//! The modules of franka-rt in which threads meet, with the atomics and locks of loom in place of
-//! the standard library's. They need nothing else of their crate.
+//! The modules of franka-rt that threads share, with the atomics and locks of loom in place of the
+//! standard library's. They need no other module of their crate.
 #![cfg(test)]
 #![allow(dead_code, reason = "not all of it takes part in an interleaving")]
 #![allow(unreachable_pub, reason = "what franka-rt exports is exported there")]

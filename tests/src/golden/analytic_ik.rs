@@ -1,5 +1,5 @@
 //! All inverse kinematics solutions for a pose and an angle of joint 7 or joint 4, against an
-//! enumeration that a numerical search found nothing to add to.
+//! enumeration. A numerical search found no further solutions.
 
 use anyhow::Context as _;
 use franka_model::analytic_ik::{self, Branch, Redundancy, Solution, Solutions};

@@ -284,7 +284,8 @@ impl Trace {
 /// A control function.
 type Player<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
-/// A function that returns, call by call, what the callback of the trace did, and panics beyond.
+/// A function that returns, call by call, the values of the trace's callback, and panics beyond
+/// them.
 fn player<T: Send + 'static>(
     function: Function,
     events: &[Event],

@@ -127,7 +127,7 @@ impl Outcome {
         self.result.is_none()
     }
 
-    /// True if the file cannot be read or a case of it failed.
+    /// True if the file cannot be read or one of its cases failed.
     pub fn failed(&self) -> bool {
         match &self.result {
             None => false,
@@ -183,7 +183,7 @@ mod tests {
         Ok(report)
     }
 
-    /// Runs a suite on a directory whose only file has this text.
+    /// Runs a suite on a directory with only one file, which has this text.
     fn run_on(name: &str, text: Option<&str>) -> Outcome {
         let suites = [Suite {
             file: "doubles.json",

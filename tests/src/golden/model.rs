@@ -34,7 +34,7 @@ struct Meta {
     gravity_alt: [f64; 3],
 }
 
-/// A configuration of frames and loads, and the totals that the vendor's client makes of it.
+/// A configuration of frames and loads, and the totals that the vendor's client computes from it.
 #[derive(Deserialize)]
 #[allow(non_snake_case)]
 struct Tool {

@@ -87,8 +87,8 @@ pub(super) fn single_axis(text: &[u8]) -> anyhow::Result<Report> {
 /// Checks `otg/single_axis_target_velocity.json`: the least motion, its mirror image in time, and
 /// the durations that are blocked.
 ///
-/// The mirror image in time ends with the acceleration that the case begins with. So it checks
-/// targets that accelerate, of which the file has none.
+/// The mirror image in time ends with the acceleration at the start of the case. It checks targets
+/// that accelerate, which the file does not contain.
 pub(super) fn target_velocity(text: &[u8]) -> anyhow::Result<Report> {
     let mut report = Report::default();
     let file: File<SingleAxis> = serde_json::from_slice(text)?;

@@ -64,7 +64,7 @@ impl Report {
         self.cases
     }
 
-    /// Cases of which every comparison succeeded.
+    /// Cases with only successful comparisons.
     pub fn passed(&self) -> usize {
         self.passed
     }

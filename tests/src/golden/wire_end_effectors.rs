@@ -346,7 +346,7 @@ fn headers<D: Device>(text: &[u8]) -> anyhow::Result<Report> {
     Ok(report)
 }
 
-/// A message of this size in which everything but size and payload is zero.
+/// A message of this size that is zero except for size and payload.
 fn message_of(size: usize, payload: &[u8]) -> Vec<u8> {
     [&[0; 6], &(size as u32).to_le_bytes()[..], payload].concat()
 }

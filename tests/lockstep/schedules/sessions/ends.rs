@@ -90,7 +90,7 @@ impl Sessions<'_> {
         let begin = self.lockstep.now();
         while !self.lockstep.client.lifecycle.is_idle() {
             let waited = self.lockstep.now() - begin;
-            // A session that nothing has ended yet is ended here.
+            // A session that has not ended yet is ended here.
             if waited == 1000 {
                 self.end_by_stop();
             }

@@ -71,7 +71,7 @@ impl Sessions<'_> {
         self.note(goal, Work::Goal(last), false, taken);
     }
 
-    /// Submits a goal with random options. Returns whether it was accepted.
+    /// Submits a goal with random options. Returns true if it was accepted.
     pub(super) fn submit(&mut self, target: Target, on_arrival: OnArrival) -> bool {
         let mut goal = self.lockstep.goal(target, on_arrival);
         goal.budget = self.budget();

@@ -6,7 +6,7 @@ use loom::thread;
 
 use crate::state_wakeups::StateWakeups;
 
-/// A subscriber is counted before it requests; the bridge finds none and releases meanwhile.
+/// A subscriber is counted before it requests. Meanwhile the bridge finds none and releases.
 #[test]
 fn a_request_during_a_release_holds_in_the_end() {
     loom::model(|| {
