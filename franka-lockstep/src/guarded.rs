@@ -32,7 +32,7 @@ pub enum Workload {
     Joints,
     /// Chunks of joints and of poses, most of them replaced before their end.
     Chunks,
-    /// Guiding, and a pose now and then.
+    /// Guiding, with occasional poses.
     Guide,
     /// Joint positions and poses for one of the robot's own controllers; the seed chooses
     /// which, and with which setpoints. Poses alone if those are Cartesian.
@@ -98,7 +98,7 @@ impl Guarded {
         )
     }
 
-    /// Returns an arm whose session commands by this back end, with the goals of
+    /// Returns an arm whose session uses this back end, with the goals of
     /// [`Workload::RobotController`].
     ///
     /// # Panics

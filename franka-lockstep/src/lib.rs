@@ -68,7 +68,7 @@ pub struct Lockstep {
     pub client: DriverStack,
     /// The client's model of the robot, with the lengths and limits that the robot describes.
     model: Model,
-    /// Absent once a test's own program has run, which may command anything.
+    /// Absent once a test's own program has run, because such a program may send any command.
     guard: Option<CommandGuard>,
     /// True if the arm was ever frozen.
     frozen: bool,
@@ -142,7 +142,7 @@ impl Lockstep {
         self.milliseconds
     }
 
-    /// Advances everything by one millisecond.
+    /// Advances the whole system by one millisecond.
     ///
     /// # Panics
     /// If a command violates a limit of the robot, or the client's session cannot read a message.

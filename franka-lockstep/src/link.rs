@@ -69,8 +69,8 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    /// Returns what a client receives that is ready from `free` on, before `end`: the newest of the
-    /// states that have arrived, if it is newer than `last`.
+    /// Returns the state for a client that is ready from `free` on, before `end`: the newest
+    /// arrived state, if it is newer than `last`.
     pub(super) fn receive(
         &mut self,
         free: Duration,

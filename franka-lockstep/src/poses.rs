@@ -64,7 +64,8 @@ pub fn self_distance(q: &JointVector) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Gives a target a random motion, some of them faster than any budget; others stay as they are.
+/// Gives a pose or joint target a random motion, sometimes faster than any budget; other targets
+/// stay unchanged.
 pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
     let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
     match target {

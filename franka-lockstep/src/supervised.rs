@@ -152,7 +152,7 @@ impl Supervised {
         self.supervision.health()
     }
 
-    /// Advances everything by one millisecond.
+    /// Advances the whole system by one millisecond.
     pub fn tick(&mut self) {
         if self.is_up {
             self.lockstep.tick();
@@ -324,7 +324,7 @@ impl Supervised {
         self.is_up = true;
     }
 
-    /// Cuts the network: nothing gets through, and the command connection repeats what it has.
+    /// Cuts the network: no data passes, and the command connection repeats its data.
     pub fn cut(&mut self) {
         self.lockstep.link.delayed = true;
         self.lockstep.link.drop_states(u64::MAX);

@@ -80,7 +80,7 @@ mod tests {
         Instant::new(dq, &dynamics)
     }
 
-    /// Observes while motors with rotors support and damp the arm and something pushes it.
+    /// Observes an arm that is pushed while motors with rotors support and damp it.
     fn observe(push: &JointVector, gain: f64, milliseconds: usize) -> JointVector {
         let model = Model::fr3();
         let rotors = JointVector::repeat(0.1);

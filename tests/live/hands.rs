@@ -351,7 +351,7 @@ where
     address
 }
 
-/// libfranka's interpretation of the statuses 0 to 3, and of one that does not exist: scenario 18.
+/// libfranka's interpretation of the statuses 0 to 3, and of an undefined status: scenario 18.
 fn check<C: franka_proto::ServiceCommand>(status: u16, result: Result<bool, ActionError<C>>) {
     let service = C::SERVICE;
     let expected = match status {

@@ -1,7 +1,7 @@
 //! The force of the arm on an obstacle in its way, and on a hand that pushes it.
 //!
-//! The forces are those of the simulated contact, in the millisecond in which it acts on the arm,
-//! and not estimates of the driver. The part of a push that accelerates the arm does not come from
+//! The forces come from the simulated contact, in the millisecond in which it acts on the arm, and
+//! not from estimates of the driver. The part of a push that accelerates the arm does not come from
 //! the law. The contact supplies it for any torques: `Lambda J ddq`, with the simulated arm's whole
 //! inertia, rotors included. It is subtracted. By the equations of motion, the rest is the
 //! resistance of the joints' torques and friction. The hand holds the end effector at a point, so

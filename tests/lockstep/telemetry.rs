@@ -96,7 +96,7 @@ fn states_superseded_by_a_newer_one_count_as_skipped() {
     let id = lockstep.control_function(nothing_for(400));
     let id = id.expect("nothing else runs");
     lockstep.run(100);
-    // As if the control thread found three states and answered the newest: of five missing states,
+    // As if the control thread found three states and answered the newest. Of five missing states,
     // two never arrived.
     let mut told = VecDeque::from([(5, 3), (2, 2), (1, 0)]);
     let (mut lost, mut skipped) = (0, 0);

@@ -150,7 +150,7 @@ impl Supervised {
         false
     }
 
-    /// Ends the command connection after the robot has what was sent, and before its answer.
+    /// Ends the command connection after the robot has received the setting, and before its answer.
     pub fn lose_answers(&mut self) {
         while let Some(bytes) = self.lockstep.client.take_message() {
             let received = self.lockstep.robot.receive(&bytes);

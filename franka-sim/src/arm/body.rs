@@ -1,4 +1,4 @@
-//! Links, axes, load and mounting as they are.
+//! True links, axes, load and mounting.
 
 use franka_model::{AsBuilt, JointVector, Load, RobotKind, joint_vector};
 use nalgebra::{Isometry3, Vector3};

@@ -1,4 +1,4 @@
-//! The robot's geometry of its own poses.
+//! Geometry that the robot uses to compute its poses.
 
 use franka_model::geometry::Lengths;
 use franka_model::{Model, RobotKind};

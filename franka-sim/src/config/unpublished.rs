@@ -198,7 +198,7 @@ impl Default for Setters {
 /// but would drive the controllers of an arm at rest out of any range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetterBounds {
-    /// Mass of a declared load, `[kg]`. Default 10: three times what the arms carry.
+    /// Mass of a declared load, `[kg]`. Default 10: three times the arms' payload.
     pub mass: f64,
     /// Distance of the load's centre of mass from the flange, `[m]`. Default 1.
     pub com: f64,

@@ -18,7 +18,7 @@ use crate::plant::FingerDrive;
 /// * A move that an object blocks continues to try, and fails after [`Fingers::BLOCKED_MS`].
 /// * A grasp closes until something stops the fingers, and squeezes from then on, even if the width
 ///   is not the requested one. A grasp that begins while an object is held is unsuccessful.
-/// * An object that is lost lets the fingers close further.
+/// * After the loss of an object, the fingers close further.
 #[derive(Debug, Clone)]
 pub struct Fingers {
     finger_motion: FingerMotion,

@@ -95,8 +95,8 @@ pub(super) fn joints(
 
 /// Returns the bounds that a step of the joints breaks.
 ///
-/// The velocity envelope belongs to the position before the step, the only one that a client can
-/// know.
+/// The velocity envelope belongs to the position before the step, because a client can know no
+/// other position.
 pub(super) fn joint_bounds(
     from: &JointSignal,
     next: &JointSignal,

@@ -269,9 +269,9 @@ fn push_on(lockstep: &mut Lockstep, engaged: GoalId, way: Vector3<f64>) -> (Erro
     (lockstep.client.state.reflex_reason, force, torque)
 }
 
-/// The robot's controllers yield only as far as their springs do. The force of a hand that
-/// continues to push grows until the robot stops. The stop comes from its thresholds or, without
-/// those, from a torque sensor of the wrist that is out of its range.
+/// The robot's controllers yield only like their springs. The force of a hand that continues to
+/// push grows until the robot stops. The stop comes from its thresholds or, without thresholds,
+/// from a torque sensor of the wrist that is out of its range.
 #[test]
 fn it_bears_a_push_and_stops_itself_where_a_hand_pushes_on() {
     let without = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);

@@ -1,8 +1,8 @@
 //! Control functions against libfranka's control loops: `control_loop_vectors.json`.
 //!
-//! A trace is the record of a loop over four states: the function that it called with each state
-//! and time step, and the command that it sent after the returned values had passed filter, limiter
-//! and checks. Here the driver runs the same functions.
+//! A trace is the record of a loop over four states. It has the function that the loop called with
+//! each state and time step, and the sent command, after filter, limiter and checks. Here the
+//! driver runs the same functions.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

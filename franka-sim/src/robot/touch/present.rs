@@ -198,10 +198,10 @@ impl Present {
                 let across = *normal * normal.transpose();
                 let depth = across * (*point - position);
                 let push = spring.pull(depth, &(across * velocity), dt);
-                // Nothing sticks to a wall: it does not act on a place outside, or on one that
-                // leaves faster than it follows. The arm's acceleration is not known yet. A place
-                // that is pulled off the wall is therefore pulled for one step, with the slope
-                // times the acceleration.
+                // Nothing sticks to a wall: it does not act on a place outside, or on a place that
+                // leaves faster than the wall follows. The arm's acceleration is not known yet. A
+                // place that is pulled off the wall is therefore pulled for one step, with the
+                // slope times the acceleration.
                 let is_behind = (depth - across * velocity * dt).dot(normal) > 0.0;
                 if !is_behind || push.dot(normal) <= 0.0 {
                     (none, none, None)

@@ -14,8 +14,8 @@ const FOREVER: Duration = Duration::MAX;
 /// Ticks that are over at once.
 const AT_ONCE: Duration = Duration::ZERO;
 
-/// The owner's loop. It runs while `goes_on` returns true, lends the value when a borrower wants
-/// it, and then closes the handoff. Returns the total number of turns, if the value is back.
+/// The owner's loop. It runs while `goes_on` returns true, lends the value on request, and then
+/// closes the handoff. Returns the total number of turns, if the value is back.
 fn own(handoff: &Handoff<u64>, goes_on: impl Fn() -> bool) -> Option<u64> {
     let mut turns = Some(0);
     while let Some(value) = turns.filter(|_| goes_on()) {
