@@ -1,9 +1,9 @@
-//! Lets programs with the feature `mujoco` find the native library when they run.
+//! Makes the native library available at run time to programs with the feature `mujoco`.
 //!
-//! `mujoco-rs` sees to it that they link. Cargo adds the output directories of build scripts to the
-//! loader's search path of what it runs, so a link in ours serves `cargo run`, tests and
-//! documentation examples of every dependent; the binary `franka-sim` has the directory written
-//! into it besides, and looks beside itself first.
+//! `mujoco-rs` links them. Cargo adds the output directories of build scripts to the loader's
+//! search path of the programs that it runs. A link in our output directory thus serves
+//! `cargo run`, tests and documentation examples of every dependent. The binary `franka-sim` also
+//! contains the directory, and looks in its own directory first.
 
 use std::env;
 use std::error::Error;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let library = directory.join("libmujoco.so");
     println!("cargo::rerun-if-changed={}", library.display());
-    // `mujoco-rs` says so too, in its own words.
+    // `mujoco-rs` reports this, too, with another text.
     let library = fs::canonicalize(&library).map_err(|error| {
         format!(
             "no library of MuJoCo: {}: {error}; run `cargo xtask mujoco`, or set {DYNAMIC} to the absolute path of a \

@@ -37,7 +37,7 @@ pub enum State {
     Following,
     /// Begins to, or recovers.
     Starting,
-    /// Stopped; [`Playground::recover`] leads on.
+    /// Stopped; [`Playground::recover`] continues.
     Stopped,
 }
 
@@ -50,7 +50,7 @@ enum Phase {
     Recovering,
 }
 
-/// An arm as it is now; base frame, SI units.
+/// Current state of an arm; base frame, SI units.
 pub struct View {
     /// Time since the start.
     pub seconds: f64,
@@ -58,7 +58,7 @@ pub struct View {
     pub state: State,
     /// Measured joint positions.
     pub q: [f64; 7],
-    /// Joint positions of the reference; of the arm where nothing controls it.
+    /// Joint positions of the reference, or of the arm if nothing controls it.
     pub q_ref: [f64; 7],
     /// Target pose of the end effector.
     pub target: Isometry3<f64>,
@@ -136,8 +136,8 @@ impl Playground {
         }
     }
 
-    /// Has the robot recover, and begins a session that holds the arm where it is. Does nothing
-    /// while nothing has stopped the arm.
+    /// Makes the robot recover, and begins a session that holds the arm in its position. Does
+    /// nothing unless the arm was stopped.
     pub fn recover(&mut self) {
         if matches!(self.phase, Phase::Stopped) {
             self.lockstep.request(&Request::AutomaticErrorRecovery);
@@ -148,12 +148,12 @@ impl Playground {
         }
     }
 
-    /// The newest thing to tell: why the arm stopped, or why a target is none.
+    /// The newest message: the reason why the arm stopped, or why a target is invalid.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// The arm as it is now.
+    /// Current state of the arm.
     pub fn view(&self) -> View {
         let (state, record) = (&self.lockstep.client.state, &self.lockstep.client.record);
         let [q, dq] = [state.q, state.dq].map(JointVector::from);

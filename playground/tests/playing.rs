@@ -68,7 +68,7 @@ fn a_pushed_arm_gives_way_and_comes_back() {
         assert!((8.0..20.0).contains(&now.force.y), "{}", now.force);
         assert_eq!(now.state, State::Following, "{}", playground.message());
         playground.push(Vector3::zeros());
-        // Friction holds it a little beside.
+        // Friction holds it slightly off the target.
         until(&mut playground, |now| {
             distance(now) < 5e-3 && now.view().speed < 1e-3
         });

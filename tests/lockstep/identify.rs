@@ -144,7 +144,7 @@ fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
     }
 }
 
-/// The errors of their own masses exceed the estimated deviations.
+/// The errors of the arms' masses exceed the estimated deviations.
 #[test]
 fn bad_arms_are_found_roughly() {
     let (mut friction_off, mut mass_off) = (0.0_f64, 0.0_f64);

@@ -10,7 +10,7 @@ use anyhow::{Context as _, bail};
 /// Result of a step that did not fail.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// All of it ran and succeeded.
+    /// Everything ran and succeeded.
     Passed,
     /// Everything that ran succeeded; the text names the parts that could not be checked.
     Partly(String),

@@ -42,7 +42,7 @@ pub struct Unpublished {
     pub force_axes: ForceAxes,
     /// Measured joint velocity above which no motion under an external controller may finish,
     /// `[rad/s]`; infinite for a robot that permits it. Default 0.1: robots are known to refuse
-    /// motions of their own controllers that finish at speed.
+    /// motions under internal controllers that finish at speed.
     pub finish_velocity: f64,
     /// Stiffness of the internal joint impedance controller until a client sets another,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.

@@ -62,7 +62,7 @@ fn an_offset_of_the_torque_sensors_shows_and_pulls() {
     let shown = pair.state.tau_ext_hat_filtered[1].abs();
     // The robot's own controller holds the arm: the sensor reads its weight and the offset.
     assert!((shown - offset).abs() < 0.02, "{shown}");
-    // Under torque control nothing does: the torque loop takes the offset for torque.
+    // Under torque control nothing holds it: the torque loop interprets the offset as torque.
     let before = pair.robot.q()[1];
     pair.start_torques();
     for _ in 0..300 {

@@ -35,7 +35,7 @@ fn declare(load: &Load) -> Request {
 
 fn felt(state: &RobotState) -> Vector3<f64> {
     let [x, y, z, ..] = state.O_F_ext_hat_K;
-    // The state has what the robot does to the hand.
+    // The state has the robot's action on the hand.
     -Vector3::new(x, y, z)
 }
 

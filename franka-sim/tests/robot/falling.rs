@@ -71,7 +71,7 @@ fn above_the_table() -> Config {
 enum Descent {
     /// The client commands 0.1 m/s, 3 cm further than it is to the table.
     Commanded,
-    /// The client holds nothing, and the hand carries a kilogram that was not declared.
+    /// The client does not hold the arm, and the hand carries an undeclared kilogram.
     Free,
 }
 
@@ -164,7 +164,7 @@ fn a_fall_onto_the_table_trips_the_thresholds_that_were_set_and_not_those_30_per
                     free.state.errors
                 );
                 assert!(free.most > 2.0 * free.before, "{name}: no blow");
-                // A threshold of which the blow is 1.15 times as much.
+                // The blow is 1.15 times this threshold.
                 let bound = free.most / 1.15;
                 let (_, tripped) = fall(kind.at(bound));
                 assert_eq!(tripped.state.errors, kind.reflex().into(), "{name}");

@@ -8,7 +8,7 @@ use crate::pair::*;
 struct Channel {
     name: &'static str,
     generator: MoveGeneratorMode,
-    /// A command that is `shift` away from the start, in the state of which the first argument is.
+    /// A command at a distance of `shift` from the start; the first argument is the state there.
     command: fn(&RobotState, f64) -> RobotCommand,
     /// The commanded value, its velocity and its acceleration.
     told: fn(&RobotState) -> [f64; 3],

@@ -16,7 +16,7 @@ fn push(joint: usize, torque: f64) -> Touch {
     Touch::torque(torques)
 }
 
-/// Something wrong, so that there is something to recover from.
+/// Causes an error, so that a recovery has work to do.
 fn fail(pair: &mut Pair) {
     pair.start_joints();
     let mut q = READY;

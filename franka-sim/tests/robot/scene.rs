@@ -132,7 +132,7 @@ impl Cell {
         }
     }
 
-    /// The estimated vertical force, `[N]`; positive for a load that hangs.
+    /// The estimated vertical force, `[N]`; positive for a hanging load.
     fn weight(&self) -> f64 {
         self.pair.state.O_F_ext_hat_K[2]
     }

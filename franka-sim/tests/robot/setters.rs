@@ -76,7 +76,7 @@ fn no_finite_value_moves_an_arm_that_stands_nor_outlasts_its_client() {
         let mut pair = kind();
         for value in [1e6, 1e20, 1e300] {
             for request in large(value) {
-                // Thresholds beyond everything are never reached, and harmless.
+                // Very large thresholds are never reached, and harmless.
                 let expected = match request {
                     Request::SetCollisionBehavior(_) => SUCCESS,
                     _ => INVALID,

@@ -3,7 +3,7 @@
 use crate::pair::*;
 use crate::plants::robots;
 
-/// Every robot, with nothing on the flange: where it is least stable.
+/// Every robot, with nothing on the flange, which is the least stable case.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     let config = Config {
         // This is about the gains. A blow must not cause a reflex.

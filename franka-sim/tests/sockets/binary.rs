@@ -128,7 +128,7 @@ impl Binary {
         self.status("RssAnon:")
     }
 
-    /// The most memory that it has had, what it shares with files included, `[KiB]`.
+    /// The largest memory of the process so far, including memory shared with files, `[KiB]`.
     pub(crate) fn memory_max(&self) -> usize {
         self.status("VmHWM:")
     }

@@ -112,7 +112,7 @@ fn commands_that_answer_no_newest_state_do_not_count() {
                 client.send(&elsewhere(&client, wrong));
             }
             client.send(&client.holding());
-            // A second answer to the same state counts no more than those.
+            // A second answer to the same state does not count either.
             client.send(&elsewhere(&client, newest));
             client.next_state();
         }

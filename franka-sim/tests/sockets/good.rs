@@ -74,7 +74,7 @@ pub(crate) fn assert_moves(binary: &Binary) {
     });
 }
 
-/// Clears what a client has left behind that was kept from answering by a busy machine.
+/// Clears the errors of a client that a busy machine kept from answering.
 pub(crate) fn recover(binary: &Binary) {
     runtime().block_on(async {
         let robot = connect(binary).await;

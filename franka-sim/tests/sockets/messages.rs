@@ -1,4 +1,4 @@
-//! Sessions whose client leaves the protocol.
+//! Sessions with a client that violates the protocol.
 
 use franka_proto::RobotState;
 

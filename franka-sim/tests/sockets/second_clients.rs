@@ -31,7 +31,7 @@ fn a_second_client_is_refused_and_the_first_not_disturbed() {
                 second.expect_reset();
                 assert_undisturbed(port, &mut first, &udp, 2 * id + 1);
             }
-            // Nor by second clients that leave the protocol, say nothing, or vanish.
+            // Nor by second clients that violate the protocol, send nothing, or vanish.
             let mut garbage = port.dial();
             garbage.send(&[0xff; 100]);
             let silent: Vec<_> = (0..20).map(|_| port.dial()).collect();

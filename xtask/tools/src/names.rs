@@ -88,7 +88,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// The public names of the crate whose root is this file.
+    /// The public names of the crate with this root file.
     pub(crate) fn of(root: &Path) -> anyhow::Result<Self> {
         Self::with_opaque(root, &[])
     }

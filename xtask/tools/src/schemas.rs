@@ -20,7 +20,7 @@ pub(crate) fn write(workspace: &Workspace) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails if a generated file is not what [`write()`] would write.
+/// Fails if a generated file differs from the output of [`write()`].
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     for (path, content) in generate(workspace)? {
         ensure!(

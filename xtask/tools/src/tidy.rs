@@ -39,7 +39,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The Rust sources below `directory`, without what is built, fetched, generated or hidden.
+/// The Rust sources below `directory`, without built, fetched, generated or hidden files.
 fn collect(directory: &Path, sources: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     let entries =
         fs::read_dir(directory).with_context(|| format!("cannot read {}", directory.display()))?;

@@ -34,7 +34,7 @@ impl Program {
         self.emulator.is_none()
     }
 
-    /// Begins a call of it.
+    /// Begins a call of the program.
     pub(super) fn command(&self) -> Command {
         match &self.emulator {
             None => Command::new(&self.path),
