@@ -297,8 +297,8 @@ mod tests {
         }
     }
 
-    /// The greatest jerk of a joint in units of its limit, from the differences of positions, as the
-    /// robot computes it.
+    /// The greatest jerk of a joint in units of its limit, from the differences of positions, as
+    /// the robot computes it.
     fn worst_jerk(passed: &[JointVector], model: &Model) -> f64 {
         let jerk = |q: &[JointVector]| (q[3] - (q[2] - q[1]) * 3.0 - q[0]) / CYCLE.powi(3);
         let shares = |q: &[JointVector]| jerk(q).component_div(&model.joint_limits().jerk);

