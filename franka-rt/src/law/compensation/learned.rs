@@ -1,22 +1,23 @@
-//! What each joint takes in steady motion: friction against the way it goes, and bias either way.
+//! Torque of each joint in steady motion: friction, which opposes the motion, and bias, which does
+//! not depend on its direction.
 //!
-//! In one direction only their sum shows, so they are told apart by a Kalman filter of two states
-//! per joint: `takes = direction * friction + bias`. Friction changes slowly, bias quickly, since a
-//! load weighs differently in every pose. Covariances are in parts of the noise density of what is
-//! measured, `[1/s]`: so they are the rates at which is learned.
+//! In one direction only their sum is visible. A Kalman filter of two states per joint separates
+//! them: `takes = direction * friction + bias`. Friction changes slowly, bias quickly, because a
+//! load weighs differently in every pose. Covariances are in parts of the noise density of the
+//! measurement, `[1/s]`, so they are the rates of learning.
 
 use crate::shaping::CYCLE;
 
-/// Friction and bias of each joint, as far as they are known.
+/// Learned friction and bias of each joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Learned([Joint; 7]);
 
-/// Those of one joint.
+/// Friction and bias of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Joint {
-    /// `[N m]`, at least zero.
+    /// Friction, `[N m]`, at least zero.
     friction: f64,
-    /// `[N m]`.
+    /// Bias, `[N m]`.
     bias: f64,
     /// Covariance of the friction, of the bias, and of both, `[1/s]`.
     covariance: [f64; 3],
@@ -49,10 +50,10 @@ impl Learned {
         }))
     }
 
-    /// Friction and bias of a joint, `[N m]`.
+    /// Returns friction and bias of a joint, `[N m]`.
     ///
-    /// An arm without friction takes a little, too, by the lag of its torques; for it both are
-    /// zero.
+    /// Even an arm without friction takes a little torque, because its torques lag. For such an arm
+    /// both are zero.
     pub(crate) fn of(&self, joint: usize) -> (f64, f64) {
         let Joint { friction, bias, .. } = self.0[joint];
         let sticks = (friction / SMOOTH - 1.0).clamp(0.0, 1.0);
@@ -60,7 +61,7 @@ impl Learned {
         (friction * sticks, bias - unsure)
     }
 
-    /// How little is known of a joint: 1 until it has moved both ways, then down to 0.
+    /// Returns the uncertainty of a joint: 1 until it has moved both ways, then down to 0.
     pub(super) fn unknown(&self, joint: usize) -> f64 {
         let [of_friction, ..] = self.0[joint].covariance;
         (of_friction / KNOWN - 1.0).clamp(0.0, 1.0)
@@ -87,31 +88,31 @@ impl Learned {
     }
 }
 
-/// Friction up to which a joint counts as smooth, `[N m]`; from twice as much on it sticks.
+/// Friction up to which a joint counts as smooth, `[N m]`. From twice this value a joint sticks.
 const SMOOTH: f64 = 0.1;
 
 /// Bias of a smooth joint that is left to springs and integral, `[N m]`.
 pub(super) const UNBIASED: f64 = 0.1;
 
-/// Covariance of friction and bias of an arm that nothing is known of, `[1/s]`.
+/// Initial covariance of friction and bias, for an unknown arm, `[1/s]`.
 const UNKNOWN: [f64; 2] = [5.0, 3.0];
 
-/// Noise density of what a joint takes, `[N^2 m^2 s]`: a friction that nothing is known of is some
+/// Noise density of the torque that a joint takes, `[N^2 m^2 s]`. Then an unknown friction is some
 /// 1 N m.
 const NOISE: f64 = 0.2;
 
-/// Covariance of the friction of a joint that has moved both ways, `[1/s]`: in one direction it
-/// does not fall below twice as much.
+/// Covariance of the friction of a joint that has moved both ways, `[1/s]`. In one direction it
+/// does not fall below twice this value.
 const KNOWN: f64 = 0.9;
 
-/// What the covariances of friction and bias grow by, `[1/s^2]`.
+/// Growth of the covariances of friction and bias, `[1/s^2]`.
 const DRIFT: [f64; 2] = [0.2, 5.0];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Four seconds to and fro, in which a joint takes friction and this bias over time.
+    /// Moves to and fro for four seconds, while a joint takes friction and this bias over time.
     fn to_and_fro(friction: f64, bias: impl Fn(f64) -> f64) -> Learned {
         let mut this = Learned::default();
         for cycle in 0..4000 {
@@ -128,7 +129,7 @@ mod tests {
         assert!((bias + 0.3).abs() < 0.05, "{bias}");
     }
 
-    /// A load that weighs more on the way out than on the way back is no friction.
+    /// A load that weighs more on the way out than on the way back is not friction.
     #[test]
     fn a_bias_that_changes_with_the_pose_is_not_taken_for_friction() {
         let pose = |t: f64| 2.0 * (core::f64::consts::PI * t).sin().abs();

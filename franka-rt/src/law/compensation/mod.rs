@@ -1,9 +1,9 @@
-//! What the springs cannot do: torques against friction, and against a load or a torque sensor that
-//! is not as the robot believes.
+//! Torques that springs cannot exert: against friction, and against an undeclared load or a biased
+//! torque sensor.
 //!
-//! A joint that sticks leaves a spring stretched by its static torque over the stiffness:
-//! millimetres under a spring that is soft enough to push a person with. Three torques per joint
-//! take its place:
+//! A joint with friction leaves a spring stretched by its static torque over the stiffness. Under a
+//! spring that is soft enough to push a person with, that is millimetres. Three torques per joint
+//! compensate it:
 //!
 //! ```text
 //! tau = c tanh(dq_ref / v0)                       friction, along the reference in motion
@@ -12,24 +12,26 @@
 //!     + i                                         what is still missing at rest
 //! ```
 //!
-//! - `c` and `b` are [`learned`] in motion, from what the springs take there beside them. On an arm
-//!   without friction and bias both are zero.
-//! - `i` is an integral that runs where the arm rests outside its [`DEAD_ZONE`], or creeps to its
+//! - `c` and `b` are [`learned`] in motion, from the torque that the springs exert there in
+//!   addition to them. On an arm without friction and bias both are zero.
+//! - `i` is an integral that grows where the arm rests outside its [`DEAD_ZONE`], or creeps to its
 //!   target. It decays in motion. Inside the dead zone it stands still, so that nothing hunts.
-//!   Springs and integral together take no more than friction may, counted from where the arm came
-//!   to rest, and the way back to zero is free: what moves the arm away meets little more than the
-//!   springs, and leaves nothing behind. Until the arm has come to rest, what is not known of it or
-//!   may have been gripped counts, too, for a while.
-//! - The second line is a spring that ends at 0.6 of the friction. So it takes less energy into a
-//!   swing than friction takes out, whatever the delay of the torque loop, and it makes the slip
-//!   of a joint that breaks away short, also where the springs are soft.
+//!   Springs and integral together are limited to the torque that friction can explain, counted
+//!   from where the arm stopped, and the way back to zero is free. So a push on the arm meets
+//!   little more than the springs, and leaves nothing behind. Until the arm has stopped, its
+//!   unknown torques and a possible new grip count, too, for a while.
+//! - The second line is a spring that ends at 0.6 of the friction. So for every delay of the torque
+//!   loop it puts less energy into a swing than friction removes. It also shortens the slip of a
+//!   joint that breaks away, even where the springs are soft.
 //!
-//! The sum is bounded by [`Gains::compensation`](crate::law::Gains::compensation) for each joint,
-//! and counts as part of the springs under clamp and force cap. Where something holds the arm, i.e.
-//! springs demand more than that bound or a guard binds, nothing is learned, the torques against
-//! friction at rest are let go, and the integral goes back to what held the arm at rest. Nor is
-//! anything learned once a goal has reacted to what it met, until the next goal: what pushes the
-//! arm then is neither friction nor a load, and later motions would be short of their targets.
+//! [`Gains::compensation`](crate::law::Gains::compensation) bounds the sum for each joint, and the
+//! sum counts as part of the springs under clamp and force cap.
+//!
+//! Something holds the arm if springs demand more than that bound or a guard binds. Then nothing is
+//! learned, the torques against friction at rest fade, and the integral returns to the value that
+//! held the arm at rest. After a goal has reacted to a contact, nothing is learned until the next
+//! goal. A push on the arm then is neither friction nor a load, and later motions would end short
+//! of their targets.
 
 mod learned;
 
@@ -40,7 +42,7 @@ use learned::UNBIASED;
 
 pub(crate) use learned::Learned;
 
-/// The three torques of each joint.
+/// Compensation of each joint.
 #[derive(Debug)]
 pub(crate) struct Compensation {
     learned: Learned,
@@ -48,7 +50,7 @@ pub(crate) struct Compensation {
     rest: JointVector,
     /// Share of the sum that acts: it rises from zero at the start, and falls to zero at the end.
     acting: f64,
-    /// Share of what is let go where something holds the arm.
+    /// Share of the torques that fade where something holds the arm.
     free: f64,
     /// Cycles for which each joint has rested, and its reference.
     rested: [u32; 7],
@@ -57,23 +59,23 @@ pub(crate) struct Compensation {
     is_working: bool,
 }
 
-/// Whether the arm has come to rest at its target.
+/// Progress of the arm to rest at its target.
 #[derive(Debug)]
 enum Approach {
-    /// It has not come to rest there yet.
+    /// The arm has not stopped there yet.
     Arriving {
-        /// Cycles for which the reference has rested. Beyond [`ARRIVES`], where a push takes them,
-        /// too, what is not known of the arm counts no more.
+        /// Cycles for which the reference has rested. Beyond [`ARRIVES`], which a push also reaches
+        /// at once, unknown torques of the arm no longer count.
         cycles: u32,
-        /// The least distance at which each joint has rested meanwhile, `[rad]`.
+        /// Least distance at which each joint has rested meanwhile, `[rad]`.
         nearest: JointVector,
     },
-    /// It has come to rest, with this integral, `[N m]`.
+    /// The arm has stopped, with this integral, `[N m]`.
     Settled(JointVector),
 }
 
 impl Approach {
-    /// To one that moves.
+    /// Approach to a moving target.
     fn under_way() -> Self {
         Self::Arriving {
             cycles: 0,
@@ -87,26 +89,26 @@ impl Approach {
 pub(crate) struct Demand<'a> {
     /// Velocity of the reference, `[rad/s]`.
     pub(crate) dq_ref: &'a JointVector,
-    /// Its acceleration, `[rad/s^2]`.
+    /// Acceleration of the reference, `[rad/s^2]`.
     pub(crate) ddq_ref: &'a JointVector,
     /// Velocity of the arm, `[rad/s]`.
     pub(crate) dq: &'a JointVector,
-    /// From the arm to the reference, `[rad]`.
+    /// Vector from the arm to the reference, `[rad]`.
     pub(crate) error: &'a JointVector,
-    /// Of the springs alone, `[N m]`.
+    /// Torques of the springs alone, `[N m]`.
     pub(crate) springs: &'a JointVector,
-    /// Most of the compensation, `[N m]`.
+    /// Greatest compensation, `[N m]`.
     pub(crate) bounds: &'a [f64; 7],
     /// True if a guard of the interaction binds.
     pub(crate) held: bool,
-    /// True if the goal has reacted to something that the arm has met: nothing is learned.
+    /// True if the goal has reacted to something that the arm has met. Nothing is learned then.
     pub(crate) met: bool,
     /// True if the motion is about to end, without a torque.
     pub(crate) ending: bool,
 }
 
 impl Compensation {
-    /// Starts with what is known of the arm.
+    /// Starts with the known values of the arm.
     pub(crate) fn new(learned: Learned) -> Self {
         Self {
             learned,
@@ -123,12 +125,12 @@ impl Compensation {
         self.learned
     }
 
-    /// True if it still grows towards moving a joint that rests outside its dead zone.
+    /// True if the compensation still grows to move a joint that rests outside its dead zone.
     pub(crate) fn is_working(&self) -> bool {
         self.is_working
     }
 
-    /// Notes what held the arm when it came to rest where it was to.
+    /// Records the torques that held the arm when it stopped at its target.
     fn settle(&mut self, demand: &Demand<'_>) {
         let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
         if demand.dq_ref.amax() > MOVING {
@@ -139,7 +141,7 @@ impl Compensation {
                 return;
             }
             let distance = demand.error.abs();
-            // Once it has rested, an arm by itself only comes nearer.
+            // Once it has rested, an arm without a push only comes nearer.
             let is_pushed = (distance - *nearest).max() > PUSHED;
             for i in (0..7).filter(|&i| self.rested[i] > RESTED[1]) {
                 nearest[i] = nearest[i].min(distance[i]);
@@ -152,7 +154,7 @@ impl Compensation {
         }
     }
 
-    /// The torques of one cycle, `[N m]`.
+    /// Returns the torques of one cycle, `[N m]`.
     pub(crate) fn step(&mut self, demand: &Demand<'_>) -> JointVector {
         let Demand {
             springs, bounds, ..
@@ -176,7 +178,7 @@ impl Compensation {
         })
     }
 
-    /// The integral of one joint that has this friction and this bias.
+    /// Advances the integral of one joint with this friction and this bias.
     fn integrate(
         &mut self,
         i: usize,
@@ -186,9 +188,9 @@ impl Compensation {
     ) {
         let (v, e) = (demand.dq_ref[i], demand.error[i]);
         let bound = demand.bounds[i];
-        // Springs and integral together need no more than friction may take, known or not, what a
-        // bias may differ by from pose to pose, and for a while what else is not known of the arm
-        // or has been gripped meanwhile. What stands against more is something else.
+        // Springs and integral together need no more than the friction, known or not, and the
+        // change of a bias from pose to pose. For a while the unknown torques of the arm and a
+        // possible new grip are added. Any greater resistance has another cause.
         let unknown = self.learned.unknown(i);
         let resists = FRICTION_SPREAD * friction
             + UNKNOWN_SPREAD * unknown * STATIC_FRICTION[i]
@@ -201,14 +203,15 @@ impl Compensation {
         };
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);
-        // What the arm came to rest with may have stood against a push that has ended since: the
-        // way back to zero is free, unless more than friction holds the joint now and did not then.
+        // The torque with which the arm stopped may have resisted a push that has ended since. So
+        // the way back to zero is free, unless more than friction holds the joint now and did not
+        // then.
         let (low, high) = match room > 0.0 || settled.abs() > resists {
             true => (settled.min(0.0), settled.max(0.0)),
             false => (settled, settled),
         };
         let (least, most) = (within(low - room), within(high + room));
-        // One that settles may creep to its target, one that is pushed away does not.
+        // A joint that settles may creep to its target, but not one that is pushed away.
         let towards = demand.dq[i] * e.signum();
         let creeps = matches!(self.approach, Approach::Arriving { .. })
             && 0.0 < towards
@@ -234,16 +237,16 @@ impl Compensation {
             // Without friction and load the springs bring the joint to its target exactly.
             *rest -= *rest * CYCLE / FORGET;
         }
-        // In every cycle: bounds that shrink do not step it.
+        // In every cycle, so that shrinking bounds do not step it.
         *rest = rest.clamp(-bound, bound);
     }
 
-    /// Learns what a joint takes that is compensated by `compensated`, while its reference moves
+    /// Learns the torque of a joint that is compensated by `compensated`, while its reference moves
     /// steadily and nothing holds the arm.
     fn learn(&mut self, i: usize, compensated: f64, demand: &Demand<'_>) {
         let v = demand.dq_ref[i];
         let steady = v.abs() > MOVING && demand.ddq_ref[i].abs() < STEADY;
-        // One that runs into something stops long before its springs demand more than friction.
+        // A joint that hits something stops long before its springs demand more than friction.
         let keeps_up = demand.dq[i] * v.signum() > KEEPS_UP * v.abs();
         if demand.met || self.free < 1.0 || !steady || !keeps_up {
             return;
@@ -254,8 +257,8 @@ impl Compensation {
     }
 }
 
-/// Distances from the reference within which a joint is left alone at rest, `[rad]`: together some
-/// 0.3 mm and 1 mrad at the end effector.
+/// Distances from the reference within which a joint is left alone at rest, `[rad]`. Together they
+/// are some 0.3 mm and 1 mrad at the end effector.
 pub(crate) const DEAD_ZONE: [f64; 7] = [3e-4, 3e-4, 3e-4, 3e-4, 5e-4, 5e-4, 5e-4];
 
 /// Velocity of the reference above which a joint counts as moving, `[rad/s]`.
@@ -264,11 +267,11 @@ const MOVING: f64 = 0.02;
 /// Velocity of the reference below which it rests, `[rad/s]`.
 const REFERENCE_RESTS: f64 = 1e-3;
 
-/// Acceleration of the reference above which nothing is learned, `[rad/s^2]`: the springs then take
-/// what is missing in the inertia, too.
+/// Acceleration of the reference above which nothing is learned, `[rad/s^2]`. Above it, the springs
+/// also supply the error of the inertia.
 const STEADY: f64 = 2.5;
 
-/// Share of its reference's velocity below which nothing is learned of a joint.
+/// Share of its reference's velocity below which a joint learns nothing.
 const KEEPS_UP: f64 = 0.2;
 
 /// Velocity of the reference at which friction is compensated by 76 %, `[rad/s]`.
@@ -277,44 +280,43 @@ const SIGN_VELOCITY: f64 = 0.01;
 /// Error at rest at which friction is compensated by 76 % of [`AT_REST`], `[rad]`.
 const SIGN_ERROR: f64 = 1e-3;
 
-/// Share of the friction that is compensated towards the target at rest. What is learned includes
-/// viscous friction, up to a third on the simulated arms; with it the share is still below 1.
+/// Share of the friction that is compensated towards the target at rest. The learned value includes
+/// viscous friction, up to a third on the simulated arms. Even with it the share is below 1.
 const AT_REST: f64 = 0.6;
 
-/// How fast the integral runs per torque of the springs, `[1/s]`: slower than the springs settle.
+/// Rate of the integral per torque of the springs, `[1/s]`: slower than the springs settle.
 const INTEGRAL: f64 = 5.0;
 
-/// How fast it runs at least outside the dead zone of a joint that sticks, in parts of the friction
-/// per second.
+/// Least rate outside the dead zone of a joint with friction, in parts of the friction per second.
 const BREAK_AWAY: f64 = 2.5;
 
 /// Velocity below which a joint of the arm rests, `[rad/s]`.
 const REST_VELOCITY: f64 = 0.01;
 
-/// Velocity up to which a joint counts as resting that has not settled yet, in parts of its error,
-/// `[1/s]`: one that creeps to its target would take longer than its springs do.
+/// Velocity up to which a joint that has not settled yet counts as resting, in parts of its error,
+/// `[1/s]`. At that velocity it would take longer to its target than its springs do.
 const CREEP: f64 = 2.0;
 
-/// Cycles of rest after which the integral runs, of a joint that is not known to stick and of one
-/// that does: the springs alone have brought the former as near as they can.
+/// Cycles of rest after which the integral grows, for a joint without known friction and for a
+/// joint with it. The springs alone have brought the former as near as they can.
 const RESTED: [u32; 2] = [150, 20];
 
-/// How much faster it runs back from where it pulls away from the target.
+/// Factor of its speed back to zero where it pulls away from the target.
 const UNWIND: f64 = 4.0;
 
 /// Time in which the integral decays in motion and where something holds the arm, `[s]`.
 const FORGET: f64 = 0.15;
 
-/// Cycles of rest after which an arm moves no more by itself.
+/// Cycles of rest after which an arm no longer moves without a push.
 const SETTLED: u32 = 300;
 
-/// Cycles of a resting reference within which what is not known of an arm is compensated.
+/// Cycles of a resting reference within which unknown torques of an arm are compensated.
 const ARRIVES: u32 = 2500;
 
-/// How far a joint goes back from its target only where something pushes it, `[rad]`.
+/// Distance by which a joint moves back from its target only if something pushes it, `[rad]`.
 const PUSHED: f64 = 5e-3;
 
-/// Greatest ratio of the torque at which a joint breaks away to the friction that was learned.
+/// Greatest ratio of the breakaway torque of a joint to its learned friction.
 const FRICTION_SPREAD: f64 = 2.0;
 
 /// Torque at which the joints of a realistic arm break away at most, `[N m]`: the middle of the
@@ -328,21 +330,20 @@ const UNKNOWN_SPREAD: f64 = 1.5;
 /// Share of a bias by which it may differ in another pose.
 const BIAS_SPREAD: f64 = 0.5;
 
-/// What the integral of a joint without friction may change by when the arm has come to rest,
-/// `[N m]`.
+/// Greatest change of the integral of a joint without friction after the arm has stopped, `[N m]`.
 const FELT: f64 = 0.3;
 
-/// What a load may change by at a joint from one motion to the next, `[N m]`: that of 0.3 kg,
+/// Greatest change of a joint's load from one motion to the next, `[N m]`: the torque of 0.3 kg,
 /// half a metre away.
 const LOADED: f64 = 1.6;
 
-/// Share by which the sum rises at the start and falls at the end, per cycle.
+/// Change of the acting share at the start and the end, per cycle.
 const RAMP: f64 = 0.01;
 
-/// Share by which the torques at rest are let go per cycle where something holds the arm.
+/// Share by which the torques at rest fade per cycle where something holds the arm.
 const LET_GO: f64 = 0.02;
 
-/// Share by which they come back.
+/// Share by which they return.
 const TAKE_UP: f64 = 1.0 / 300.0;
 
 #[cfg(test)]
@@ -353,7 +354,7 @@ mod tests {
 
     const BOUNDS: [f64; 7] = Gains::COMPENSATION;
 
-    /// One cycle in which every joint has this error and its spring this torque.
+    /// Runs one cycle in which every joint has this error and its spring this torque.
     fn step(this: &mut Compensation, v: f64, e: f64, spring: f64, held: bool) -> f64 {
         let demand = Demand {
             dq_ref: &JointVector::repeat(v),
@@ -376,7 +377,7 @@ mod tests {
             .expect("a cycle")
     }
 
-    /// Learned over motions to and fro, as springs show it that take what is not compensated.
+    /// Learns over motions to and fro, in which the springs supply the uncompensated torque.
     fn learned(friction: f64, bias: f64) -> Compensation {
         let mut this = Compensation::new(Learned::default());
         let mut last = 0.0;
@@ -434,7 +435,7 @@ mod tests {
         assert!(run(&mut this, 100, 0.0, 5e-4, 0.05) > at_once + 0.05);
     }
 
-    /// Cycles are counted for longer than a counter of them holds: 49.7 days.
+    /// Counts cycles beyond the range of a counter: 49.7 days.
     #[test]
     fn an_arm_may_rest_for_months() {
         let mut this = learned(0.8, 0.0);
@@ -461,7 +462,7 @@ mod tests {
         }
         let held = step(&mut this, 0.0, 5e-3, 0.5, true);
         assert!((held - before.of(0).1).abs() < 1e-3, "{held}");
-        // Springs that demand more than friction and bias can be.
+        // Springs that demand more than friction and bias can explain.
         for _ in 0..1500 {
             step(&mut this, 0.0, 2e-2, 6.0, false);
         }
