@@ -14,11 +14,11 @@
 //! e + Kxd de) / m`, with one mass for all axes. Here each axis has the mass that the arm shows
 //! along it, and stiffness and damping enter from both sides of `Lambda`:
 //!
-//! - - gains keep their units and their meaning: a displacement along an axis causes exactly `Kx`
+//! - gains keep their units and their meaning: a displacement along an axis causes exactly `Kx`
 //!   along it. If an axis is coupled with others, forces across are added;
-//! - - the matrices are symmetric and not negative at every pose, so springs store energy and
-//!   dampers dissipate it;
-//! - - the wrench is bounded near singularities: for every `Lambda`, the entries of `Sk Lambda Sk`
+//! - the matrices are symmetric and not negative at every pose, so springs store energy and dampers
+//!   dissipate it;
+//! - the wrench is bounded near singularities: for every `Lambda`, the entries of `Sk Lambda Sk`
 //!   are at most `sqrt(Kx_i Kx_j)`.
 //!
 //! With equal gains and masses along the axes it is exactly Khatib's law. `Lambda` is computed for
