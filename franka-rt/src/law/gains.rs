@@ -125,7 +125,7 @@ impl Gains {
     pub(crate) const NUMBERS: usize = 45;
 
     /// Compliant at the end effector: 750 N/m and 60 N m/rad, with light joint springs that keep
-    /// the elbow. A softer wrist slips by several milliradians when it breaks away.
+    /// the elbow. A softer wrist slips by several milliradians when its friction breaks loose.
     pub const fn cartesian() -> Self {
         Self {
             law: Law::Hybrid,

@@ -10,9 +10,9 @@
 //!
 //! The idea is Khatib's (IEEE Journal on Robotics and Automation 3(1), 1987): wrenches follow from
 //! wanted accelerations through the inertia `Lambda`. So an error along one axis moves the arm
-//! along that axis, although its inertia differs between directions. There an acceleration is `(Kx
-//! e + Kxd de) / m`, with one mass for all axes. Here each axis has the mass that the arm shows
-//! along it, and stiffness and damping enter from both sides of `Lambda`:
+//! along that axis, although its inertia differs between directions. In his law an acceleration is
+//! `(Kx e + Kxd de) / m`, with one mass for all axes. Here each axis has the mass that the arm
+//! shows along it, and stiffness and damping enter from both sides of `Lambda`:
 //!
 //! - gains keep their units and their meaning: a displacement along an axis causes exactly `Kx`
 //!   along it. If an axis is coupled with others, forces across are added;

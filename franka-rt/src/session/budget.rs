@@ -9,9 +9,9 @@ use crate::session::GoalError;
 
 /// Limits of the reference: the speed of the approach to a goal.
 ///
-/// The arm may use more acceleration and jerk than the budget has, up to the robot's limits, in two
-/// cases: a stop, and a goal that arrives while the arm moves faster than its budget allows. On the
-/// way to a pose each joint may use three times its velocity, and the robot's acceleration.
+/// A stop may use more acceleration and jerk than the budget has, up to the robot's limits. So may
+/// a goal that arrives while the arm moves faster than its budget allows. On the way to a pose each
+/// joint may use three times its velocity, and the robot's acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Limits of each joint, `[rad/s, rad/s^2, rad/s^3]`.
@@ -160,7 +160,7 @@ impl Budget {
 }
 
 /// Time for braking a motion that leaves its budget or that must stop, `[s]`. A stop from the
-/// default joint velocities within the default joint accelerations takes as long.
+/// default joint velocities with the default joint accelerations takes the same time.
 const STOP_TIME: f64 = 0.25;
 
 /// Time for building up or removing the acceleration of that stop, `[s]`.

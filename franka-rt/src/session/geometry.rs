@@ -9,8 +9,8 @@ use nalgebra::Isometry3;
 
 use super::tool::{end_effector_of, rigid};
 
-/// Residual up to which the robot's poses count as equal to the model's, `[m]`. States of protocol
-/// 10 are `f32`, which causes up to 0.5 µm; other lengths cause 100 µm and more.
+/// Residual up to which the robot's poses count as equal to the model's, `[m]`. The `f32` states of
+/// protocol 10 cause up to 0.5 µm. Other lengths cause 100 µm and more.
 pub const RESIDUAL_MAX: f64 = 2e-6;
 
 /// Distance from the end effector at which its rotation is measured, `[m]`.

@@ -44,12 +44,11 @@ impl<M: CurveState> Player<M> {
     /// Takes up a chunk through `curve` in the answer to the state `now`. In the previous answer
     /// the reference was at `reference`, and the previous chunk wanted it at `wanted`.
     ///
-    /// The motion begins at the one of the two places that is nearer to the chunk. The reference
-    /// makes up for its lag behind the previous chunk within its limits, and continues to do so.
-    /// Reaching a new chunk in time from the lagging reference would require more than the limits
-    /// allow, and each chunk would amplify the swing. A chunk that begins at the arm's place
-    /// continues from there. The velocity is the reference's, because a chunk may want any
-    /// velocity.
+    /// The motion begins at the place that is nearer to the chunk. The reference makes up for its
+    /// lag behind the previous chunk within its limits, and continues to do so. Reaching a new
+    /// chunk in time from the lagging reference would require more than the limits allow, and each
+    /// chunk would amplify the swing. A chunk that begins at the arm's place continues from there.
+    /// The velocity is the reference's, because a chunk may want any velocity.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),

@@ -86,7 +86,7 @@ pub struct ChunkReader {
     returns: Sender<Returned>,
     /// The newest chunk, until the session takes it up.
     newest: Option<Sent>,
-    /// The chunk with the earliest begin among those that waited since the last take-up.
+    /// Among the chunks that waited since the last take-up, the chunk that was due first.
     due: Option<Waiting>,
 }
 
@@ -287,7 +287,7 @@ mod tests {
     #[test]
     fn a_chunk_that_is_there_before_its_goal_is_kept_for_it() {
         let (mut writer, mut reader) = chunk_ring();
-        // The name of a goal to come may be older than that of the goal in force.
+        // The name of a future goal may be older than the name of the goal in force.
         for in_force in [GoalId(4), GoalId(6)] {
             writer.send(GOAL, chunk()).unwrap();
             assert_eq!(reader.poll(in_force, 1, true), None);

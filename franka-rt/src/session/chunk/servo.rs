@@ -18,7 +18,7 @@
 //! **Limits.** A state is admissible if acceleration and velocity keep their limits, and still do
 //! while the acceleration is removed as fast as the jerk allows, in whole cycles. Removing the
 //! acceleration leads from an admissible state to another, so that an admissible jerk always
-//! exists. The wanted jerk is moved towards that jerk only as far as necessary.
+//! exists. The wanted jerk moves towards that jerk only by the necessary part.
 //!
 //! All limits bind norms, which keeps this true for any number of axes. While the acceleration is
 //! removed along its line, the velocity moves on a straight line between two admissible velocities.
@@ -47,7 +47,7 @@ const BRAKING_SHARE: f64 = 0.35;
 const HALVINGS: usize = 12;
 
 /// Advances by one cycle from `now` towards `target`, the target's state in that cycle. `bound`
-/// maps a velocity to the nearest one that the place allows.
+/// maps a velocity to the nearest velocity that the place allows.
 pub(super) fn follow<const D: usize>(
     now: &PointState<D>,
     target: &PointState<D>,
@@ -100,7 +100,7 @@ fn approach<const D: usize>(
 }
 
 /// Returns the state after one cycle of `jerk`. If that state is not admissible, the jerk is moved
-/// towards the one that removes the acceleration, until the state is.
+/// towards the jerk that removes the acceleration, until the state is admissible.
 fn admissible<const D: usize>(
     now: &PointState<D>,
     jerk: SVector<f64, D>,

@@ -235,8 +235,7 @@ proptest! {
     }
 }
 
-/// Joint positions that a policy wants at the robot's time `now`: all joints on sines of 0.1 rad
-/// and 2 s.
+/// Joint positions of a policy at the robot's time `now`: all joints on sines of 0.1 rad and 2 s.
 fn sine(now: u64) -> [f64; 7] {
     let phase = core::f64::consts::PI * (now as f64 * 1e-3);
     (READY + JointVector::repeat(0.1 * phase.sin())).into()

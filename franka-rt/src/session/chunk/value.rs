@@ -48,8 +48,9 @@ pub(super) enum Origin {
 ///   present time.
 /// - **Receding horizon.** A newer chunk replaces the current chunk as soon as the newer chunk's
 ///   first point is due, or at once if none is running. If it has superseded a chunk that waited,
-///   it takes over when that chunk was due, so at most that chunk's waiting time early. It is
-///   blended in over [`Chunk::BLEND`]; see [`blend`](Self::blend) and [`replace`](Self::replace).
+///   it takes over when that chunk was due. It is then early by at most that chunk's waiting time:
+///   after a wait of 40 ms, by up to 40 ms. It is blended in over [`Chunk::BLEND`]; see
+///   [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
 /// use core::time::Duration;
@@ -259,9 +260,9 @@ impl Chunk {
         }
     }
 
-    /// Checks the chunk for a robot in `state`. For joints every point is checked. For poses only
-    /// the last one is, where the arm will rest; on the way there, inverse kinematics always keeps
-    /// the arm inside its bounds. The robot must allow the velocities that the caller gave.
+    /// Checks the chunk for a robot in `state`: every point of joints, and the last point of poses,
+    /// where the arm will rest. On the way to that point inverse kinematics always keeps the arm
+    /// inside its bounds. The robot must allow the velocities that the caller gave.
     ///
     /// # Errors
     /// [`GoalError`] of the first point that cannot be reached, or that the arm would pass too

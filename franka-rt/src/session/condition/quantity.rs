@@ -183,7 +183,7 @@ impl Sample {
         Self(core::array::from_fn(|i| self.0[i] - before.0[i]))
     }
 
-    /// Replaces numbers that are not finite with those of `newer`.
+    /// Replaces numbers that are not finite with the numbers of `newer`.
     pub(super) fn complete_from(&mut self, newer: &Self) {
         for (number, newer) in self.0.iter_mut().zip(&newer.0) {
             if !number.is_finite() {

@@ -19,8 +19,8 @@ use franka_model::collision::{
 use franka_model::{JointVector, Model};
 
 /// Distance kept between two links that have two other links between them, `[m]`. The robot's
-/// self-collision avoidance asks for about 0.05. The rest is for the arm, which is a spring and
-/// swings past its reference.
+/// self-collision avoidance is assumed to require 0.05. The rest is for the arm, which is a spring
+/// and swings past its reference.
 pub const SELF_STOP: f64 = 0.06;
 
 /// Distance kept between the capsules around the links and a keep-out region, `[m]`.

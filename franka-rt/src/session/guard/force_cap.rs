@@ -275,8 +275,8 @@ mod tests {
         assert_eq!(bound, 1, "binds from somewhere on");
     }
 
-    /// An arm let go a good way off its stiff reference, under a small cap: it comes to rest there
-    /// and gains no energy.
+    /// An arm released a good way off its stiff reference, under a small cap: it stops there and
+    /// gains no energy.
     #[test]
     fn an_arm_at_full_force_does_not_swing_up() {
         let stiff =

@@ -99,7 +99,7 @@ impl RunningSession {
 
 /// Returns the budget of a reference that halts for another arm. The reference should get as little
 /// ahead of the other arm as the joints allow without a jolt. From 0.3 m/s it stops after about 25
-/// mm, and with the default budget after about 90 mm.
+/// mm; the default budget would need about 90 mm.
 pub(super) fn quick_to_halt(budget: Budget) -> Budget {
     let raised = |limits: AxisLimits, acceleration: f64| AxisLimits {
         acceleration: limits.acceleration.max(acceleration),

@@ -199,8 +199,8 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Postures that reach a pose with room to the ends of the joints' ranges, the nearest to `q`
-/// first: of each branch the nearest one and the one with the most room.
+/// Returns postures that reach a pose with room to the ends of the joints' ranges, the nearest to
+/// `q` first. Each branch contributes its nearest posture and the posture with the most room.
 fn postures(
     model: &Model,
     there: &Isometry3<f64>,

@@ -205,7 +205,7 @@ fn a_policy_that_predicts_from_where_the_arm_is_gets_on() {
 }
 
 /// A chunk may jump, and the next chunk may arrive at any time of the jump. The arm stays between
-/// the two, and stays in its place if the next chunk wants that.
+/// the two, and stays in its place if the next chunk leads there.
 #[test]
 fn a_jump_that_another_chunk_cuts_off_is_not_carried_on() {
     let cases = [480, 510, 525, 540, 560]
