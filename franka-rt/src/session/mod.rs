@@ -14,8 +14,9 @@
 //! When the kind of goal changes, the new course starts from the position, velocity and
 //! acceleration of the reference, so nothing steps.
 //!
-//! A goal that finishes passes through the stages of `GoalStage`: under way, landing, releasing,
-//! finished. A newer goal takes the session back under way from any stage except the last.
+//! A goal that should finish passes through the stages of `GoalStage`: under way, landing,
+//! releasing, finished. A newer goal takes the session back under way from any stage except the
+//! last.
 
 mod aim;
 mod approach;
@@ -93,7 +94,8 @@ use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
-/// bounds. A goal that finishes and has made no progress by then is braked, and lands where it is.
+/// bounds. A goal that should finish but has made no progress by then is braked, and lands where it
+/// is.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// One session. It is created outside the thread, moved into the thread, and handed back when it

@@ -30,8 +30,8 @@ impl Pulse {
 }
 
 /// The token of a session. Call [`Self::keep_alive`] at least once every `silence`. Otherwise, and
-/// once the token is dropped, the arm brakes and holds, and every goal ends as held, until the
-/// token is kept alive again. A dropped token never returns.
+/// once the token is dropped, the arm brakes and holds, and every goal ends as held. This lasts
+/// until the token is kept alive again. A dropped token never returns.
 ///
 /// The control thread watches the token by the robot's clock, independent of the rest of the
 /// program.

@@ -57,7 +57,7 @@ impl RunningSession {
             GoalStage::Landing(landing) => {
                 let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
                 // The robot's own report decides. Under its Cartesian controllers the correction
-                // belongs to the setpoint, at the place of the last take-up.
+                // belongs to the setpoint, from the place where it was last taken up.
                 let measured = self.arm.as_reported();
                 let (mut settlement, held) = match landing.judge(&measured, at_rest, working) {
                     Verdict::Settling => return,
