@@ -14,8 +14,9 @@ use crate::together::StartFault;
 )]
 #[non_exhaustive]
 pub enum SessionEvent {
-    /// A goal with [`OnArrival::ReportAndFinish`](super::OnArrival) has ended. The session releases
-    /// the arm unless a newer goal arrives.
+    /// A goal has ended, and its report is due. With
+    /// [`OnArrival::ReportAndFinish`](super::OnArrival) the session then releases the arm, unless a
+    /// newer goal arrives.
     Settled {
         /// The goal.
         goal: GoalId,
