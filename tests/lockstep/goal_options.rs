@@ -331,7 +331,7 @@ fn settling_takes_as_long_as_it_is_asked_for() {
     });
 }
 
-/// The posture turned by the elbow: the same hand, another joint 1, 3, 5 and 7.
+/// The posture turned by the elbow: the same hand, other odd joints.
 fn elbow_out(lockstep: &Lockstep) -> [f64; 7] {
     let mut q = *lockstep.robot.q();
     q[0] += 0.35;

@@ -49,9 +49,9 @@ fn step(
     figures
 }
 
-/// The shortest time for 5 cm from rest to rest with 0.5 m/s^2 and 20 m/s^3, `[s]`. The hand does
-/// not reach 0.3 m/s. The time-optimal profile accelerates and brakes, each with a jerk ramp at
-/// both ends.
+/// The shortest time for 5 cm from rest to rest, `[s]`. The limits are 0.5 m/s^2 and 20 m/s^3. The
+/// hand does not reach 0.3 m/s. The time-optimal profile accelerates and brakes, each with a jerk
+/// ramp at both ends.
 fn optimum() -> f64 {
     let (a, j, way) = (0.5_f64, 20.0_f64, 0.05_f64);
     let ramp = a / j;

@@ -37,7 +37,7 @@ pub struct Aftermath {
 }
 
 impl HeldPush {
-    /// Draws a push of 5 to 30 N for 0.2 to 5 s, in any direction.
+    /// Draws a push in any direction. Force: 5 to 30 N. Time: 0.2 to 5 s.
     pub fn random(random: &mut SmallRng) -> Self {
         let way = loop {
             let way = Vector3::from_fn(|_, _| random.random_range(-1.0..1.0_f64));

@@ -258,8 +258,8 @@ fn a_hand_guides_the_arm_along_the_axes_that_are_free() {
     });
 }
 
-/// A policy that predicts a sine of joint 1 ten times a second, from observations 150 ms old: 16
-/// points, 50 ms apart.
+/// A policy that predicts a sine of joint 1 ten times a second, from observations 150 ms old. It
+/// predicts 16 points, 50 ms apart.
 #[test]
 fn chunks_of_a_slow_policy_become_one_smooth_motion() {
     for_each_robot(|ready| {
