@@ -1,4 +1,4 @@
-"""What a motion goes on until: ``until=force_z(8.0) & elapsed(0.2)``.
+"""Conditions that end a motion: ``until=force_z(8.0) & elapsed(0.2)``.
 
 Quantities are compared: ``(POSITION_Z < 0.15) & (SPEED < 0.01)``. The control thread looks in every cycle, and the arm brakes, or
 turns to the target of ``.then(target)``, within the next millisecond.

@@ -1,4 +1,4 @@
-"""What can go wrong, by who can act on it.
+"""Errors, grouped by who can act on them.
 
 Every exception of the package is a :class:`FrankaError`. Mistakes in arguments are ``ValueError`` or ``TypeError``, as everywhere
 in Python.
@@ -48,14 +48,15 @@ class FrankaError(Exception):
     """Anything that can go wrong with a robot or its end effectors."""
 
     kind: str
-    """What went wrong, as one word or more in snake case: ``superseded``, ``link_lost``, ``refused``. :mod:`franka_async.kinds` lists
-    the kinds of each class. They are part of the interface."""
+    """The cause in snake case: ``superseded``, ``link_lost``, ``refused``. :mod:`franka_async.kinds` lists the kinds of each
+    class. They are part of the interface."""
 
     party: kinds.Party
     """Who can act on it."""
 
     entry: str | None = None
-    """Row of the book's chapter of errors, which says what to do: ``errors.md#`` and this name. A traceback has it as a note."""
+    """Row of the book's chapter of errors, which states the remedy: ``errors.md#`` and this name. A traceback has it as a
+    note."""
 
 
 class ConnectError(FrankaError):
@@ -100,7 +101,7 @@ class ActionConnectionLostError(ActionError, ConnectionLostError):
 
 
 class RecordError(FrankaError):
-    """A recording is not written, or not to its end. Motions go on."""
+    """A recording is not written, or not to its end. Motions continue."""
 
     kind: kinds.RecordErrorKind
 
@@ -130,15 +131,15 @@ class TareError(FrankaError):
 
 
 class MotionError(FrankaError):
-    """A motion ended short of its goal. What followed a reaction has the class of that error and the kind ``after_reaction``."""
+    """A motion ended short of its goal. An error that followed a reaction has its usual class and the kind ``after_reaction``."""
 
     kind: kinds.MotionErrorKind | kinds.ActiveErrorKind | kinds.ControlErrorKind | kinds.ReplayErrorKind
 
     is_ready_for_more: bool
-    """Whether the robot takes a new motion without help from outside."""
+    """True if the robot takes a new motion without help from outside."""
 
     code: int | None = None
-    """What a control law returned that gave up, below 0; `None` unless the kind is ``given_up``."""
+    """Value below 0 that the control law returned when it gave up; `None` unless the kind is ``given_up``."""
 
 
 class GoalError(MotionError):
@@ -182,17 +183,17 @@ class ReplayError(MotionError):
 
 
 class TeamError(MotionError):
-    """A joint motion ended short of its goal. Its text, ``kind`` and ``party`` are those of the arm at fault."""
+    """A joint motion ended short of its goal. Its text, ``kind`` and ``party`` are copied from the arm at fault."""
 
     member: int
     """Number of the arm at fault, in the order of the team."""
 
     outcomes: list[MotionReport | MotionError]
-    """How the motion of each arm ended: a ``MotionReport`` if it arrived."""
+    """The end of the motion of each arm: a ``MotionReport`` if it arrived."""
 
 
 class ActiveError(MotionError):
-    """Active control could not go on."""
+    """Active control could not continue."""
 
     kind: kinds.ActiveErrorKind
 
@@ -209,10 +210,10 @@ class ControlError(MotionError):
     """The robot's last word on the motion: ``reflex_aborted``, ``preempted``, ..."""
 
     log: ControlLog
-    """The last cycles of the motion. One that was pickled can be read, but not given to ``explain``."""
+    """The last cycles of the motion. A log that was pickled can be read, but not given to ``explain``."""
 
     diagnosis: str | None
-    """Which limit was exceeded, by how much, since when, and what to change; ``None`` if no limit was."""
+    """The limit that was exceeded, by how much, since when, and what to change; ``None`` if no limit was."""
 
     findings: dict[str, Any] | None
     """The diagnosis as data, for programs: ``finding``, ``causes``, ``advice`` and more, as lists, ``dict`` and numbers."""

@@ -1,4 +1,4 @@
-"""Why a robot stopped: the parts of an ``Explanation``, which ``franka_async.explain`` makes."""
+"""The parts of an ``Explanation``, which ``franka_async.explain`` makes: the reasons why a robot stopped."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ class Moment:
     """``goal``, ``mode``, ``contact``, ``collision``, ``error``, ``guard``, ``loss`` or ``note``."""
 
     text: str
-    """What, in words."""
+    """Description in words."""
 
 
 @dataclass(frozen=True)
 class Approach:
-    """How near something came to its limit."""
+    """Smallest distance of a quantity to its limit."""
 
     joint: int | None
     """The joint, 1 to 7; ``None`` of the end effector."""
 
     value: float
-    """What was measured: rad, rad/s or N m of joints, m/s or rad/s of the end effector."""
+    """Measured value: rad, rad/s or N m of joints, m/s or rad/s of the end effector."""
 
     limit: float
     """The limit there, on the side of the value."""
@@ -43,7 +43,7 @@ class Approach:
     """From the value to the limit; negative beyond it."""
 
     time_ms: int
-    """When, by the robot's clock."""
+    """Time by the robot's clock, ms."""
 
 
 @dataclass(frozen=True)
@@ -57,24 +57,24 @@ class Peak:
     """Its size: N m of ``external_torque``, N of ``force``, rad of ``following_error``."""
 
     time_ms: int
-    """When, by the robot's clock."""
+    """Time by the robot's clock, ms."""
 
 
 @dataclass(frozen=True, eq=False)
 class Contact(Value):
-    """Where something touched the arm, as the external torques of the joints tell. In the base frame."""
+    """Place of a contact with the arm in the base frame, derived from the external torques of the joints."""
 
     link: int
-    """The link that was touched, 0 to 7; 8 is what is mounted on the flange."""
+    """The link that was touched, 0 to 7. Link 8 stands for everything mounted on the flange."""
 
     point: NDArray[np.float64]
-    """Where, ``(3,)`` m."""
+    """Point of contact, ``(3,)`` m."""
 
     force: NDArray[np.float64]
-    """What it exerted on the arm, ``(3,)`` N."""
+    """Force that the contact exerted on the arm, ``(3,)`` N."""
 
     spread: float
-    """How far the places reach that explain the torques as well, m."""
+    """Extent of the places that explain the torques equally well, m."""
 
     probability: float
     """That it is this link, 0 to 1."""

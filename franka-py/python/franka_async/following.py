@@ -20,7 +20,7 @@ async def follow(
 ) -> MotionReport:
     """Awaits ``begin(latest, **options)`` while ``targets`` are set to the latest one, in the event loop.
 
-    What ``targets`` raise brakes the arm and is raised. Cancelling ends both.
+    An exception of ``targets`` brakes the arm and is raised. Cancelling ends both.
     """
     latest = Latest()
 

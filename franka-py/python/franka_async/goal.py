@@ -1,4 +1,4 @@
-"""What goals are made of: targets, limits, gains, tolerances, guards. All of it is checked when a motion begins."""
+"""Parts of goals: targets, limits, gains, tolerances, guards. All of them are checked when a motion begins."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ Controller = Literal["joint_impedance", "cartesian_impedance"]
 """The robot's own controllers."""
 
 Setpoints = Literal["joint_positions", "joint_velocities", "cartesian_poses", "cartesian_velocities"]
-"""What a controller of the robot gets."""
+"""The kind of setpoints that a controller of the robot gets."""
 
 Backend: TypeAlias = 'Literal["torques"] | tuple[Controller, Setpoints]'
-"""What turns setpoints into torques: the law of this package, or a controller of the robot's own."""
+"""The controller that turns setpoints into torques: the law of this package, or one of the robot's own controllers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +71,28 @@ class Offset(Value):
     """Whose axes it is along and about."""
 
     from_arm: bool = False
-    """Whether it counts from the measured arm. It does so as well if there is no target."""
+    """True if it counts from the measured arm. It also does if there is no target."""
 
 
 Target: TypeAlias = "ArrayLike | Joints | tuple[ArrayLike, ArrayLike]"
-"""A pose of the end effector in the base frame, ``(4, 4)`` or 7 numbers, x y z and a quaternion x y z w; a pair of position and
-quaternion; ``Joints``; or with its velocity, as a pair ``(pose, twist)`` of 6 or ``(q, dq)`` of 7 + 7 numbers."""
+"""A target is one of:
+
+* a pose of the end effector in the base frame, ``(4, 4)``;
+* the same pose as 7 numbers, x y z and a quaternion x y z w;
+* a pair of position and quaternion;
+* ``Joints``;
+* a pose with its velocity, ``(pose, twist)``, where the twist has 6 numbers;
+* joint positions with their velocity, ``(q, dq)``, each with 7 numbers.
+"""
 
 Destination: TypeAlias = "ArrayLike | Joints | Offset | tuple[ArrayLike, ArrayLike]"
-"""A ``Target``; 3 numbers, a position that is reached with the orientation kept; ``(3, 3)`` or 4 numbers, an orientation (rotation
-matrix or quaternion x y z w) that is taken with the position kept; or an ``Offset``."""
+"""A destination is one of:
+
+* a ``Target``;
+* 3 numbers: a position that is reached with the orientation kept;
+* ``(3, 3)`` or 4 numbers: an orientation (rotation matrix or quaternion x y z w) that is taken with the position kept;
+* an ``Offset``.
+"""
 
 
 @dataclass(frozen=True)
@@ -104,7 +116,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Budget:
-    """How fast a goal is approached. What is ``None`` is the default of the robot: see ``robot.budget()``."""
+    """Limits of the approach to a goal. ``None`` stands for the default of the robot: see ``robot.budget()``."""
 
     translation: Limits = Limits()
     """For the norm of the end effector's translation."""
@@ -146,7 +158,7 @@ class Gains:
     """
 
     law: Literal["hybrid", "operational_space"] = _COMPLIANT["law"]
-    """How springs become torques: summed in joint space, or coupled by the inertia at the end effector."""
+    """The way from springs to torques: summed in joint space, or coupled by the inertia at the end effector."""
 
     cartesian_stiffness: Sequence[float] = _COMPLIANT["cartesian_stiffness"]
     """At the end effector, x y z N/m and about x y z N m/rad, 6 numbers."""
@@ -155,19 +167,19 @@ class Gains:
     """At the end effector, N s/m and N m s/rad, 6 numbers."""
 
     joint_stiffness: Sequence[float] = _COMPLIANT["joint_stiffness"]
-    """Of each joint, N m/rad, 7 numbers."""
+    """Stiffness of each joint, N m/rad, 7 numbers."""
 
     joint_damping: Sequence[float] = _COMPLIANT["joint_damping"]
-    """Of each joint, N m s/rad, 7 numbers."""
+    """Damping of each joint, N m s/rad, 7 numbers."""
 
     feedforward: float = _COMPLIANT["feedforward"]
-    """Weight of the reference velocity in the dampers, 0 to 1: at 1 they oppose only the velocity error."""
+    """Weight of the reference velocity in the dampers, 0 to 1. At full weight they oppose only the velocity error."""
 
     feedforward_cutoff: float = _COMPLIANT["feedforward_cutoff"]
     """Cutoff frequency of the low-pass on that velocity, Hz; 1000 is off."""
 
     project_joint_gains: bool = _COMPLIANT["project_joint_gains"]
-    """Whether the springs of the joints act only where they do not push at the end effector."""
+    """True if the springs of the joints act only where they do not push at the end effector."""
 
     compensation: Sequence[float] = _COMPLIANT["compensation"]
     """The most that friction and bias of each joint are compensated by, N m, 7 numbers; 0 for none."""
@@ -225,7 +237,7 @@ class Gains:
 
 @dataclass(frozen=True)
 class Margin:
-    """How far gains are from the first oscillation of an arm that lags like the slowest realistic ones."""
+    """Distance of gains to the first oscillation of an arm that lags like the slowest realistic ones."""
 
     damping: float
     """The factor by which all dampers may grow."""
@@ -235,41 +247,41 @@ class Margin:
 
     @property
     def is_wanted(self) -> bool:
-        """Whether both are at least 2, as gains should have."""
+        """True if both are at least 2, as gains should have."""
         return min(self.damping, self.stiffness) >= _native._MARGIN
 
 
 @dataclass(frozen=True)
 class Leash:
-    """How far the reference may be ahead of the arm."""
+    """Largest distance of the reference ahead of the arm."""
 
     translation: float = _native._LEASH[0]
-    """Of the end effector, m."""
+    """Distance of the end effector, m."""
 
     rotation: float = _native._LEASH[1]
-    """Of the end effector, rad."""
+    """Angle of the end effector, rad."""
 
     joints: float = _native._LEASH[2]
-    """Of each joint, rad."""
+    """Angle of each joint, rad."""
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far the arm may be pushed off its way before the motion is given up. Infinite numbers switch it off."""
+    """Largest deviation of the arm from its path before the motion is given up. Infinite numbers switch it off."""
 
     translation: float = _native._DEVIATION[0]
-    """Of the end effector, m."""
+    """Distance of the end effector, m."""
 
     rotation: float = _native._DEVIATION[1]
-    """Of the end effector, rad."""
+    """Angle of the end effector, rad."""
 
     joints: float = _native._DEVIATION[2]
-    """Of each joint, rad."""
+    """Angle of each joint, rad."""
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How near to the target counts as arrived, measured at the end effector."""
+    """Distance to the target that counts as arrived, measured at the end effector."""
 
     translation: float = _native._TOLERANCE[0]
     """m."""
@@ -280,10 +292,10 @@ class Tolerance:
 
 @dataclass(frozen=True)
 class Settling:
-    """How an arm has to settle at its target."""
+    """Conditions under which an arm counts as settled at its target."""
 
     hold: float = _native._SETTLING[0]
-    """How long it has to stay within the tolerance and at rest, s, in whole milliseconds."""
+    """Time for which it has to stay within the tolerance and at rest, s, in whole milliseconds."""
 
     timeout: float = _native._SETTLING[1]
     """The longest that it gets for that, s, up to 60."""
@@ -291,7 +303,7 @@ class Settling:
 
 @dataclass(frozen=True)
 class Lead:
-    """How far ahead of the arm a target that is followed may be; one that is further away is drawn nearer."""
+    """Largest distance of a followed target ahead of the arm; a target that is further away is drawn nearer."""
 
     translation: float
     """m."""
@@ -300,7 +312,7 @@ class Lead:
     """rad."""
 
     joints: float
-    """Of each joint, rad."""
+    """Angle of each joint, rad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,10 +320,11 @@ class Waypoint(Value):
     """A place on a path."""
 
     target: Target
-    """Where: a pose or ``Joints``."""
+    """The place: a pose or ``Joints``."""
 
     blend: float = 0.0
-    """How far from it the path may round its corner: m for poses, rad (norm) for joints. At 0 the arm stops there."""
+    """Distance from it at which the path may begin to round its corner: m for poses, rad (norm) for joints. At 0 the arm
+    stops there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -333,7 +346,7 @@ class Chunk(Value):
     """Twists ``(N, 6)`` or joint velocities ``(N, 7)``; estimated from the neighbours if ``None``."""
 
     joints: bool = False
-    """Whether the points are joint positions."""
+    """True if the points are joint positions."""
 
     observed_at: Any = None
     """The ``RobotState`` that the policy saw, or its ``time_ms``: the origin. ``None`` counts from when the chunk is taken up."""

@@ -1,4 +1,4 @@
-"""Gymnasium environments over simulated robots in virtual time: no sockets, no clock, no process beside.
+"""Gymnasium environments over simulated robots in virtual time: no sockets, no clock, no other process.
 
 ::
 
@@ -11,8 +11,8 @@
     env = gym.FrankaEnv("fr3", action="cartesian_delta", reward=reward, max_steps=200)
     many = gym.FrankaVectorEnv(64, "fr3", action="cartesian_delta", reward=reward, max_steps=200)
 
-Observations are ``RobotState.flat()``, ``(69,)``, laid out as ``FLAT_LAYOUT`` says. Actions are within -1 and 1, in units of
-``action_scale``; their meaning is that of ``VirtualRobots``. Where a robot stops itself the episode terminates, with ``reason``
+Observations are ``RobotState.flat()``, ``(69,)``, in the order of ``FLAT_LAYOUT``. Actions are within -1 and 1, in units of
+``action_scale``; they mean the same as in ``VirtualRobots``. If a robot stops itself the episode terminates, with ``reason``
 (``reflex``) and ``errors`` (the vendor's names) in ``info``. The extra ``gym`` installs what this module needs.
 """
 
@@ -56,7 +56,7 @@ Reward: TypeAlias = Callable[[Array, Array], ArrayLike]
 """The reward of an observation, ``(69,)``, and the action that led there; of many robots, ``(n, 69)``, one for each."""
 
 Terminate: TypeAlias = Callable[[Array], ArrayLike]
-"""Whether an episode ends at an observation, ``(69,)``; of many robots, ``(n, 69)``, one for each."""
+"""True if an episode ends at an observation, ``(69,)``; for many robots, ``(n, 69)``, one value for each."""
 
 Start: TypeAlias = Callable[[np.random.Generator], ArrayLike]
 """Joint positions, ``(7,)`` rad, at which an episode begins."""
@@ -74,20 +74,20 @@ class EnvOptions(TypedDict, total=False):
     """Options of an environment."""
 
     action: ActionKind
-    """What an action means, ``joint_velocity`` by default: see ``VirtualRobots``."""
+    """Meaning of an action, ``joint_velocity`` by default: see ``VirtualRobots``."""
 
     cycles: int
     """Milliseconds of the robot's time in a step, 20 by default."""
 
     action_scale: ArrayLike | None
-    """What an action of 1 is, a number or one for each axis: by default as far as the robot comes in one step at ``speed``, and a
-    tenth of the greatest torque."""
+    """Size of an action of 1, a number or one for each axis. The default is the way that the robot covers in one step at
+    ``speed``, and a tenth of the greatest torque."""
 
     arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"]
     """``realistic`` by default; ``sampled`` is another realistic one in each episode."""
 
     hand: bool
-    """Whether the robot has a Franka Hand, as it has by default."""
+    """True if the robot has a Franka Hand, the default."""
 
     speed: float
     """The share of its greatest velocity, 0.5 by default."""
@@ -109,11 +109,11 @@ class VectorOptions(EnvOptions, total=False):
     """Options of many environments."""
 
     threads: int
-    """So many share the work of a step, 1 by default."""
+    """Threads that share the work of a step, 1 by default."""
 
 
 class _Episodes:
-    """What the two environments have in common: robots, hooks, and the count of steps."""
+    """Shared part of the two environments: robots, hooks, and the count of steps."""
 
     def __init__(
         self,
@@ -171,7 +171,7 @@ class _Episodes:
         return observations, rewards, terminated, truncated, ~running
 
     def why(self, index: int, terminated: bool, truncated: bool, stopped: bool) -> dict[str, Any]:
-        """What ``info`` says of a robot after a step."""
+        """Returns the ``info`` of a robot after a step."""
         if stopped:
             return {"reason": "reflex", "errors": self.robots.errors(index)}
         if terminated:
@@ -233,7 +233,8 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
 class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
     """Many simulated robots in one process, all stepped by one call while the interpreter is free for other threads.
 
-    Arguments as of ``FrankaEnv``, and ``threads``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. An episode that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
+    Arguments as in ``FrankaEnv``, and ``threads``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. An episode
+    that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
     Robot i acts as a ``FrankaEnv`` that is reset with ``seed + i``.
     """
 

@@ -1,4 +1,4 @@
-"""Kinds of errors: what ``error.kind`` of each class of :mod:`franka_async.errors` may be.
+"""Kinds of errors: the values that ``error.kind`` of each class of :mod:`franka_async.errors` may have.
 
 They do not change with the driver's code: a kind that goes is a change of the interface, and is in the change log. New ones may come.
 """

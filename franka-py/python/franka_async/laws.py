@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 __all__ = ["CYCLE", "FINISH", "GO_ON", "RAISED", "address_of", "compiled", "header", "make_cycle"]
 
 GO_ON = 0
-"""What a law returns to be called with the next state."""
+"""Return value of a law that expects to be called with the next state."""
 
 FINISH = 1
-"""What a law returns with its last output."""
+"""Return value of a law with its last output."""
 
 RAISED = -(2**31)
-"""What a law made by :func:`compiled` returns for an exception in it."""
+"""Return value of a law made by :func:`compiled` after an exception in it."""
 
 _OUTPUT = 18
 
 _CTYPES_FUNCTION: Any = vars(ctypes)["_CFuncPtr"]
 
-# What numba says of code that allocates, where it must not.
+# Messages of numba about code that allocates where it must not.
 _SIGNS_OF_ALLOCATION = ("NRT required", "Only accept returning of array passed into the function")
 
 
@@ -63,7 +63,7 @@ def _cycle_dtype() -> np.dtype[np.record]:
 
 
 CYCLE: np.dtype[np.record] = _cycle_dtype()
-"""What a law gets in a cycle, as a structured type: names, shapes and meanings are those of the header."""
+"""Input of a law in a cycle, as a structured type: names, shapes and meanings match the header."""
 
 
 def header() -> Path:
@@ -122,8 +122,8 @@ def make_cycle(**fields: npt.ArrayLike) -> np.record:
 
 
 def address_of(code: object) -> int:
-    """Returns the address of a C function: of a ``numba.cfunc``, of a function that ``ctypes`` or ``cffi`` has loaded, or an
-    integer as it is.
+    """Returns the address of a C function. ``code`` is a ``numba.cfunc``, a function that ``ctypes`` or ``cffi`` has loaded, or
+    an integer, which is returned as it is.
 
     Raises ``TypeError`` for anything else, callbacks into Python included: the control cycle does not wait for an interpreter.
     """

@@ -1,4 +1,4 @@
-"""What motions report: how they ended, how far they are, where the arm is to be."""
+"""Reports of motions: how they ended, their progress, and the reference of the arm."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class PoseError:
 
 @dataclass(frozen=True, eq=False)
 class Reacted(Value):
-    """What a motion saw when the condition became true that it was to go on until."""
+    """State of a motion at the moment when the condition of ``until`` became true."""
 
     after: float
     """Time since the first state of the motion, s, by the robot's clock."""
@@ -36,7 +36,8 @@ class Reacted(Value):
     """The robot's clock then, ms."""
 
     wrench: NDArray[np.float64]
-    """External wrench then, in base axes with its torque about the origin of the stiffness frame, ``(6,)`` N and N m: positive is what the arm exerts."""
+    """External wrench at that moment, ``(6,)`` N and N m, in base axes with its torque about the origin of the stiffness
+    frame. Positive values are exerted by the arm."""
 
     pose: NDArray[np.float64]
     """Pose of the end effector then, base frame, ``(4, 4)``."""
@@ -58,7 +59,7 @@ class Quantiles:
 
 @dataclass(frozen=True)
 class Phases:
-    """Where the time of one cycle went, s."""
+    """Durations of the parts of one cycle, s."""
 
     orders: float
     """Orders from outside the control thread."""
@@ -73,10 +74,10 @@ class Phases:
     """The command, written into bytes and sent."""
 
     publish: float
-    """What follows the command: log, newest state, records, events."""
+    """Time for everything after the command: log, newest state, records, events."""
 
     prepare: float
-    """What the next answer does not need the next state for: goals, plans, the generator."""
+    """Time for the preparation of the next answer that needs no next state: goals, plans, the generator."""
 
 
 @dataclass(frozen=True)
@@ -93,31 +94,31 @@ class CycleTimes:
     """From then to the departure of the command."""
 
     slack: float
-    """What was left until the next state was due; negative if the command left later."""
+    """Time left until the next state was due; negative if the command left later."""
 
     phases: Phases | None
-    """Where the time went."""
+    """Durations of the parts of the cycle."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionReport(Value):
-    """How a motion went that did what it was to do. Times are in seconds."""
+    """Report of a motion that reached its goal. Times are in seconds."""
 
     duration: float
-    """From the first state of the motion to the arrival, by the robot's clock. The time for which the arm then has to rest there, 0.25 s
-    unless ``settling`` says otherwise, is not in it; what is counted below includes it."""
+    """Time from the first state of the motion to the arrival, by the robot's clock. It excludes the time for which the arm
+    then has to rest there, 0.25 s unless ``settling`` states another one; the counts below include it."""
 
     final_error: PoseError | None
     """Distance of the measured end effector from its target; ``None`` for a motion without one."""
 
     released_error: PoseError | None
-    """The same once the arm had been let go; ``None`` without a target, and where the arm is held on."""
+    """The same distance after the arm was released; ``None`` without a target, and if the arm is still held."""
 
     compensation: NDArray[np.float64] | None
-    """What friction and bias of each joint were compensated by at the arrival, ``(7,)`` N m; ``None`` without this package's law."""
+    """Compensation of friction and bias of each joint at the arrival, ``(7,)`` N m; ``None`` without this package's law."""
 
     reacted: Reacted | None
-    """What was seen when the condition ``until`` became true; ``None`` if the motion arrived without."""
+    """State at which the condition ``until`` became true; ``None`` if the motion arrived without."""
 
     lost_states: int
     """States that never arrived."""
@@ -159,13 +160,13 @@ class MotionReport(Value):
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a motion has come."""
+    """Progress of a motion."""
 
     elapsed: float
     """Since it began, s, by the robot's clock."""
 
     remaining: float
-    """Until the reference is at the target, s, if nothing holds it up; the arm settles after that."""
+    """Time until the reference is at the target, s, if nothing delays it; the arm settles after that."""
 
     @property
     def fraction(self) -> float:
@@ -195,12 +196,12 @@ Guard = Literal[
     "speed_cap",
     "unresponsive",
 ]
-"""What may hold an arm back: see guards.md of the book."""
+"""Guards that may hold an arm back: see guards.md of the book."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reference(Value):
-    """Where target control has the arm go in a cycle."""
+    """The reference of target control in a cycle."""
 
     time_ms: int
     """The robot's clock, ms."""
@@ -218,4 +219,4 @@ class Reference(Value):
     """The end effector at those positions, base frame, ``(4, 4)``."""
 
     guards: tuple[Guard, ...] = ()
-    """Which guards have held the arm back within the last 0.1 s, and at most 0.2 s."""
+    """Guards that have held the arm back within the last 0.1 s, and at most 0.2 s."""

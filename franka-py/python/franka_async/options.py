@@ -27,48 +27,48 @@ __all__ = [
 
 
 class TuneOptions(TypedDict, total=False):
-    """What a session keeps, and can be changed while it runs."""
+    """Options that a session keeps, and that can be changed while it runs."""
 
     limits: Budget | None
-    """How fast; by default ``robot.budget()``."""
+    """Limits of the motion; by default ``robot.budget()``."""
 
     gains: Gains | None
-    """How stiff; by default as the kind of the goal wants it."""
+    """Stiffness and damping; the default depends on the kind of the goal."""
 
     force_cap: float | None
     """Bounds the force with which springs press at the end effector, N, 5 to 200; ``None`` removes the cap. By default 30 N."""
 
     leash: Leash | None
-    """How far the reference may be ahead of the arm."""
+    """Largest distance of the reference ahead of the arm."""
 
     deviation: Deviation | None
-    """How far the arm may be pushed off its way before the motion is given up."""
+    """Largest deviation of the arm from its path before the motion is given up."""
 
     posture: ArrayLike | None
-    """Joint positions, 7 numbers, rad, that the arm takes as far as the pose of its end effector leaves it free."""
+    """Joint positions, 7 numbers, rad, that the arm approaches where the pose of its end effector leaves it free."""
 
 
 class SessionOptions(TuneOptions, total=False):
-    """What holds for one goal or for all goals of a session."""
+    """Options that hold for one goal or for all goals of a session."""
 
     speed: float | None
-    """Walks the same paths so many times as fast as the limits allow."""
+    """Speed along the same paths, as a factor of the fastest motion that the limits allow."""
 
 
 class GoalOptions(SessionOptions, total=False):
-    """What motions and followed targets have in common."""
+    """Shared options of motions and followed targets."""
 
     stiffness: ArrayLike | None
     """Stiffness at the end effector, x y z N/m and about x y z N m/rad, base axes; dampings keep their ratio."""
 
     tolerance: Tolerance | None
-    """How near counts as arrived."""
+    """Distance to the target that counts as arrived."""
 
     settling: Settling | None
-    """How the arm has to settle."""
+    """Conditions under which the arm counts as settled."""
 
     until: Condition | Reaction | None
-    """Goes on until this is true, and then stops, or goes where it says."""
+    """Continues until this is true, and then stops, or moves to the target that it names."""
 
 
 class MotionOptions(GoalOptions, total=False):
@@ -85,10 +85,10 @@ class FollowOptions(GoalOptions, total=False):
     """Options of following targets."""
 
     lead: Lead | None
-    """How far ahead of the arm a target may be."""
+    """Largest distance of a target ahead of the arm."""
 
     watchdog: tuple[float, Literal["brake", "hold"]] | None
-    """What happens when no target has come for so many seconds."""
+    """Seconds without a target after which the watchdog acts, and its action."""
 
 
 class TeamOptions(SessionOptions, total=False):
@@ -108,7 +108,7 @@ class EngageOptions(TeamOptions, total=False):
     """While it is silent, and once it is gone, the arm brakes and holds."""
 
     backend: Backend | None
-    """What turns setpoints into torques."""
+    """The controller that turns setpoints into torques."""
 
 
 class RecordOptions(TypedDict, total=False):

@@ -9,7 +9,7 @@
     position, velocity, acceleration = trajectory.at(0.1)
     times, positions, velocities, accelerations = trajectory.sample(0.001)
 
-``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are those of the robots' joints. A robot needs none of this: its own motions are
+``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are the limits of the robots' joints. A robot needs none of this: its own motions are
 planned on the control thread. It is for looking ahead, and for other machines.
 """
 
@@ -21,4 +21,4 @@ from ._native import plan_trajectory as plan
 __all__ = ["AxisLimits", "Synchronisation", "Trajectory", "plan"]
 
 Synchronisation: TypeAlias = Literal["straight", "time"]
-"""Whether axes move on a straight line where they can, or are only at the target at the same time."""
+"""The way to synchronise axes: move on a straight line where they can, or only be at the target at the same time."""

@@ -3,5 +3,5 @@
 * :mod:`franka_async.compat.franka` for programs that were written for ``franka`` of the distribution ``franka-rs``;
 * :mod:`franka_async.compat.pylibfranka` for programs that were written for the vendor's ``pylibfranka``.
 
-What is different is listed in the book, under "Programs written for other packages".
+The book lists the differences under "Programs written for other packages".
 """

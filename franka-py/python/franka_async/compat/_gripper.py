@@ -1,4 +1,4 @@
-"""What the Hands of both packages have in common."""
+"""Shared parts of the Hands of both packages."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from .. import _native
 from ._waiting import changed, wait
 
 VERSION = 3
-"""The version that every Hand speaks; a connection to one that speaks another is refused."""
+"""The version that every Hand speaks; a connection to a Hand of another version is refused."""
 
 
 class Fingers:
     """A connected Hand. Calls that wait leave the interpreter to other threads, and ``stop`` may come from one."""
 
     _translated: Callable[[], AbstractContextManager[None]]
-    """Raises the exceptions of the original in the place of those of this package."""
+    """Raises the exceptions of the original instead of the exceptions of this package."""
 
     _refused: Callable[[str], Exception]
     """Makes the exception for a command that the Hand does not carry out."""

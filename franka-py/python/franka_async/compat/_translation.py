@@ -1,4 +1,4 @@
-"""Exceptions of the originals in the place of those of this package."""
+"""Exceptions of the originals instead of the exceptions of this package."""
 
 from __future__ import annotations
 

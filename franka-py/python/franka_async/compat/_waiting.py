@@ -1,4 +1,4 @@
-"""Waiting on any thread, one that runs an event loop included, and for what comes next."""
+"""Waiting for operations and for the next item, on any thread, also on a thread that runs an event loop."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 
 SILENCE = 1.0
-"""How long a robot may be silent, s."""
+"""Longest silence of a robot, s."""
 
 _PAUSE = 0.0002
 

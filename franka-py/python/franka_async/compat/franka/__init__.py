@@ -1,6 +1,6 @@
 """``franka`` of the distribution ``franka-rs`` 0.4 over this package: ``import franka_async.compat.franka as franka``.
 
-Classes, keywords, defaults, exceptions and semantics are those of the original. States and models are those of this package, which
+Classes, keywords, defaults, exceptions and semantics match the original. States and models are the classes of this package, which
 have the same names. No thread of the program is raised to real-time priority.
 """
 
@@ -35,5 +35,5 @@ FLAT_LEN: int = RobotState.FLAT_LEN
 
 
 def rotated(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Returns ``quaternion`` (x y z w) turned by ``rotation_vector``, rad in the base frame: what ``move_by`` composes."""
+    """Returns ``quaternion`` (x y z w) turned by ``rotation_vector``, rad in the base frame, as ``move_by`` composes them."""
     return rotated_by(quaternion, rotation_vector)

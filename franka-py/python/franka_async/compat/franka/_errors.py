@@ -9,7 +9,7 @@ from .._translation import text_of, translation
 
 
 class FrankaError(Exception):
-    """What can go wrong with a robot or the Hand."""
+    """Error of a robot or the Hand."""
 
     def __init__(self, *text: object, kind: str = "invalid_operation") -> None:
         super().__init__(*text)
@@ -67,4 +67,4 @@ _OF_MOTION = {
 
 
 translated = translation(_exception)
-"""A context that raises the exceptions of the original in the place of those of this package."""
+"""A context that raises the exceptions of the original instead of the exceptions of this package."""

@@ -59,7 +59,7 @@ class Model:
         return self._model.coriolis(q, dq, I_total, m_total, F_x_Ctotal)
 
     def link_poses(self, q: npt.ArrayLike) -> Array:
-        """Returns the poses of the base and the seven links, (8, 4, 4)."""
+        """Returns the poses of the base and the seven links, with the shape (8, 4, 4)."""
         return np.concatenate([np.eye(4)[np.newaxis], self._model.link_poses(q)[:7]])
 
     def hand_pose(self, q: npt.ArrayLike) -> Array:
@@ -85,7 +85,7 @@ class Robot:
 
     @property
     def address(self) -> str:
-        """Where the robot is, as it was given."""
+        """Address of the robot, as it was given."""
         return self._address
 
     @property
@@ -95,7 +95,7 @@ class Robot:
 
     @property
     def server_version(self) -> int:
-        """The same, as the robot says it."""
+        """The same version, as the robot reports it."""
         return self._robot.fci_version
 
     def __repr__(self) -> str:
@@ -161,7 +161,7 @@ class Robot:
             wait(self._robot.recover())
 
     def stop(self) -> None:
-        """Stops whatever moves, from any thread; a session's ``stop`` then raises ControlException."""
+        """Stops every motion, from any thread; a session's ``stop`` then raises ControlException."""
         with translated():
             wait(self._robot.stop())
 
@@ -258,7 +258,7 @@ class Robot:
         realtime_priority: int | None = None,
     ) -> JointTargets:
         """Begins a session of targets of the joints, at this fraction of the limits of this package. ``limit_rate`` and
-        ``realtime_priority`` have no effect, as of ``cartesian_targets``.
+        ``realtime_priority`` have no effect, as in ``cartesian_targets``.
         """
         gains = _given(
             joint_stiffness=joint_stiffness,
@@ -277,7 +277,7 @@ class Robot:
         if _by_robot(backend, controller_mode, project_joint_gains, **gains, leash=leash):
             options["backend"] = (controller_mode, "joint_positions")
         else:
-            # There is no end effector's spring in whose null space those of the joints could act.
+            # The law has no spring of the end effector in whose null space the springs of the joints could act.
             options["gains"] = _gains(Gains.joint(), gains, False)
             options |= _given(leash=None if leash is None else Leash(joints=leash))
         arm = self._engage(options)
@@ -344,7 +344,7 @@ def _given(**options: Any) -> dict[str, Any]:
 
 
 def _of_axes(values: npt.ArrayLike | None, defaults: Any) -> Any:
-    """One number is that of the three translations."""
+    """Expands one number to the three translations."""
     if values is not None and np.ndim(values) == 0:
         return [float(np.float64(values))] * 3 + list(defaults[3:])  # type: ignore[arg-type]
     return values
@@ -381,7 +381,7 @@ def _of_length(name: str, values: npt.ArrayLike, length: int) -> list[float]:
 
 
 def _by_robot(backend: str, controller_mode: str, project_joint_gains: bool, **impedance: Any) -> bool:
-    """Whether the robot's own controller follows. Raises ``ValueError``."""
+    """True if the robot's own controller follows. Raises ``ValueError``."""
     _text("backend", backend), _text("controller_mode", controller_mode)
     if _truth("project_joint_gains", project_joint_gains):
         impedance = {**impedance, "project_joint_gains=True": True}

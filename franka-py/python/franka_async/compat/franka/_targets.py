@@ -81,7 +81,7 @@ class _Targets:
             self._set(self._moved(delta))
 
     def follow(self, chunk: npt.ArrayLike, dt: float = 0.02) -> None:
-        """Moves the target along the rows, the first now and each one ``dt`` seconds after the one before, in the background. A
+        """Moves the target along the rows in the background: to the first row now, then to one row every ``dt`` seconds. A
         newer call ends it, as does a row that cannot be reached.
         """
         if not (dt > 0.0 and np.isfinite(dt)):
@@ -128,7 +128,7 @@ class _Targets:
 
     @property
     def running(self) -> bool:
-        """Whether the session goes on."""
+        """True while the session runs."""
         return not self._is_stopped and self._arm.reference() is not None
 
     def stop(self) -> None:

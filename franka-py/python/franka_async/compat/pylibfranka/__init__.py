@@ -1,8 +1,10 @@
 """The vendor's ``pylibfranka`` 0.21 over this package: ``import franka_async.compat.pylibfranka as pylibfranka``.
 
-Names, arguments, lists (column-major), enumerations, exceptions and their texts are those of the original. It also works with a
-Franka Emika Robot, leaves the interpreter to other threads whenever it waits, and raises no thread of the program to real-time
-priority: run the control loop on a thread that you give the priority it needs.
+Names, arguments, lists (column-major), enumerations, exceptions and their texts match the original. There are three differences:
+
+* it also works with a Franka Emika Robot;
+* it leaves the interpreter to other threads whenever it waits;
+* it raises no thread of the program to real-time priority. Run the control loop on a thread that you give the priority it needs.
 """
 
 from ._asynchronous import AsyncPositionControlHandler, TargetStatus

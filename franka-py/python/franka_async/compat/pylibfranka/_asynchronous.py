@@ -19,7 +19,7 @@ _ABORTED = "Control interface is in aborted state."
 
 
 class TargetStatus(_Number):
-    """How far a target has been followed."""
+    """Progress of the robot towards a target."""
 
     kIdle = 0
     kExecuting = 1
@@ -37,7 +37,7 @@ _STATUS = {
 
 def _seven(name: str, values: Sequence[float]) -> list[float]:
     if len(values) != 7:
-        raise ValueError(f"{name} must have exactly7 values")  # As the original says it.
+        raise ValueError(f"{name} must have exactly7 values")  # The text of the original.
     return numbers(name, values, 7)
 
 
@@ -58,20 +58,20 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
 
     @dataclass
     class ConfigurationResult:
-        """The handler, or why there is none."""
+        """The handler, or the reason why the configuration failed."""
 
         handler: AsyncPositionControlHandler | None
         error_message: str | None
 
     class JointPositionTarget:
-        """Where to go, 7, rad."""
+        """Target of a motion, 7, rad."""
 
         def __init__(self, joint_positions: Sequence[float]) -> None:
             self.joint_positions = _seven("joint_positions", joint_positions)
 
     @dataclass
     class CommandResult:
-        """Whether a target was taken."""
+        """Answer to a target: accepted or not."""
 
         motion_uuid: str | None
         was_successful: bool
@@ -79,7 +79,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
 
     @dataclass
     class TargetFeedback:
-        """How far a target has been followed, and why no further."""
+        """Progress of the robot towards a target, and the reason if it ended early."""
 
         status: TargetStatus
         error_message: str | None
@@ -130,7 +130,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         return result(_STATUS[status], reason)
 
     def stop_control(self) -> None:
-        """Has the robot stop."""
+        """Stops the robot."""
         control, self._control = self._control, None
         if control is not None:
             control.stop()

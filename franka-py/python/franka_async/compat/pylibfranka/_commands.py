@@ -7,7 +7,7 @@ from typing import Any, ClassVar, SupportsFloat
 
 
 def numbers(what: str, values: Iterable[SupportsFloat], count: int) -> list[float]:
-    """Returns so many numbers as a list.
+    """Returns ``count`` numbers as a list.
 
     Raises ``TypeError`` for anything else, as the original does.
     """
@@ -30,7 +30,7 @@ def number(what: str, value: SupportsFloat) -> float:
 
 
 class _Numbers:
-    """An attribute that is a list of so many numbers."""
+    """An attribute that is a list with a fixed count of numbers."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -59,12 +59,12 @@ class _Command:
 
     @property
     def motion_finished(self) -> bool:
-        """Whether this is the last command of the motion."""
+        """True for the last command of the motion."""
         return self._is_last
 
     @motion_finished.setter
     def motion_finished(self, finished: Any) -> None:
-        # What has a truth of its own, and None, as in the original; but no text and no list.
+        # Accepts None and any value that defines its own truth, as the original does; refuses texts and lists.
         if finished is not None and not hasattr(finished, "__bool__"):
             raise TypeError(f"motion_finished: got {finished!r}, expected a bool")
         self._is_last = bool(finished)

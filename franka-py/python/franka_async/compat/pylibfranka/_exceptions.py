@@ -1,4 +1,4 @@
-"""Exceptions, which as in the original derive from ``RuntimeError``, but for the base of them all."""
+"""Exceptions, which derive from ``RuntimeError`` as in the original; their common base does not."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .._translation import text_of, translation
 
 
 class FrankaException(Exception):
-    """What has no class of its own."""
+    """Error without a more specific class."""
 
 
 class CommandException(RuntimeError):
@@ -34,7 +34,7 @@ PREEMPTED = "libfranka: Move command preempted!"
 BUSY = "libfranka robot: Cannot perform this operation while another control or read operation is running."
 SILENT = "libfranka: UDP receive: Timeout"
 
-# What a command cannot be sent for is an argument's fault: the texts of it begin like these.
+# Texts of errors that are the fault of an argument begin like these.
 _ARGUMENT = ("Commanding value is infinite or NaN", "libfranka: Attempt to set invalid", "Invalid ")
 
 
@@ -50,7 +50,7 @@ def _exception(error: errors.FrankaError) -> Exception:
         case errors.ActionError():
             return CommandException(text) if kind in ("aborted", "failure", "out_of_range") else NetworkException(text)
         case errors.ControlError():
-            # Under active control the original says no rate.
+            # Under active control the original reports no rate.
             return ControlException(PREEMPTED if error.move_status == "preempted" else text.split("\ncontrol_command_success_rate")[0])
         case errors.ActiveError() if kind == "borrow":
             return InvalidOperationException(BUSY)
@@ -81,4 +81,4 @@ def _of_motion(kind: str, text: str) -> Exception:
 
 
 translated = translation(_exception)
-"""A context that raises the exceptions of the original in the place of those of this package."""
+"""A context that raises the exceptions of the original instead of the exceptions of this package."""

@@ -9,7 +9,7 @@ from ._state import Duration, NoConstructor, made
 
 
 class GripperState(metaclass=NoConstructor):
-    """What the Hand says of itself."""
+    """State that the Hand reports."""
 
     __slots__ = ("is_grasped", "max_width", "temperature", "time", "width")
 

@@ -48,7 +48,7 @@ class ActiveControlBase(metaclass=NoConstructor):
         self._is_preempted = False
 
     def readOnce(self) -> tuple[RobotState, Duration]:
-        """Waits for the next state; returns it with the time since the one before."""
+        """Waits for the next state; returns it with the time since the previous state."""
         if self._is_preempted:
             raise ControlException(PREEMPTED)
         try:
@@ -160,7 +160,8 @@ class Robot:
         lower_force_thresholds: Sequence[float],
         upper_force_thresholds: Sequence[float],
     ) -> None:
-        """Sets the thresholds of contact (lower) and collision (upper): 7, 7 in N m, 6, 6 in N and N m."""
+        """Sets the thresholds of contact (lower) and collision (upper). Each torque threshold has 7 numbers, N m; each force
+        threshold has 6, N and N m."""
         thresholds = [
             numbers("set_collision_behavior()", values, count)
             for values, count in (
@@ -206,7 +207,8 @@ class Robot:
     def set_load(
         self, load_mass: float, F_x_Cload: Sequence[float], load_inertia: Sequence[float], /
     ) -> None:
-        """Declares the load: mass in kg, centre in the flange frame in m, 3, and inertia in kg m^2, 9, column by column."""
+        """Declares the load: mass in kg; centre in the flange frame, 3 numbers in m; inertia, 9 numbers in kg m^2, column by
+        column."""
         center = numbers("set_load()", F_x_Cload, 3)
         inertia = np.reshape(numbers("set_load()", load_inertia, 9), (3, 3), order="F")
         self._set("Set Load", lambda: self._robot.set_load(load_mass, center, inertia))
@@ -222,7 +224,7 @@ class Robot:
             return made(Model, self._robot.model())
 
     def stop(self) -> None:
-        """Stops whatever moves; its ``readOnce`` raises ControlException."""
+        """Stops every motion; its ``readOnce`` raises ControlException."""
         # Under active control the robot stops without the thread that reads: it may be this one.
         if active := self._active and self._active():
             active._preempt()

@@ -13,7 +13,7 @@ from ._commands import number, numbers
 
 
 class _Number(enum.Enum):
-    """An enumeration whose members have a number, as those of the original."""
+    """An enumeration whose members have a number, as in the original."""
 
     def __int__(self) -> int:
         return int(self.value)
@@ -28,21 +28,21 @@ class _Number(enum.Enum):
 
 
 class ControllerMode(_Number):
-    """Which of the robot's controllers follows a motion generator."""
+    """The controller of the robot that follows a motion generator."""
 
     JointImpedance = 0
     CartesianImpedance = 1
 
 
 class RealtimeConfig(_Number):
-    """Whether a computer without real-time scheduling is refused."""
+    """Policy for a computer without real-time scheduling: refuse it or not."""
 
     kEnforce = 0
     kIgnore = 1
 
 
 class RobotMode(_Number):
-    """What the robot does."""
+    """Mode of the robot."""
 
     Other = 0
     Idle = 1
@@ -148,7 +148,7 @@ class _Field:
 
 
 class RobotState(metaclass=NoConstructor):
-    """Everything that the robot says in one millisecond. Arrays are lists, poses 16 numbers column by column.
+    """State of the robot in one millisecond. Arrays are lists, poses 16 numbers column by column.
 
     A program may set its attributes; the robot does not see that.
     """
