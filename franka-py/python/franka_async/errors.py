@@ -131,7 +131,7 @@ class TareError(FrankaError):
 
 
 class MotionError(FrankaError):
-    """A motion ended short of its goal. An error that followed a reaction has its usual class and the kind ``after_reaction``."""
+    """A motion ended short of its goal. An error after a reaction has its usual class and the kind ``after_reaction``."""
 
     kind: kinds.MotionErrorKind | kinds.ActiveErrorKind | kinds.ControlErrorKind | kinds.ReplayErrorKind
 

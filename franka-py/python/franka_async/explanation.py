@@ -65,7 +65,7 @@ class Contact(Value):
     """Place of a contact with the arm in the base frame, derived from the external torques of the joints."""
 
     link: int
-    """The link that was touched, 0 to 7. Link 8 stands for everything mounted on the flange."""
+    """The link that was touched, ``0`` to ``7``. The number ``8`` stands for everything mounted on the flange."""
 
     point: NDArray[np.float64]
     """Point of contact, ``(3,)`` m."""

@@ -9,8 +9,8 @@
     position, velocity, acceleration = trajectory.at(0.1)
     times, positions, velocities, accelerations = trajectory.sample(0.001)
 
-``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are the limits of the robots' joints. A robot needs none of this: its own motions are
-planned on the control thread. It is for looking ahead, and for other machines.
+``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are the limits of the robots' joints. A robot needs none of this: it plans its
+motions on the control thread. It is for looking ahead, and for other machines.
 """
 
 from typing import Literal, TypeAlias

@@ -1,8 +1,7 @@
-"""Recordings of robots in files: how they are written, and what they hold.
+"""Recordings of robots in files.
 
-``Recorder`` writes MCAP files, which viewers open, with every cycle, goals and how they end, events, requests and grippers, and
-``RecordingFile`` reads them. Columns
-of a motion as arrays, without a file, are what ``robot.record([...])`` is for.
+``Recorder`` writes MCAP files, which viewers open. They hold every cycle, goals and how they end, events, requests and
+grippers. ``RecordingFile`` reads them. ``robot.record([...])`` returns columns of a motion as arrays, without a file.
 """
 
 from __future__ import annotations
@@ -18,30 +17,30 @@ __all__ = ["BlackBox", "Episode", "RecordStatus", "RecordedEvent", "RecordedRobo
 
 @dataclass(frozen=True)
 class BlackBox:
-    """The last seconds before an incident, written to a file of their own: the keyword ``black_box`` of ``Recorder.to_file``."""
+    """The last seconds before an incident, written to a separate file: the keyword ``black_box`` of ``Recorder.to_file``."""
 
     directory: str | PathLike[str]
-    """Where the files go; made if it is not there. They are named by time (UTC), robot and cause."""
+    """Directory of the files; made if it is missing. The files are named by time (UTC), robot and cause."""
 
     before: float = 30.0
-    """How much is kept before the incident, 1 to 300 s: some 0.7 MB a second and robot."""
+    """Time that is kept before the incident, 1 to 300 s. A robot takes about 0.7 MB per second."""
 
     after: float = 1.0
-    """How much is added after it, s, 60 at most. Another incident meanwhile gets no file of its own."""
+    """Time that is added after it, s, at most 60. Another incident meanwhile gets no separate file."""
 
     keep: int = 20
-    """How many files are kept; the oldest are deleted."""
+    """Number of files that are kept; the oldest are deleted."""
 
 
 @dataclass(frozen=True)
 class RecordStatus:
-    """What was recorded so far, and what has failed."""
+    """Progress and errors of a recording."""
 
     cycles: int
     """Cycles taken, of all robots."""
 
     dropped: int
-    """Cycles for which there was no room, as this computer or its disk was busy. The file says where they are missing."""
+    """Cycles for which there was no room, as this computer or its disk was busy. The file records where they are missing."""
 
     events_dropped: int
     """Events for which there was no room."""
@@ -59,10 +58,10 @@ class RecordStatus:
     """The files of the black box that were written."""
 
     error: RecordError | None
-    """Why the recording ended early."""
+    """The error that ended the recording early."""
 
     black_box_error: RecordError | None
-    """Why the newest black box could not be written."""
+    """The error that prevented the newest black box."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ class RecordedRobot:
     """``fr3`` or ``fer``; ``None`` if the file does not say."""
 
     metadata: dict[str, str]
-    """What else was known of it."""
+    """Other metadata of the robot."""
 
 
 @dataclass(frozen=True)
@@ -84,28 +83,30 @@ class RecordedEvent:
     """Something that happened while a robot was recorded."""
 
     host_time: int
-    """When this computer had word of it, ns since 1970."""
+    """Time at which this computer was informed of it, ns since 1970."""
 
     time_ms: int
-    """The robot's clock of the newest cycle before it; 0 if there was none."""
+    """The robot's clock of the newest cycle before it; 0 if no cycle came before."""
 
     kind: str
-    """What kind of thing: ``goal``, ``outcome``, ``mode``, ``errors``, ``diagnosis``, ``request``, ``note``, ``episode_start``, ..."""
+    """Kind of the event: ``goal``, ``outcome``, ``mode``, ``errors``, ``diagnosis``, ``request``, ``note``,
+    ``episode_start``, ..."""
 
     level: str
-    """How much it matters: ``info``, ``warning`` or ``error``."""
+    """Severity: ``info``, ``warning`` or ``error``."""
 
     source: str
     """Who says it."""
 
     text: str
-    """What happened, in words."""
+    """Description in words."""
 
     goal: int | None
     """The number of the goal that it is about, as in the column ``goal``."""
 
     ending: str | None
-    """Of an ``outcome``, how the goal came to its end: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
+    """The way in which the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ...
+    """
 
 
 @dataclass(frozen=True)
@@ -116,21 +117,21 @@ class Episode:
     """Its name."""
 
     task: str
-    """What was to be done, in words."""
+    """Task of the episode, in words."""
 
     success: bool | None
-    """Whether it was done; ``None`` if nobody judged it."""
+    """True if the task was done; ``None`` if it was not judged."""
 
     begin: int
-    """When it began, ns since 1970."""
+    """Begin, ns since 1970."""
 
     end: int
-    """When it ended, ns since 1970: ``recording.between(episode.begin, episode.end)`` is the episode."""
+    """End, ns since 1970: ``recording.between(episode.begin, episode.end)`` is the episode."""
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """What was recovered of a damaged file."""
+    """The recovered part of a damaged file."""
 
     messages: int
     """Messages in the new file."""
@@ -142,12 +143,12 @@ class Recovery:
     """Chunks that were not, and are left out."""
 
     damage: str | None
-    """What was wrong with the file; ``None`` if nothing was."""
+    """Damage of the file; ``None`` if it has none."""
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How distances spread."""
+    """Distribution of distances."""
 
     median: float
     """Half of them are less."""
@@ -161,13 +162,13 @@ class Spread:
 
 @dataclass(frozen=True)
 class ReplayReport:
-    """How a replay went."""
+    """Result of a replay."""
 
     duration: float
     """From the first target to the last, s."""
 
     joints: Spread
-    """Between the joints and where they were in the recording, the one that was furthest off in each state, rad."""
+    """Distances between the joints and their positions in the recording, rad. Each state counts with its furthest joint."""
 
     position: Spread
     """Between the end effector and where it was in the recording, m."""

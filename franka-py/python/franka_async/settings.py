@@ -1,4 +1,4 @@
-"""What is set at a robot, and read from it."""
+"""Settings of a robot, as they are set and read."""
 
 from __future__ import annotations
 
@@ -21,4 +21,4 @@ class VirtualWall:
     """Pose of its frame in the base frame, ``(4, 4)``."""
 
     is_active: bool
-    """Whether it is active."""
+    """True if it is active."""

@@ -1,4 +1,4 @@
-"""What is between a simulated robot and its clients."""
+"""The link between a simulated robot and its clients."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Network:
     """Probability that a datagram is lost, 0 to 1."""
 
     delay: float = 0.0
-    """How long the way takes, s."""
+    """Delay of a packet, s."""
 
     jitter: float = 0.0
     """Up to this much later a datagram leaves, s; the order stays."""
@@ -25,10 +25,11 @@ class Network:
     """Probability that a datagram arrives twice, 0 to 1."""
 
     stalls: bool = False
-    """Whether states stall as in the network interface of a Franka Emika Robot: 2 to 7 ms, seven times a second."""
+    """True if states stall as in the network interface of a Franka Emika Robot: 2 to 7 ms, seven times a second."""
 
     cuts: Sequence[tuple[float, float]] = ()
-    """When nothing arrives: pairs of seconds, from and to, since the robot began; a ``state().time`` of 101.5 s is 1.5 s then."""
+    """Periods in which nothing arrives: pairs of seconds, from and to, since the robot began. A ``state().time`` of 101.5 s
+    is 1.5 s then."""
 
     seed: int = 1
     """Seed of all this."""

@@ -1,4 +1,4 @@
-"""What comes one after the other: states, events."""
+"""Streams of states and events."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Stream(Generic[T]):
     def next(self, timeout: float | None = None) -> T:
         """Waits for the next item on this thread, with the interpreter released, and returns it.
 
-        Raises ``StopIteration`` at the end, and ``TimeoutError`` after so many seconds; the item then is that of the next call.
+        Raises ``StopIteration`` at the end, and ``TimeoutError`` after ``timeout`` seconds. The next call then returns the item.
         """
         while True:
             self._source.ready().wait(timeout)
@@ -65,4 +65,5 @@ class Reading(NamedTuple):
     """The state."""
 
     missed: int
-    """How many states the robot sent after the one before, or since the stream was made, and that this one does not follow."""
+    """Number of states that the robot sent between the previous state of the stream, or the beginning of the stream, and this
+    one."""

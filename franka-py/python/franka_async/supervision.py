@@ -1,4 +1,4 @@
-"""Supervised robots: what a supervisor may do, what happens to a robot, and how it is."""
+"""Supervised robots: policies of the supervisor, events, and the condition of a robot."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ EventKind = Literal[
 
 @dataclass(frozen=True)
 class Backoff:
-    """How long to wait between two attempts: after the first one ``first`` seconds, after each other one twice as long as before.
+    """Time between two attempts: ``first`` seconds after the first one, twice as long as before after each other one.
 
     The first attempt is made at once.
     """
@@ -68,34 +68,35 @@ class Backoff:
 
 @dataclass(frozen=True, kw_only=True)
 class Policy:
-    """What the supervisor of a robot does when the connection or the robot fails.
+    """Policy of the supervisor of a robot when the connection or the robot fails.
 
-    The default reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile. Whatever it does,
-    nothing moves that was begun before: motions and sessions end with the mishap.
+    The default reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile. No policy
+    resumes a movement: motions and sessions end with the mishap.
 
     Raises ``ValueError`` for values that make no sense.
     """
 
     recover: tuple[int, float] | None = None
-    """Recovers from reflexes by itself, so many times within any window of so many seconds, attempts that fail included."""
+    """Limit of automatic recoveries from reflexes: a count, and the window in seconds that it holds for. Attempts that fail
+    count."""
 
     only: Iterable[str] | None = None
     """Recovers from those reflexes only whose errors are all among these, by the vendor's names. Needs ``recover``."""
 
     ask_first: bool = False
-    """Recovers only after somebody has agreed: by ``robot.agree(reflex)``, or a function ``ask_before_recovery``."""
+    """Recovers only after someone has agreed: by ``robot.agree(reflex)``, or a function ``ask_before_recovery``."""
 
     reconnect: Backoff | None = field(default_factory=Backoff)
     """Pauses between two attempts to connect, and between two to recover; ``None`` makes no new connection."""
 
     give_up_after: float | None = None
-    """Gives up when a lost connection has not come back for so many seconds; ``None``: never."""
+    """Seconds after which the supervisor gives up a lost connection; ``None``: never."""
 
     silence: float = 3.0
     """Seconds that the robot may be silent, on a connection that looks alive, before that is closed and a new one made."""
 
     motions_wait: float | None = None
-    """Lets a motion that comes while the supervisor reconnects or recovers wait for so many seconds; ``None`` refuses it."""
+    """Seconds that a motion waits while the supervisor reconnects or recovers; ``None`` refuses it."""
 
     seed: int | None = None
     """Seed of what is left to chance; ``None``: each robot draws its own."""
@@ -112,7 +113,7 @@ class Reflex:
     """The robot stopped itself."""
 
     number: int
-    """Its number, from 1 on: what ``robot.agree(number)`` takes."""
+    """Its number, counted from 1, as ``robot.agree(number)`` takes it."""
 
     errors: list[str]
     """The errors that hold the robot, by the vendor's names."""
@@ -121,12 +122,12 @@ class Reflex:
     """The ``ControlError`` of the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
 
     differences: str | None = None
-    """What differs from the robot of before a connection was lost, if that is not recognised. Somebody has to agree then."""
+    """Differences from the robot before the connection was lost, if it is not recognised. Someone has to agree then."""
 
 
 @dataclass(frozen=True)
 class CloseReason:
-    """Why a connection has ended."""
+    """The reason for the end of a connection."""
 
     kind: str
     """``closed_by_us``, ``closed_by_peer``, ``io``, ``protocol``, ``thread_ended``, ``silent``, ``given_up``, ``another_robot``
@@ -141,46 +142,42 @@ class CloseReason:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened to a robot. Each kind has fields of its own, which are attributes as well:
+    """Something that happened to a robot. Each kind has its own fields, which are attributes as well:
 
-    ==================  ==============================================================================================
-    ``kind``            fields
-    ==================  ==============================================================================================
-    connected           ``attempts``; ``after``: seconds since the loss, ``None`` for the first connection
-    realtime_refused    ``refusals``: what the operating system refused the control thread, as texts
-    unrecognised        ``differences`` from the robot of before the connection was lost, as a text
-    not_configured      ``command`` that is not set again, and the ``text`` of why
-    lost                ``reason``: a ``CloseReason``
-    silent              ``silence``: seconds without a state, on a connection that still stands
-    resumed             ``after``: seconds since the silence was noticed
-    reflex              ``reflex``: a ``Reflex``
-    not_recovered       ``number`` of the reflex; ``why``: ``never``, ``other_error``, ``too_often``, ``declined``, ``by_hand``
-    recovered           ``number`` of the reflex; ``after``: seconds since it was noticed; ``by_supervisor``
-    user_stop           ``pressed``
-    guiding             ``active``
-    brakes              ``closed``
-    stop_latch          ``latched``
-    motion_begun        ``goal``: its name, as in the log
-    motion_ended        ``goal``; ``error``: why, ``None`` if it arrived
-    load_changed        ``mass``, kg; ``center`` in the flange frame, ``(3,)`` m; ``inertia`` about it, ``(3, 3)`` kg m^2
-    closed              ``reason``: a ``CloseReason``; there will be no other event
-    ==================  ==============================================================================================
+    * ``connected``: ``attempts``; ``after``, seconds since the loss, ``None`` for the first connection.
+    * ``realtime_refused``: ``refusals``, the rights that the operating system refused the control thread, as texts.
+    * ``unrecognised``: ``differences`` from the robot before the connection was lost, as a text.
+    * ``not_configured``: ``command`` that is not set again, and the reason as ``text``.
+    * ``lost``: ``reason``, a ``CloseReason``.
+    * ``silent``: ``silence``, seconds without a state, on a connection that still stands.
+    * ``resumed``: ``after``, seconds since the silence was noticed.
+    * ``reflex``: ``reflex``, a ``Reflex``.
+    * ``not_recovered``: ``number`` of the reflex; ``why``: ``never``, ``other_error``, ``too_often``, ``declined``, ``by_hand``.
+    * ``recovered``: ``number`` of the reflex; ``after``, seconds since it was noticed; ``by_supervisor``.
+    * ``user_stop``: ``pressed``.
+    * ``guiding``: ``active``.
+    * ``brakes``: ``closed``.
+    * ``stop_latch``: ``latched``.
+    * ``motion_begun``: ``goal``, its name, as in the log.
+    * ``motion_ended``: ``goal``; ``error``, the reason, ``None`` if it arrived.
+    * ``load_changed``: ``mass``, kg; ``center`` in the flange frame, ``(3,)`` m; ``inertia`` about it, ``(3, 3)`` kg m^2.
+    * ``closed``: ``reason``, a ``CloseReason``. No other event follows.
     """
 
     kind: EventKind
-    """What happened."""
+    """The kind of event."""
 
     at: float
-    """When, by this computer's clock: seconds since the robot was first connected to."""
+    """Time by this computer's clock: seconds since the robot was first connected to."""
 
     robot_time: float | None
-    """When, by the robot's clock, s; ``None`` without a connection."""
+    """Time by the robot's clock, s; ``None`` without a connection."""
 
     lost: int
-    """How many events are missing before this one, because nobody took them: a listener may lag 256 behind."""
+    """Number of events that are missing before this one, because the listener lagged: it may lag 256 behind."""
 
     fields: Mapping[str, Any]
-    """What belongs to this kind."""
+    """The fields of this kind."""
 
     text: str
     """One line for people."""
@@ -199,10 +196,10 @@ class Event:
 
 @dataclass(frozen=True)
 class Health:
-    """How a robot is."""
+    """Condition of a robot."""
 
     condition: Condition
-    """Whether it takes motions: ``ready`` if so, or a motion runs; otherwise why not."""
+    """``ready`` if the robot takes motions, or a motion runs; otherwise the reason why it does not."""
 
     since: float
     """Since when, seconds after the robot was first connected to."""
@@ -227,5 +224,5 @@ class Health:
 
     @property
     def is_ready(self) -> bool:
-        """Whether the robot takes motions, or one runs."""
+        """True if the robot takes motions, or one runs."""
         return self.condition == "ready"

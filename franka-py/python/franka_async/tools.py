@@ -1,12 +1,13 @@
-"""What is on the flange, by name: tools that are saved in a file and declared to a robot.
+"""Tools on the flange, by name: they are saved in a file and declared to a robot.
 
     tool = await tools.identify(robot)            # a minute of small motions, with the tool on
     tools.save("screwdriver", tool)
     await tools.load(robot, "screwdriver")        # in this or a later program
     await tools.unload(robot)                     # the flange is bare again
 
-The file is ``franka_async/tools.json`` in the user's configuration directory, ``$XDG_CONFIG_HOME`` or ``~/.config``; the variable
-``FRANKA_TOOLS`` names another one. It is written as a whole or not at all: a program that reads it meanwhile finds the one before.
+The file is ``franka_async/tools.json`` in the user's configuration directory, ``$XDG_CONFIG_HOME`` or ``~/.config``; the
+variable ``FRANKA_TOOLS`` names another one. It is written as a whole or not at all: a program that reads it meanwhile finds
+the old file.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ _IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """What is on the flange beside the end effector that the robot is configured with.
+    """A tool on the flange, in addition to the end effector that the robot is configured with.
 
     Raises ``ValueError`` for values that no tool has.
     """
@@ -60,7 +61,7 @@ class Tool:
     """Centre of mass in the flange frame, 3 numbers, m."""
 
     inertia: ArrayLike = ((0.0,) * 3,) * 3
-    """Inertia about the centre of mass, 3 x 3, kg m^2."""
+    """Inertia about the centre of mass, a matrix of 3 rows, kg m^2."""
 
     frame: ArrayLike = _IDENTITY
     """``NE_T_EE``: the pose of the end effector in the nominal end effector's frame, 4 x 4."""
@@ -117,7 +118,7 @@ def get(name: str) -> Tool:
 
 
 def save(name: str, tool: Tool) -> None:
-    """Saves a tool under this name, in the place of the one before."""
+    """Saves a tool under this name and replaces the previous tool of that name."""
     if not name or name != name.strip():
         raise ValueError(f"got the name {name!r}, expected text without blanks around it")
     tools = _read()
@@ -152,11 +153,11 @@ async def unload(robot: Robot) -> None:
 
 
 async def identify(robot: Robot, *, frame: ArrayLike = _IDENTITY) -> Tool:
-    """Measures what is on the flange by a minute of small motions, as ``robot.identify()`` plans them, and returns it as a tool.
+    """Measures the load on the flange by a minute of small motions, as ``robot.identify()`` plans them. Returns it as a tool.
 
     A load that is declared counts as a part of it. Nothing is declared or saved. The inertia is not measured: it is zero. Raises
-    ``IdentifyError``, ``MotionError``, and ``ValueError`` if what is there is too light to be told from none. Cancelling brakes the
-    arm.
+    ``IdentifyError``, ``MotionError``, and ``ValueError`` if the load is too light to be distinguished from none. Cancelling
+    brakes the arm.
     """
     return _found(await robot.identify().run(), frame)
 
@@ -204,7 +205,7 @@ def _write(tools: dict[str, Tool]) -> None:
         },
     }
     file.parent.mkdir(parents=True, exist_ok=True)
-    # Beside the file, so that it is replaced in one step.
+    # In the same directory, so that the file is replaced in one step.
     descriptor, draft = tempfile.mkstemp(dir=file.parent, prefix=".tools-", suffix=".json")
     try:
         with os.fdopen(descriptor, "w", encoding="utf-8") as out:

@@ -1,14 +1,10 @@
 """Fixtures for pytest: simulated robots in virtual time, and connections to them. Installed with the package.
 
-==========================  ===============================================================================
-fixture                     value
-==========================  ===============================================================================
-``sim_fr3``, ``sim_fer``    a running ``Sim``
-``fr3``, ``fer``            a connected ``Robot``, to the simulation of the fixture above
-``franka_sim``              a ``Sim``: the test runs twice, with a Franka Research 3 and with a Franka Emika Robot
-``franka_robot``            a connected ``Robot``, to that of ``franka_sim``
-``franka_options``          keyword arguments of ``Sim.fr3`` and ``Sim.fer``, as a ``dict``: override it, or see below
-==========================  ===============================================================================
+* ``sim_fr3``, ``sim_fer``: a running ``Sim``.
+* ``fr3``, ``fer``: a connected ``Robot``, to ``sim_fr3`` or ``sim_fer``.
+* ``franka_sim``: a ``Sim``. The test runs twice, with a Franka Research 3 and with a Franka Emika Robot.
+* ``franka_robot``: a connected ``Robot``, to ``franka_sim``.
+* ``franka_options``: keyword arguments of ``Sim.fr3`` and ``Sim.fer``, as a ``dict``. Override it, or see below.
 
 The next millisecond of a simulated robot begins with the command of the test, however busy the machine is, and its arm sticks and
 flexes as real ones do. A marker changes that for a test, a class or a module::
@@ -28,7 +24,7 @@ before a test asks for one.
 
 In a test that is a coroutine, ``await`` stands in the place of ``wait()``.
 
-A test fails at its end if something with ``once_moving=True`` still waits for a motion: what it was to disturb has not been disturbed.
+A test fails at its end if something with ``once_moving=True`` still waits for a motion: the disturbance did not happen.
 """
 
 from __future__ import annotations
@@ -80,7 +76,7 @@ def _sim(kind: str, options: dict[str, Any]) -> Iterator[Sim]:
 def _robot(sim: Sim) -> Iterator[Robot]:
     import franka_async
 
-    # A busy machine may hold the simulator up for longer than the second after which a link counts as lost.
+    # A busy machine may delay the simulator for longer than the second after which a link counts as lost.
     robot = franka_async.Robot(sim.address, realtime="ignore", link_timeout=10.0)
     robot.connect().wait()
     try:

@@ -1,4 +1,4 @@
-"""The same classes for programs without an event loop: what is awaited elsewhere waits here, with the interpreter released.
+"""The same classes for programs without an event loop: their methods wait, with the interpreter released.
 
 ::
 
@@ -9,9 +9,10 @@
         with robot.engage() as arm:
             arm.move_by([0.0, 0.1, 0.0])
 
-Ctrl-C brakes the arm and raises ``KeyboardInterrupt``. Other threads run meanwhile, and may call ``robot.stop()``. Names, arguments
-and exceptions are those of ``franka_async``; so are the classes that are not here. One method differs: ``Team.run`` takes a function
-for each arm, ``team.run([lambda arm: arm.move_to(a), lambda arm: arm.move_by(b)])``, since a motion that was made would wait here.
+Ctrl-C brakes the arm and raises ``KeyboardInterrupt``. Other threads run meanwhile, and may call ``robot.stop()``. Names,
+arguments and exceptions match ``franka_async``, which also has the classes that are not here. One method differs: ``Team.run``
+takes a function for each arm, ``team.run([lambda arm: arm.move_to(a), lambda arm: arm.move_by(b)])``, since a motion that was
+made would wait here.
 """
 
 from __future__ import annotations
@@ -52,17 +53,17 @@ class _Waiting:
 
 
 def _awaiting(argument: Any) -> Any:
-    """What a method takes there for what it takes here."""
+    """Returns the argument for ``franka_async`` of an argument for this module."""
     return getattr(argument, "_awaiting", argument)
 
 
 def _unwrapped(arguments: Sequence[Any], keywords: dict[str, Any]) -> tuple[list[Any], dict[str, Any]]:
-    """The arguments of a call there for those of a call here."""
+    """Returns the arguments for ``franka_async`` of a call of this module."""
     return [_awaiting(argument) for argument in arguments], {name: _awaiting(value) for name, value in keywords.items()}
 
 
 def _result(result: Any) -> Any:
-    """What a method returns here for what it returns there."""
+    """Waits for a result of ``franka_async`` and returns the result of this module."""
     if isinstance(result, _native.Operation):
         result = result.wait()
     if type(result) is list:
@@ -75,7 +76,7 @@ def _result(result: Any) -> Any:
 
 
 def _class(of: type) -> Any:
-    """A class whose methods are those of a class of the package, and wait."""
+    """Returns a class with the methods of a class of the package, which wait."""
 
     def method(name: str, there: Any) -> Any:
         @functools.wraps(there)

@@ -1,7 +1,7 @@
 """``franka`` of the distribution ``franka-rs`` 0.4 over this package: ``import franka_async.compat.franka as franka``.
 
-Classes, keywords, defaults, exceptions and semantics match the original. States and models are the classes of this package, which
-have the same names. No thread of the program is raised to real-time priority.
+Classes, keywords, defaults, exceptions and semantics match the original. States and models are the classes of this package,
+which have the same names. No thread of the program is raised to real-time priority.
 """
 
 import numpy as np

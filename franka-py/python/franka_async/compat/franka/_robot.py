@@ -59,7 +59,7 @@ class Model:
         return self._model.coriolis(q, dq, I_total, m_total, F_x_Ctotal)
 
     def link_poses(self, q: npt.ArrayLike) -> Array:
-        """Returns the poses of the base and the seven links, with the shape (8, 4, 4)."""
+        """Returns the poses of the base and the seven links, ``(8, 4, 4)``."""
         return np.concatenate([np.eye(4)[np.newaxis], self._model.link_poses(q)[:7]])
 
     def hand_pose(self, q: npt.ArrayLike) -> Array:

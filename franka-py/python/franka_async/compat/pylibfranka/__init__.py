@@ -1,10 +1,10 @@
 """The vendor's ``pylibfranka`` 0.21 over this package: ``import franka_async.compat.pylibfranka as pylibfranka``.
 
-Names, arguments, lists (column-major), enumerations, exceptions and their texts match the original. There are three differences:
+Names, arguments, lists (column-major), enumerations, exceptions and their texts match the original. Three points differ:
 
 * it also works with a Franka Emika Robot;
 * it leaves the interpreter to other threads whenever it waits;
-* it raises no thread of the program to real-time priority. Run the control loop on a thread that you give the priority it needs.
+* it raises no thread of the program to real-time priority: run the control loop on a thread that you give the priority.
 """
 
 from ._asynchronous import AsyncPositionControlHandler, TargetStatus

@@ -207,8 +207,11 @@ class Robot:
     def set_load(
         self, load_mass: float, F_x_Cload: Sequence[float], load_inertia: Sequence[float], /
     ) -> None:
-        """Declares the load: mass in kg; centre in the flange frame, 3 numbers in m; inertia, 9 numbers in kg m^2, column by
-        column."""
+        """Declares the load.
+
+        ``load_mass`` is in kg, ``F_x_Cload`` is its centre in the flange frame in m. ``load_inertia`` has nine numbers in kg m^2,
+        column by column.
+        """
         center = numbers("set_load()", F_x_Cload, 3)
         inertia = np.reshape(numbers("set_load()", load_inertia, 9), (3, 3), order="F")
         self._set("Set Load", lambda: self._robot.set_load(load_mass, center, inertia))
