@@ -63,7 +63,7 @@ class Churn:
         return await ended(task)
 
     async def abandon(self):
-        """Cancels a task and lets go of it at once."""
+        """Cancels a task and releases it at once."""
         task = asyncio.ensure_future(self.motion())
         await self.pause()
         task.cancel()
@@ -86,7 +86,7 @@ class Churn:
         return "closed"
 
     async def wait(self):
-        """Waits on a thread of its own, not for long."""
+        """Waits on a separate thread, not for long."""
         return await asyncio.to_thread(blocking, self.motion(), self.random.uniform(0.0, 0.003))
 
     async def crowd(self):

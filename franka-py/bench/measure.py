@@ -1,15 +1,15 @@
 """Measures a package in one case, against a simulated robot: `ADAPTER.py CASE ROBOT HAND` runs an adapter's `main()`.
 
-`ROBOT` is the host that a client connects to, a relay that notes what passes; `HAND` that of the simulator, whose
-gripper has no relay. Each line of output is a JSON object. All have `step`, what it is about, and beside that
+`ROBOT` is the host that a client connects to, a relay that notes what passes. `HAND` is the host of the simulator, whose
+gripper has no relay. Each line of output is a JSON object. All have `step`, the subject of the measurement, and also
 
 - `values`: numbers, whose names end in their unit;
-- `window`: when something went on, `[begin, end]` in seconds since the epoch, for which the relay is asked;
+- `window`: when something ran, `[begin, end]` in seconds since the epoch, for which the relay is asked;
 - `absent`: why the package does not have it;
 - `failed`: why it did not work.
 
 Helper threads start before the package connects: some packages raise the thread that connects to real-time priority,
-which later threads would inherit. What a package prints goes to the other output.
+which later threads would inherit. Output that a package prints goes to the other output.
 """
 
 import abc
@@ -28,11 +28,11 @@ import numpy
 
 
 class Absent(Exception):
-    """The package does not have what is asked for; the text says so in a few words."""
+    """The package does not have the requested item; the text is the reason in a few words."""
 
 
 class Package(abc.ABC):
-    """What is asked of a package. What is not overridden is absent, for the reason that `absent` has under its name.
+    """A package under measurement. A method that is not overridden is absent, for the reason that `absent` has under its name.
 
     `async with package.connected():` is around all but the methods of the hand.
     """
@@ -58,7 +58,7 @@ class Package(abc.ABC):
         """The connection to the robot, an asynchronous context."""
 
     async def read(self, seconds):
-        """Reads one state after the other, which is what `state` does where it waits for the next one."""
+        """Reads one state after the other, as `state` does where it waits for the next one."""
         end = time.perf_counter() + seconds
         while time.perf_counter() < end:
             self.state()
@@ -164,7 +164,7 @@ def report(step, **content):
 
 @contextlib.asynccontextmanager
 async def attempt(step):
-    """Reports what the block raises, and goes on behind it."""
+    """Reports an exception of the block, and continues after it."""
     try:
         yield
     except Absent as reason:
@@ -278,7 +278,7 @@ async def threads(package):
 
 
 async def disturbed(package, step, disturb):
-    """Notes an undisturbed second of control, and then one that begins with the disturbance."""
+    """Notes an undisturbed second of control, and then a second that begins with the disturbance."""
     async with attempt(step), package.connected(), package.hold():
         await asyncio.sleep(0.3)
         async with window(f"{step}_before"):

@@ -1,4 +1,4 @@
-"""Simulated robots in virtual time, and programs in a process of their own."""
+"""Simulated robots in virtual time, and programs in separate processes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from franka_async import Robot, Sim
 T = TypeVar("T")
 
 PATIENT: dict[str, Any] = {"realtime": "ignore", "link_timeout": 10.0}
-"""Options of a robot whose simulator the machine may hold up for longer than the second after which a link counts as lost."""
+"""Options of a robot whose simulator a busy machine may delay for longer than the second after which a link counts as lost.
+"""
 
 LOOPBACK = f"127.{1 + os.getpid() // 254 % 254}.{1 + os.getpid() % 254}"
 """Begins the addresses on which this process starts robots with the ports of real ones, since the tests run in several processes."""
@@ -55,7 +56,7 @@ def connection(sim: Sim) -> Robot:
 
 
 def at_rest(robot: Robot) -> bool:
-    """Whether no joint moves."""
+    """True if no joint moves."""
     return bool(abs(robot.state().dq).max() < 0.02)
 
 
@@ -89,7 +90,7 @@ async def begun(robot: Robot) -> None:
 
 
 async def outcome(work: Awaitable[T]) -> T | BaseException:
-    """What it returns or raises."""
+    """Returns the result or the exception of the work."""
     try:
         return await work
     except BaseException as error:
@@ -97,7 +98,7 @@ async def outcome(work: Awaitable[T]) -> T | BaseException:
 
 
 def program(text: str, *, expect: int = 0) -> str:
-    """Runs a Python program in a process of its own, with the interpreter's own checks, and returns what it printed."""
+    """Runs a Python program in a separate process, with the interpreter's own checks, and returns its output."""
     done = subprocess.run([sys.executable, "-X", "dev", "-c", text], capture_output=True, text=True, timeout=60)
     assert done.returncode == expect, f"{done.returncode}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr

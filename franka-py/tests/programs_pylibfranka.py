@@ -226,7 +226,7 @@ def _status_at_rest(handler: Any, robot: Any) -> str:
 
 
 def tolerances(p: Any, address: str, outcome: Any) -> None:
-    """What counts as reached, for any number."""
+    """Notes the status of targets with any number as the tolerance."""
     robot = connect(p, address)
     handlers = p.AsyncPositionControlHandler
     for tolerance in (10.0, math.inf, 0.0, -1.0, math.nan, None):

@@ -1,4 +1,4 @@
-"""Runs a program with a package and prints its outcome: ``run_program.py PROGRAMS PROGRAM PACKAGE ADDRESS``, in a process of its own.
+"""Runs a program with a package in a separate process: ``run_program.py PROGRAMS PROGRAM PACKAGE ADDRESS``. Prints its outcome.
 
 The originals hold the interpreter while they wait, and raise the thread that connects to real-time priority.
 """
@@ -14,7 +14,7 @@ import numpy as np
 
 
 class Outcome:
-    """What a program notes on its way."""
+    """Notes of a program on its way."""
 
     def __init__(self) -> None:
         self.notes: list[tuple[str, Any]] = []

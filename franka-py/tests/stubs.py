@@ -1,5 +1,5 @@
-"""Writes what is made of the stubs: the docstrings in the stub of the native module, which are those of the module, and the stub of
-``franka_async.sync``, whose methods are those of the native classes.
+"""Writes the generated parts of the stubs: the docstrings in the stub of the native module, copied from the module, and the
+stub of ``franka_async.sync``, whose methods are copied from the native classes.
 
 ``python franka-py/tests/stubs.py`` with the package installed, after a change of either; a test compares them.
 """
@@ -18,10 +18,10 @@ NATIVE = PACKAGE / "_native.pyi"
 SYNC = PACKAGE / "sync" / "__init__.pyi"
 
 WAITED = {"Motion": "MotionReport", "Follow": "MotionReport", "Engagement": "Arm"}
-"""What awaiting these gives."""
+"""Types of the results of awaiting these."""
 
 ARGUMENTS = {("Team", "run"): "Sequence[Callable[[_native.Arm], Motion | Follow]]"}
-"""What methods take in the place of their argument."""
+"""Types of arguments of methods in the stub of ``franka_async.sync`` that differ."""
 
 CONTEXT = {"__aenter__": "__enter__", "__aexit__": "__exit__"}
 
@@ -113,7 +113,7 @@ def sync() -> str:
 
 
 def waited(returns: ast.expr | None) -> ast.expr | None:
-    """What the method that is annotated so returns once it has waited."""
+    """Returns the type of the result of a method with this annotation once it has waited."""
     if isinstance(returns, ast.Subscript) and ast.unparse(returns.value) == "Operation":
         return returns.slice
     if isinstance(returns, ast.Name) and returns.id in WAITED:

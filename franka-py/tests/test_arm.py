@@ -34,7 +34,7 @@ from franka_async import (
 from franka_async.motion import Guard
 
 NEAR = 3e-3
-"""How near an arm that sticks comes to its target, m."""
+"""Largest distance of an arm that sticks to its target, m."""
 
 
 def run(sim: Sim, main: Any) -> None:
@@ -90,7 +90,7 @@ def test_the_error_of_a_block_is_not_replaced_by_its_end(sim: Sim) -> None:
 
 
 async def unnoticed_end(arm: Arm) -> None:
-    """Waits for the end of a session without being told why."""
+    """Waits for the end of a session without reading its cause."""
     while "disengaged" not in repr(arm):
         await asyncio.sleep(0.001)
 
@@ -132,7 +132,7 @@ def test_the_end_of_a_block_does_not_repeat_what_was_raised_in_it(live: Sim) -> 
                 with pytest.raises(ControlError):
                     await motion
                 await robot.recover()
-            # The arm that was left is told of it as before.
+            # The arm of the finished session raises the same error as before.
             with pytest.raises(ControlError):
                 await arm.hold()
         async with robot.engage() as arm:
@@ -142,7 +142,7 @@ def test_the_end_of_a_block_does_not_repeat_what_was_raised_in_it(live: Sim) -> 
             with pytest.raises(MotionError) as stopped:
                 await motion
             assert stopped.value.kind == "stopped"
-        # A goal that was stopped alone says nothing of the end of the session.
+        # A goal that was stopped alone does not report the end of the session.
         with pytest.raises(MotionError) as stopped:
             async with robot.engage() as arm:
                 goal = arm.move_by([0.0, 0.0, 0.2], speed=0.1)
@@ -315,7 +315,7 @@ def test_the_latest_target_is_set_from_anywhere(sim: Sim) -> None:
             latest.set(start)
         with pytest.raises(ValueError, match="shape"):
             Latest([0.1, 0.2, 0.3])
-        # Nobody holds it any more: the motion ends where it was told to go last.
+        # The program holds no reference any more: the motion ends at the last target.
         latest = Latest(start)
         following = asyncio.create_task(robot.follow(latest))
         del latest

@@ -17,7 +17,7 @@ BOOK = Path(__file__).parents[2] / "docs" / "src"
 
 
 def run(page: str, skipped: int = 0) -> dict[str, Any]:
-    """What the programs of a page define, after all of them have run but for the first ones."""
+    """Runs the programs of a page except the first ones, and returns the names that they define."""
     programs = re.findall(r"^```python\n(.*?)^```", (BOOK / page).read_text(), re.MULTILINE | re.DOTALL)
     assert programs
     names: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""What is awaited is given up at any moment: the arm brakes, nothing hangs, and the robot takes the next motion."""
+"""An operation is cancelled at any moment: the arm brakes, nothing hangs, and the robot takes the next motion."""
 
 from __future__ import annotations
 

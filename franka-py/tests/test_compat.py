@@ -1,6 +1,6 @@
 """Programs that were written for other packages: the same outcomes through the originals and through the layers for them.
 
-Each runs in a process of its own, against a simulated robot of its own with the same settings.
+Each runs in a separate process, against a separate simulated robot with the same settings.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def programs_of(module: ModuleType) -> list[str]:
 
 
 def outcome(programs: str, program: str, package: str, kind: str) -> list[tuple[str, Any]]:
-    """Runs a program with a package against a robot of its own; returns what it notes."""
+    """Runs a program with a package against a separate robot; returns its notes."""
     start = getattr(Sim, kind)
     with start(virtual_time=True, patience=0.25, ideal=True, hand=True, address=f"{LOOPBACK}.{next(HOSTS)}:1337") as sim:
         address = sim.address.removesuffix(":1337")
@@ -85,7 +85,7 @@ def test_programs_for_franka_have_the_same_outcome(program: str) -> None:
 @pytest.mark.parametrize("program", ["everything", "hand"])
 @pytest.mark.parametrize("original", ["pylibfranka", "franka"])
 def test_every_use_and_misuse_has_the_same_outcome(original: str, program: str) -> None:
-    """But for the texts of errors, and what the book lists."""
+    """The texts of errors, and the differences that the book lists, are exempt."""
     beside(original, program, "usage")
 
 
@@ -116,7 +116,7 @@ def test_the_layers_have_every_name(original: str, layer: ModuleType) -> None:
     printed = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
     for name, members in json.loads(printed).items():
         missing = set(members) - set(dir(getattr(layer, name)))
-        # What is made per object is not seen on the class.
+        # The class does not show members that are made per object.
         made = {"Errors", "RobotState", "GripperState", "Model", "FrankaError", "ControlException"}
         if name not in made and not issubclass(getattr(layer, name), BaseException):
             assert not missing - {"motion_finished", "name", "value"}, name

@@ -1,4 +1,4 @@
-"""The examples, each run as a program of its own against a simulator of the test."""
+"""The examples, each run as a separate program against a simulator of the test."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from franka_async.options import SimOptions
 
 DIRECTORY = Path(__file__).parents[1] / "examples"
 
-# What each prints at its end.
+# The last output of each.
 PRINTS = {
     "quickstart": r"cancelled: the arm brakes\n",
     "policy": r"followed for \d\.\d s, .*\n",
@@ -60,7 +60,7 @@ def ran(name: str) -> subprocess.CompletedProcess[str]:
         elif name == "team":
             arguments.append("10.0")
         elif name in ("recover", "explain"):
-            # With a simulator of its own, which it pushes.
+            # With its own simulator, which it pushes.
             arguments = []
         command = [sys.executable, str(DIRECTORY / f"{name}.py"), *arguments]
         return subprocess.run(command, capture_output=True, text=True, timeout=120)

@@ -1,4 +1,4 @@
-"""Why a robot stopped, of recordings and of errors."""
+"""Explanations of stops, from recordings and from errors."""
 
 import asyncio
 import copy

@@ -1,5 +1,5 @@
-"""What holds for every face: ``sync``, and the layers for ``franka`` and ``pylibfranka``. A stop comes from any thread, Ctrl-C ends
-whatever waits, no thread of the program is raised, and a process may fork or exit at any time.
+"""Properties of every face: ``sync``, and the layers for ``franka`` and ``pylibfranka``. A stop comes from any thread, Ctrl-C
+ends every wait, no thread of the program is raised, and a process may fork or exit at any time.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def moves(sim: Sim) -> Callable[[], bool]:
 
 
 def assert_stops(sim: Sim) -> None:
-    """The arm comes to rest by itself, far from where it was going to."""
+    """The arm stops by its own motion, far from its target."""
     until(lambda: sim.state().robot_mode != "move")
     until(lambda: bool(abs(sim.state().dq).max() < 0.02))
 
@@ -77,7 +77,7 @@ def test_a_stop_of_another_thread_ends_targets_of_franka(live_fr3: Sim) -> None:
         goal = targets.target()
         goal[6 if begin == robot.joint_targets else 2] += 0.1
         with once(moves(live_fr3), robot.stop if stop == "robot" else targets.stop):
-            # What the thread does until it hears of the stop.
+            # The thread sends targets until it is notified of the stop.
             with pytest.raises(franka.FrankaError) as ended:
                 while True:
                     targets.move_to(goal)
@@ -140,7 +140,7 @@ def test_ctrl_c_ends_what_waits_for_a_robot(live_fr3: Sim) -> None:
                 arm.move_to(far, speed=0.1)
             until(lambda: bool(abs(live_fr3.state().dq).max() < 0.02))
             arm.set(Joints(robot.state().q))
-        # What never comes.
+        # Events that never come.
         events = robot.events()
         with pytest.raises(KeyboardInterrupt), once(lambda: True, interrupt):
             for _ in events:
@@ -209,7 +209,7 @@ def connected(connect: Callable[[], T]) -> T:
 
 
 def test_ctrl_c_ends_connecting() -> None:
-    """To a robot that accepts the connection and says nothing."""
+    """The robot accepts the connection and sends nothing."""
     with socket.create_server((f"{LOOPBACK}.2", 1337)) as silent:
         address = f"{LOOPBACK}.2:{silent.getsockname()[1]}"
         connecting: list[Callable[[], Any]] = [
@@ -298,7 +298,7 @@ print("unchanged")
 
 
 def test_no_thread_of_the_program_is_raised_or_pinned() -> None:
-    """Where the right to it is there: the control thread is, as it was asked to."""
+    """The control thread itself is raised if the system grants the right."""
     assert "unchanged" in program(THREADS)
 
 

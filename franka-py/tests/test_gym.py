@@ -24,7 +24,7 @@ KINDS: list[Any] = list(get_args(gym.ActionKind))
 def test_the_environment_passes_gymnasiums_check(robot: Any, action: Any) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        # Numbers without bounds are what observations are.
+        # Observations are numbers without bounds.
         warnings.filterwarnings("ignore", ".*Box observation space (minimum|maximum) value is -?infinity.*")
         check_env(gym.FrankaEnv(robot, action=action), skip_render_check=True)
 

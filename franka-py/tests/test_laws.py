@@ -228,7 +228,7 @@ def test_every_kind_of_command_can_come_from_a_law(start: Start, library: ctypes
             law = Law(code, command=command, parameters=[50.0, 0.0], memory=np.zeros(17))  # type: ignore[arg-type]
             await robot.run_law(law, controller="cartesian_impedance")
             assert law.memory[0] == 50.0, command
-            # Giving up has the robot stop; then it takes the next motion.
+            # Giving up stops the robot, which then takes the next motion.
             law.parameters = [30.0, -7.0]
             with pytest.raises(MotionError) as given_up:
                 await robot.run_law(law, controller="joint_impedance")

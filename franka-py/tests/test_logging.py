@@ -11,7 +11,7 @@ from franka_async import Robot
 
 
 def collect(code: str) -> str:
-    """What a program of its own prints: the bridge is one for the process."""
+    """Returns the output of a separate program: the bridge is one for the process."""
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
     return done.stdout
 

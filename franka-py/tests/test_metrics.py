@@ -25,7 +25,7 @@ def test_metrics_of_several_robots_are_one_text(sim: Sim) -> None:
         # The families of one robot's own text, and no others.
         alone = {line.split()[2] for line in left.metrics().splitlines() if line.startswith("# TYPE")}
         assert alone <= set(types)
-    # A lost one is seen, one that was shut down has left.
+    # A lost robot is seen, a robot that was shut down has left.
     sim.stop()
     until(lambda: 'franka_connected{robot="left"} 0' in metrics.text({"left": left}))
     left.shutdown().wait()

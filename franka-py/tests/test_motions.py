@@ -36,7 +36,7 @@ from franka_async import (
 from franka_async.condition import POSITION_Z, SPEED, elapsed, force_z, joint_position
 
 NEAR = 2e-3
-"""How near an arm that sticks comes to its target, m and rad."""
+"""Largest distance of an arm that sticks to its target, m and rad."""
 
 
 def turned_about_z(angle: float) -> NDArray[np.float64]:

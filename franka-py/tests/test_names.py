@@ -1,4 +1,4 @@
-"""What the driver has in Rust, Python has too, or says why not."""
+"""Names of the driver in Rust exist in Python too, or have a stated reason why not."""
 
 from __future__ import annotations
 
@@ -57,9 +57,9 @@ def tables(page: str) -> Iterator[list[list[str]]]:
 
 
 def rows(page: Path) -> Iterator[tuple[list[str], str]]:
-    """Of each row of a table with a column ``Python``: the names in the first cell, and the cell of that column.
+    """Yields, for each row of a table with a column ``Python``, the names in the first cell, and the cell of that column.
 
-    ``*`` stands for the members of the types in the header that have no row of their own.
+    ``*`` stands for the members of the types in the header that have no separate row.
     """
     peer = PEERS / {"from-franka-rs-python.md": "franka.txt"}.get(
         page.name, page.stem.removeprefix("from-").replace("-", "_") + ".txt"
@@ -81,7 +81,7 @@ def rows(page: Path) -> Iterator[tuple[list[str], str]]:
 
 
 def found(name: str) -> object:
-    """What a name of the package stands for; ``Robot(realtime=)`` is the keyword of that name."""
+    """Returns the object that a name of the package stands for; ``Robot(realtime=)`` is the keyword of that name."""
     name, _, keyword = name.partition("(")
     path = name.removeprefix("franka_async.").split(".")
     item: object = franka_async

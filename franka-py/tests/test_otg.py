@@ -84,7 +84,7 @@ def test_a_target_in_motion_is_met_at_its_velocity() -> None:
 def test_without_a_target_it_stops() -> None:
     limits = otg.AxisLimits(2.0, 10.0, 1000.0)
     stop = otg.plan([0.0, 1.0], None, limits, start_velocity=[1.0, -0.5])
-    # From 1 m/s at 10 m/s^2, with two ramps of 10 ms.
+    # Braking from 1 m/s takes 0.1 s. Two ramps add 10 ms.
     assert stop.duration == pytest.approx(0.11)
     assert stop.end[0] == pytest.approx(0.5 * 0.11) and stop.end[1] < 1.0
 

@@ -1,4 +1,4 @@
-"""What is installed: its metadata, and what it does to other programs."""
+"""The installed package: its metadata, and its effect on other programs."""
 
 from __future__ import annotations
 

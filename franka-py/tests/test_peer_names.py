@@ -1,5 +1,5 @@
-"""The lists of names of other packages, which the book's chapters for those who come from there have a row for each of, are those of
-the packages themselves. ``cargo xtask check --only names`` holds the chapters against the lists."""
+"""The lists of names of other packages, each of which has a row in the book's chapters for users of those packages. The lists
+match the packages themselves. ``cargo xtask check --only names`` checks the chapters against the lists."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_list_of_libfranka_has_the_functions_of_its_library() -> None:
 
 
 INTERNAL = ("ControlLoop", "Network", "Robot::Impl", "RobotModel::", "MobileModel::Data", "CoutLoggingSink::")
-"""Of classes that no header of a program names, or whose members are those of their interface."""
+"""Prefixes of classes that no header of a program names, or whose members belong to their interface."""
 
 UNLISTED = {
     "ActiveMotionGenerator::isTorqueControlFinished",
@@ -56,4 +56,4 @@ UNLISTED = {
     "isMobileRobotUrdf",
     "skewSymmetricMatrixFromVector",
 }
-"""Private, or of its own sources."""
+"""Private functions, or functions that only the library's sources use."""

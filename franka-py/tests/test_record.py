@@ -57,7 +57,7 @@ def test_nothing_is_lost_while_the_interpreter_is_busy(fr3: Robot) -> None:
             pass
         after = fr3.stats()
         end = fr3.state().time_ms
-    # What did not come to this computer's thread is lost, and no more.
+    # Only states that did not reach this computer's thread are lost.
     gone = sum(after[name] - before[name] for name in ("lost", "skipped"))
     assert len(recording) >= end - begin - gone - 5
     assert recording.lost <= gone + 50

@@ -105,7 +105,7 @@ def test_waiting_in_an_event_loop_is_refused(robot: Robot) -> None:
     async def main() -> None:
         with pytest.raises(RuntimeError, match="event loop"):
             robot.stop().wait()
-        # What was refused has not begun.
+        # An operation that was refused has not begun.
         operation = robot.stop()
         with pytest.raises(RuntimeError, match="event loop"):
             operation.wait()

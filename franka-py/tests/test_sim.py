@@ -1,4 +1,4 @@
-"""The simulated robot: what it is like, and what people and objects do to it."""
+"""The simulated robot: its properties, and the actions of people and objects on it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_it_is_as_its_options_say() -> None:
             sim.place_object(0.01)
 
     def rest(**options: Any) -> np.ndarray:
-        """Where an arm of these options is really, and says it is."""
+        """Returns the distance between the true pose of an arm with these options and the pose that it reports."""
         with Sim.fr3(virtual_time=True, **options) as sim:
             return np.asarray(sim.true_pose() - sim.state().O_T_EE)
 
@@ -167,7 +167,7 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
     assert 0.0 < lift() < 0.03
     sim.press_user_stop(False)
     until(lambda: robot.state().robot_mode == "idle")
-    # What was taken back does not come.
+    # A disturbance that was taken back does not come.
     push = sim.push([0.0, 0.0, -200.0], once_moving=True)
     assert push.felt() is None and push.release() and not push.release()
     assert sim.waiting == 0

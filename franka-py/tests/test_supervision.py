@@ -52,7 +52,7 @@ def test_the_reflex_of_a_motion_comes_with_its_error(fr3: Robot, sim_fr3: Sim) -
         while fr3.state().robot_mode != "move":
             await asyncio.sleep(0)
         sim_fr3.trip("cartesian_reflex")
-        # The reflex is told once its motion has ended.
+        # The reflex is reported once its motion has ended.
         ended = await until(events, "motion_ended")
         reflex = (await until(events, "reflex")).reflex
         with pytest.raises(franka_async.ControlError) as raised:

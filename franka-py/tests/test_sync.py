@@ -104,7 +104,7 @@ def test_stubs_are_made_of_the_native_module() -> None:
 
 
 def test_every_public_method_has_a_docstring() -> None:
-    """In the stub, which is what editors show."""
+    """Checks the stub, which editors show."""
     without = []
     classes = (node for node in ast.parse(NATIVE.read_text()).body if isinstance(node, ast.ClassDef))
     for node in classes:

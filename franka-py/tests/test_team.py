@@ -39,7 +39,7 @@ def test_both_arms_arrive_and_each_has_its_report(fr3: Robot, fer: Robot) -> Non
             left, right = team.arms
             reports = await team.run([left.move_by([0.0, 0.0, -0.03]), right.move_by([0.0, 0.0, 0.02])])
             assert len(reports) == 2
-            # One that is only held keeps its place, and the other one not from moving; so do both.
+            # A held arm keeps its place and does not hold the other one; two held arms keep both places.
             for held in ((True, False), (False, True), (True, True)):
                 before = [robot.pose()[2, 3] for robot in (fr3, fer)]
                 await team.run([arm.hold() if hold else arm.move_by([0.0, 0.0, 0.02]) for arm, hold in zip(team.arms, held, strict=True)])
@@ -112,7 +112,7 @@ def test_the_fault_of_one_brakes_the_other_and_is_the_cause(fr3: Robot, sim_fr3:
         await team.arms[1].move_to(up(fer, -0.02))
         with pytest.raises(TeamError):
             await team.disengage()
-        # What the program was told is not raised again.
+        # A cause that was reported is not raised again.
         async with team:
             pass
         await fr3.recover()

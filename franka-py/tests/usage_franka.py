@@ -1,4 +1,4 @@
-"""How a program may use ``franka``, right and wrong: types, keywords, defaults and misuse, without the texts of errors."""
+"""Uses of ``franka``, right and wrong: types, keywords, defaults and misuse, without the texts of errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a program may use pylibfranka, right and wrong: types, attributes, keywords and misuse, without the texts of errors."""
+"""Uses of pylibfranka, right and wrong: types, attributes, keywords and misuse, without the texts of errors."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def _returned(call: Any, *arguments: Any) -> bool:
 
 
 def models(p: Any, robot: Any, outcome: Any) -> None:
-    """Of states that the program has changed."""
+    """Models of states that the program has changed."""
     model, state = robot.load_model(), robot.read_once()
     calls = (model.mass, model.gravity, model.coriolis, model.zero_jacobian)
     for n, call in enumerate(calls):

@@ -1,4 +1,4 @@
-"""The project's golden vectors, made by other implementations; ``tests/vectors/README.md`` says how."""
+"""The project's golden vectors, made by other implementations; see ``tests/vectors/README.md``."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ SETPOINT_TOLERANCE = 5e-4
 
 
 def arrive(control, command, duration):
-    """Commands along a plan of so many seconds, finishes the motion once its setpoint rests, and returns the states."""
+    """Commands along a plan of ``duration`` seconds, finishes the motion once its setpoint rests, and returns the states."""
     return follow(control, command, duration + SETTLE)
 
 
@@ -144,7 +144,8 @@ def steer(setpoint, velocity, plan):
 
 
 def ease(x):
-    """A function that rises from 0 to 1 over 0 <= x <= 1, at rest at both ends, and its first two derivatives."""
+    """A function that rises from 0 to 1 for ``x`` within ``0 <= x <= 1``, at rest at both ends, and its first two
+    derivatives."""
     x = min(max(x, 0.0), 1.0)
     return (
         x**3 * (10.0 + x * (6.0 * x - 15.0)),

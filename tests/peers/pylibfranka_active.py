@@ -183,7 +183,7 @@ def stop_ends_a_motion_of_another_thread(session):
 
     def move():
         control = joint_motion(session)
-        # Under way for seconds on the wall, so that a thread that is held up stops it nevertheless.
+        # Takes seconds on the wall, so that even a delayed thread stops it in mid-motion.
         duration = 20.0
         command = joint_positions(line(start, TURN, duration))
 

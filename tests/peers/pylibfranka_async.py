@@ -1,9 +1,9 @@
 """Asynchronous joint positions with pylibfranka: pylibfranka_async.py ADDRESS
 
 The robot plans the path to each target itself; the client sends targets at any time, so that none is late. The simulator
-keeps the clock on the wall, since no answer is awaited. So the arm moves on while the client is held up: what is checked on
-the way holds for whichever states the client sees, and what has to happen in mid-motion happens in the first half second of
-a way that takes five.
+keeps the clock on the wall, since no answer is awaited. The arm moves on while the client is delayed. Checks on the way
+therefore hold for any states that the client sees, and events in mid-motion happen in the first half second of a way that
+takes five.
 """
 
 import gc
@@ -59,7 +59,7 @@ def feedback(handler, state=None):
 
 
 def arrival(session, handler, target):
-    """The states until the target is reached. The status of each is what the state says."""
+    """Returns the states until the target is reached. The status of each matches the state."""
     states, status = [], None
     while status != TargetStatus.kTargetReached:
         state = session.robot.read_once()
@@ -129,7 +129,7 @@ def goes_slower_where_told(session):
     handler.stop_control()
     fastest = numpy.max(numpy.abs([state.dq_d for state in states]))
     check(fastest <= limit + 1e-3, f"{fastest} keeps {limit}")
-    # At full speed it takes half of this, and a client that is held up only sees it take longer.
+    # At full speed it takes half of this. A delayed client only sees it take longer.
     took, least = states[-1].time.to_sec() - start.time.to_sec(), numpy.max(OFFSET) / limit
     check(took > least, f"{took:.2f} s, more than {least:.2f} s")
     return f"fastest joint at {fastest:.3f} rad/s, in {took:.2f} s"

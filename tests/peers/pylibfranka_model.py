@@ -73,7 +73,7 @@ def the_mass_matrix_is_one(arm):
 
 
 def coriolis_torques_do_no_work_of_their_own(arm):
-    """Their power is half that of the changing mass matrix, and they grow with the square of the velocities."""
+    """Their power is half the power of the changing mass matrix, and they grow with the square of the velocities."""
     worst = 0.0
     for state, q, dq in arm.states_anywhere():
         torques = arm.coriolis(state)

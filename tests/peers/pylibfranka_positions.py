@@ -18,7 +18,7 @@ from pylibfranka import ControlException, ControllerMode, JointPositions, Realti
 
 
 class Joints:
-    """A motion that goes on until it is ended."""
+    """A motion that continues until it is ended."""
 
     def __init__(self, address):
         self.robot = Robot(address, RealtimeConfig.kIgnore)

@@ -140,7 +140,7 @@ def refuses_parameters_in_a_motion(session):
 
 
 def joints_give_way_as_their_stiffness_says(session):
-    """A load that is declared but not there lifts the arm, as far as the controller lets it."""
+    """A load that is declared but not there lifts the arm by the amount that the controller allows."""
     mass, gives = 0.4, {}
     for stiffness in (500.0, 2500.0):
         state = under_a_load(session, mass, ControllerMode.JointImpedance, [stiffness] * 7, STIFF[1])
@@ -236,7 +236,7 @@ def is_realtime_kernel():
 
 
 def may_be_realtime():
-    """Whether this thread may have the highest priority; it keeps what it has."""
+    """True if this thread may have the highest priority; its priority does not change."""
     policy, priority = os.sched_getscheduler(0), os.sched_getparam(0)
     try:
         highest = os.sched_param(os.sched_get_priority_max(os.SCHED_FIFO))

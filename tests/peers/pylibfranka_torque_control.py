@@ -78,7 +78,7 @@ def an_arm_that_is_led_desires_to_be_where_it_is(session):
     after = session.state_at_rest()
     travel = max(state.q[6] for state in states) - states[0].q[6]
     check(travel > 1e-2, f"joint 7 moved by {travel:.4f} rad only")
-    # The state is that of the end of a millisecond, the setpoint may be that of its beginning.
+    # The state belongs to the end of a millisecond, the setpoint may belong to its beginning.
     fastest = max(max(map(abs, state.dq)) for state in states)
     near("q_d on the way", [state.q_d for state in states[1:]], [state.q for state in states[1:]], 2 * CYCLE * fastest)
     near("q_d afterwards", after.q_d, after.q, 5e-3)

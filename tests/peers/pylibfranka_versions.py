@@ -1,6 +1,6 @@
 """pylibfranka 0.21 before a robot of protocol 5, which it does not speak: pylibfranka_versions.py ADDRESS
 
-The client announces protocol 10, that of the Franka Research 3, and reports any other one as an error.
+The client announces protocol 10, as the Franka Research 3 has, and reports any other one as an error.
 """
 
 from pylibfranka import FrankaException, Gripper, RealtimeConfig, Robot

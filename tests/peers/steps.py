@@ -1,6 +1,6 @@
 """Shared code of the scripts in this directory: steps that are run and counted, and checks of results.
 
-A step is a function; its name says what it proves, and its return value is printed. Each prints one line, the last line
+A step is a function named after its claim, and its return value is printed. Each prints one line, the last line
 counts them, and the exit code of a script is 0 only if none failed.
 
 Client and simulator share a machine that may be busy, and no result depends on that. Where the client commands in cycles,
@@ -63,7 +63,7 @@ class Session:
         self.robot = Robot(self.address, RealtimeConfig.kIgnore)
 
     def fresh_state(self):
-        """A current state: the first read may return an old one that was waiting in the socket."""
+        """Returns a current state: the first read may return an old state that was waiting in the socket."""
         self.robot.read_once()
         return self.robot.read_once()
 

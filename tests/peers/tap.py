@@ -1,7 +1,7 @@
-"""A relay between a client and a robot, in a process of its own, which records what the client does not show.
+"""A relay between a client and a robot, in a separate process, which records what the client does not show.
 
-The client's state has neither the mode of the motion generator nor that of the controller. The relay passes everything
-on as it is, but for the port to which states are to go, and notes the modes of the states and the motions requested.
+The client's state has neither the mode of the motion generator nor the mode of the controller. The relay passes everything
+on as it is, except the port to which states go, and notes the modes of the states and the motions requested.
 """
 
 import multiprocessing
@@ -33,7 +33,7 @@ class Tap:
     def seen(self):
         """The modes of the states since the last call, each when it changed, and the motions requested.
 
-        The modes are those of robot, motion generator and controller; a motion is its controller and generator.
+        The modes belong to robot, motion generator and controller; a motion is its controller and generator.
         """
         self.notes.send(None)
         return self.notes.recv()

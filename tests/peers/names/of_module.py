@@ -1,7 +1,8 @@
 """Prints the public names of an installed package, one a line: `python of_module.py franky`.
 
-A class is followed by its members, those of bases that the package does not export included. What several modules export is
-that of the shortest path; `name` and `value` of enumerations, names of other packages and submodules are left out.
+A class is followed by its members, including members of bases that the package does not export. A name that several modules
+export is printed with its shortest path. `name` and `value` of enumerations, names of other packages and submodules are left
+out.
 """
 
 import contextlib
