@@ -25,7 +25,7 @@ import franka_async
 
 
 class Churn:
-    """The robot, and what became of its motions."""
+    """The robot, and the outcomes of its motions."""
 
     def __init__(self, robot, seed):
         self.robot, self.random = robot, random.Random(seed)
@@ -33,7 +33,7 @@ class Churn:
         self.outcomes = collections.Counter()
 
     def motion(self):
-        """A motion of one of the kinds, nowhere far from home."""
+        """Returns a motion of one of the kinds, never far from home."""
         q = [joint + self.random.uniform(-0.05, 0.05) for joint in self.home]
         kind = self.random.randrange(3)
         if kind == 0:
@@ -43,7 +43,7 @@ class Churn:
         return self.robot.move_to(self.robot.pose_at(q))
 
     async def one(self):
-        """One motion in one of the ways."""
+        """Runs one motion in one of the ways."""
         ways = [self.drop, self.cancel, self.time_out, self.close, self.wait, self.crowd, self.supersede, self.abandon]
         way = self.random.choice(ways) if self.random.random() > 0.01 else self.arrive
         try:
@@ -109,7 +109,7 @@ class Churn:
         return "arrived"
 
     async def pause(self):
-        """Lets the event loop go round some times, or sleeps a little."""
+        """Lets the event loop run for some rounds, or sleeps a little."""
         for _ in range(self.random.randrange(4)):
             await asyncio.sleep(0)
         if self.random.random() < 0.3:
@@ -149,7 +149,7 @@ def fork(robot):
 
 
 def memory():
-    """The memory of the process that is resident, MB, after what nothing refers to is freed."""
+    """Returns the resident memory of the process, MB, after unreferenced objects are freed."""
     gc.collect()
     with open("/proc/self/statm") as statm:
         return int(statm.read().split()[1]) * resource.getpagesize() / 1e6

@@ -20,7 +20,7 @@ CYCLES = 20
 
 
 def per_second(step: Callable[[], object], seconds: float) -> float:
-    """Calls of ``step`` per second, after a tenth of the time to warm up."""
+    """Returns the calls of ``step`` per second, after a tenth of the time to warm up."""
     for duration in (seconds / 10.0, seconds):
         count, start = 0, time.perf_counter()
         while (passed := time.perf_counter() - start) < duration:

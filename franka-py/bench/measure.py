@@ -69,18 +69,18 @@ class Package(abc.ABC):
 
     @abc.abstractmethod
     def hold(self):
-        """Control of the arm where it is, an asynchronous context."""
+        """Control of the arm at its present position, an asynchronous context."""
 
     @abc.abstractmethod
     def state(self):
-        """A state."""
+        """Returns a state."""
 
     def pose(self, q):
-        """The pose of the end effector at joint positions."""
+        """Returns the pose of the end effector at joint positions."""
         raise self.missing("pose")
 
     def inverse(self, poses):
-        """Joint positions for each of many poses. Returns how many were found."""
+        """Computes joint positions for each of many poses. Returns the number of poses that were solved."""
         raise self.missing("inverse")
 
     async def active(self, seconds):
@@ -95,7 +95,8 @@ class Package(abc.ABC):
 class Ticker(threading.Thread):
     """A thread that sleeps a millisecond at a time and notes when it wakes up.
 
-    It has real-time priority where that is granted: other programs then delay it less, and the interpreter is left.
+    It has real-time priority where the system grants it. Other programs then delay it less, so that the interpreter remains as
+    the cause.
     """
 
     def __init__(self):
@@ -226,7 +227,7 @@ async def calls(package):
 
 
 def timed(function, times):
-    """The median of the times that a call takes."""
+    """Returns the median of the durations of a call."""
     durations = []
     for _ in range(times):
         begin = time.perf_counter()

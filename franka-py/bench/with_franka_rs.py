@@ -32,7 +32,7 @@ class FrankaRs(measure.Package):
             target = session.target()
             target[6] += measure.TURN
             session.move_to(target)
-            # A session does not tell when it has arrived.
+            # A session does not report when it has arrived.
             await asyncio.sleep(2.0)
 
     @contextlib.asynccontextmanager

@@ -1,4 +1,4 @@
-"""The vendor's package: a loop in Python that reads and writes is its control."""
+"""The vendor's package. Its control is a loop in Python that reads and writes."""
 
 import contextlib
 import math

@@ -17,22 +17,22 @@ from franka_async import Robot, Sim
 T = TypeVar("T")
 
 PATIENT: dict[str, Any] = {"realtime": "ignore", "link_timeout": 10.0}
-"""Options of a robot whose simulator a busy machine may delay for longer than the second after which a link counts as lost.
-"""
+"""Options of a robot whose simulator a busy machine may delay for longer than the usual link timeout of a second."""
 
 LOOPBACK = f"127.{1 + os.getpid() // 254 % 254}.{1 + os.getpid() % 254}"
-"""Begins the addresses on which this process starts robots with the ports of real ones, since the tests run in several processes."""
+"""First parts of the addresses on which this process starts robots with the ports of real ones, since the tests run in
+several processes."""
 
 
 @pytest.fixture(scope="session", autouse=True)
 def interruptible() -> None:
-    """Has Ctrl-C raise ``KeyboardInterrupt``, also where a shell runs the tests in the background, which has it ignored."""
+    """Makes Ctrl-C raise ``KeyboardInterrupt``, even where a shell runs the tests in the background and ignores it."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(params=["fr3", "fer"])
 def sim(request: pytest.FixtureRequest) -> Iterator[Sim]:
-    """A simulated robot of each kind, with an arm as real ones are."""
+    """A simulated robot of each kind, with a realistic arm."""
     kind: str = request.param
     # Two states that a busy machine reads at once cost this time each.
     with getattr(Sim, kind)(virtual_time=True, patience=5.0) as sim:
@@ -61,7 +61,7 @@ def at_rest(robot: Robot) -> bool:
 
 
 def until(condition: Callable[[], bool], *, longest: float = 20.0) -> None:
-    """Waits for something that has to come, however long the machine takes."""
+    """Waits for a condition that must become true, regardless of how long the machine takes."""
     import time
 
     end = time.monotonic() + longest

@@ -13,7 +13,7 @@ def connect(f: Any, address: str) -> Any:
 
 
 def until(condition: Any) -> bool:
-    """Waits until it is true; returns whether it became so."""
+    """Waits until the condition is true; returns whether it became true."""
     end = time.monotonic() + 20.0
     while not condition():
         if time.monotonic() > end:
@@ -23,7 +23,7 @@ def until(condition: Any) -> bool:
 
 
 def aligned(target: Any) -> Any:
-    """The same target with that one of its two quaternions whose largest part is positive."""
+    """Returns the same target with the one of its two quaternions whose largest part is positive."""
     quaternion = target[3:]
     return np.append(target[:3], quaternion * np.sign(quaternion[np.abs(quaternion).argmax()]))
 
@@ -122,7 +122,7 @@ def follow(f: Any, address: str, outcome: Any) -> None:
         followed = until(lambda: abs(targets.target()[2] - begin[2] - 0.02) < 1e-9)
         outcome.note("followed", followed)
         targets.follow([begin[:3]] * 1000, dt=0.01)
-        # A thread of the original sets the first point, when it gets to run.
+        # A thread of the original sets the first point, once it is scheduled.
         outcome.note("back", until(lambda: abs(targets.target()[2] - begin[2]) < 1e-9))
         targets.move_by([0.0, 0.0, 0.01])
         time.sleep(0.05)

@@ -14,7 +14,7 @@ def connect(p: Any, address: str) -> Any:
 
 
 def shown(robot: Any, condition: Any) -> bool:
-    """Reads states until one shows it; the first ones may be older than the command before."""
+    """Reads states until one meets the condition; the first states may be older than the last command."""
     end = time.monotonic() + 20.0
     while not condition(robot.read_once()):
         if time.monotonic() > end:
@@ -76,7 +76,7 @@ def torques(p: Any, address: str, outcome: Any) -> None:
 
 
 def _moved(p: Any, address: str, outcome: Any, kind: str) -> None:
-    """A way of 5 cm or 0.05 rad in a second, at no velocity in the beginning and at the end."""
+    """A path of 5 cm or 0.05 rad in a second, at no velocity in the beginning and at the end."""
     robot = connect(p, address)
     begin = getattr(robot, f"start_{kind}_control")
     control = begin(p.ControllerMode.JointImpedance)
@@ -198,7 +198,8 @@ def asynchronous(p: Any, address: str, outcome: Any) -> None:
 
 
 def asynchronous_as_in_the_example(p: Any, address: str, outcome: Any) -> None:
-    """By the numbers of the vendor's example for sparse targets: a tolerance that every posture is within, targets at 50 Hz."""
+    """Uses the numbers of the vendor's example for sparse targets: a tolerance that every posture is within, targets at 50
+    Hz."""
     robot = connect(p, address)
     handlers = p.AsyncPositionControlHandler
     made = handlers.configure(robot, handlers.Configuration([0.655] * 4 + [1.315] * 3, 10.0))
@@ -216,7 +217,7 @@ def asynchronous_as_in_the_example(p: Any, address: str, outcome: Any) -> None:
 
 
 def _status_at_rest(handler: Any, robot: Any) -> str:
-    """The status once the robot plans no motion any more."""
+    """Returns the status once the robot has stopped planning motions."""
     end = time.monotonic() + 20.0
     while time.monotonic() < end:
         time.sleep(0.05)

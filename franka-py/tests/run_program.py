@@ -24,7 +24,7 @@ class Outcome:
         self.notes.append((name, np.asarray(value).tolist()))
 
     def attempt(self, name: str, call: Any, *arguments: Any, **named: Any) -> Any:
-        """Calls it, and notes by which class, whose base and with which text it raises, or that it does not."""
+        """Calls it, and notes the class, the base and the text of its exception, or that it raises none."""
         return self._call(True, name, call, *arguments, **named)
 
     def usage(self, name: str, call: Any, *arguments: Any, **named: Any) -> Any:

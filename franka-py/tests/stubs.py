@@ -27,7 +27,7 @@ CONTEXT = {"__aenter__": "__enter__", "__aexit__": "__exit__"}
 
 
 def native(text: str) -> str:
-    """The stub of the native module, with the docstrings that the module has in the place of those in ``text``."""
+    """Returns the stub of the native module, with the module's docstrings instead of the docstrings in ``text``."""
     lines = text.splitlines()
     # From the last to the first: those above keep their lines.
     for node, docs in sorted(documented(ast.parse(text)), key=lambda found: -found[0].lineno):
@@ -65,7 +65,7 @@ def documented(tree: ast.Module) -> list[tuple[ast.ClassDef | ast.FunctionDef, s
 
 
 def docstring(text: str, indent: int) -> list[str]:
-    """The lines of a docstring; none for no text."""
+    """Returns the lines of a docstring; none for an empty text."""
     if not text:
         return []
     assert '"""' not in text and "\\" not in text, text
@@ -76,7 +76,7 @@ def docstring(text: str, indent: int) -> list[str]:
 
 
 def sync() -> str:
-    """The stub of the classes that wait."""
+    """Returns the stub of the classes that wait."""
     from franka_async import sync
 
     tree = ast.parse(NATIVE.read_text())

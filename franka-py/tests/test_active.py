@@ -113,7 +113,7 @@ def test_a_block_that_raises_has_the_robot_stop(start: Start) -> None:
 
 @ROBOTS
 def test_reading_leaves_the_interpreter_to_other_threads(start: Start) -> None:
-    """Another thread sees that one is inside of a call: it could not if the call held the interpreter."""
+    """Another thread observes that a call is in progress, which requires that the call does not hold the interpreter."""
 
     async def program(robot: Robot) -> None:
         control = await robot.active_torques()

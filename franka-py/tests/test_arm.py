@@ -1,4 +1,4 @@
-"""An engaged arm: its goals, streams of targets, chunks, and what bounds it."""
+"""An engaged arm: its goals, streams of targets, chunks, and bounds."""
 
 from __future__ import annotations
 
@@ -440,7 +440,7 @@ def test_an_arm_holds_while_its_deadman_is_silent(live: Sim) -> None:
             reference = arm.reference()
             assert reference is not None and "deadman" in reference.guards
             assert set(reference.guards) <= set(get_args(Guard))
-            # A stream that is closed then comes to no last target.
+            # A stream that is closed then has no last target.
             targets = Latest(robot.pose())
             assert repr(targets) == "<Latest, with a target>" and "without" in repr(Latest())
             following = asyncio.ensure_future(arm.follow(targets))

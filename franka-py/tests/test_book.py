@@ -22,7 +22,7 @@ def run(page: str, skipped: int = 0) -> dict[str, Any]:
     assert programs
     names: dict[str, Any] = {}
     for program in programs[skipped:]:
-        # On a machine that is busy commands and targets come late: they are waited for.
+        # On a busy machine commands and targets come late, so the programs wait for them.
         program = program.replace("Sim.fr3()", "Sim.fr3(patience=0.25)")
         program = program.replace("Deadman(0.5)", "Deadman(60.0)")
         exec(program.replace("watchdog=(0.5, ", "watchdog=(60.0, "), names)

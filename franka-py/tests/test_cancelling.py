@@ -25,7 +25,7 @@ async def assert_braked(robot: Robot, beyond: float) -> None:
 async def by_timeout(motion: Operation[Any], robot: Robot) -> None:
     async def late() -> None:
         await begun(robot)
-        # It has begun: the time that is left is none.
+        # It has begun: no time is left.
         await asyncio.sleep(0)
 
     waiting = asyncio.create_task(late())
@@ -84,7 +84,7 @@ def test_a_motion_that_is_given_up_brakes(live: Sim, way: Any) -> None:
     async def main() -> None:
         async with connection(live) as robot:
             far = robot.pose()[2, 3] + 0.15
-            # Nothing here may hold the motion but the way to give it up.
+            # Only cancelling may end the motion here.
             await way(robot.move_by([0.0, 0.0, 0.2], speed=0.2), robot)
             await assert_braked(robot, far)
             await robot.move_by([0.0, 0.0, 0.01], from_arm=True)
@@ -166,7 +166,7 @@ def test_cancelling_at_random_moments_leaves_a_robot_that_moves(sim: Sim) -> Non
                 ended = await outcome(task)
                 assert not isinstance(ended, Exception) or isinstance(ended, FrankaError), repr(ended)
             await outcome(robot.stop())
-            # A session that was given up may still be letting the arm go.
+            # A cancelled session may still be releasing the arm.
             while True:
                 ended = await outcome(robot.move_to(robot.pose()))
                 if not isinstance(ended, MotionError):
@@ -192,7 +192,7 @@ def test_connecting_is_given_up(sim: Sim) -> None:
                 await asyncio.sleep(0.001)
             task.cancel()
             await outcome(task)
-        # The simulated robot has one client at a time: the last of those has to leave first.
+        # The simulated robot has one client at a time: the last client has to leave first.
         while isinstance(await outcome(robot.connect()), FrankaError):
             await asyncio.sleep(0.01)
         assert robot.state().time_ms > 0

@@ -60,7 +60,7 @@ def assert_same(ours: list[tuple[str, Any]], theirs: list[tuple[str, Any]]) -> N
         if any(isinstance(part, str) or part is None for part in np.asarray(other, dtype=object).ravel()):
             assert mine == other, name
         else:
-            # Where the arm is differs between two runs by as much as it shakes.
+            # The position of the arm differs between two runs by as much as it shakes.
             np.testing.assert_allclose(mine, other, rtol=1e-4, atol=TOLERANCE.get(name, 1e-3), err_msg=name)
 
 
@@ -94,7 +94,7 @@ FR3_ONLY = {"asynchronous", "asynchronous_as_in_the_example", "tolerances"}
 
 @pytest.mark.parametrize("program", sorted({*programs_of(programs_pylibfranka)} - FR3_ONLY))
 def test_programs_for_pylibfranka_run_with_a_franka_emika_robot(program: str) -> None:
-    """The original does not: there is nothing to compare with but the names of what is noted."""
+    """The original does not support this robot: only the names of the notes are compared."""
     package = "franka_async.compat.pylibfranka"
     fer = outcome("programs_pylibfranka", program, package, "fer")
     fr3 = outcome("programs_pylibfranka", program, package, "fr3")

@@ -26,7 +26,7 @@ NEVER = {
     "RecordError": {"capacity", "cycles", "option", "record"},
     "ReplayError": {"motion", "refused", "speed"},
 }
-"""Kinds that no program sees: the error inside has its own class, or is a ``ValueError``."""
+"""Kinds that no program sees: the inner error has its own class, or is a ``ValueError``."""
 
 
 @pytest.mark.parametrize("name", sorted(_native._names()["errors"]))
@@ -62,7 +62,7 @@ def rows() -> dict[str, set[str]]:
 
 
 def test_every_variant_in_the_book_has_its_name() -> None:
-    """The book has all of them: a check of the workspace holds it against the code."""
+    """The book has all of them: a check of the workspace compares it with the code."""
     book, named = rows(), _native._names()["variants"]
     assert len(named) > 10
     # Of the feature `foxglove`, which the package is built without.

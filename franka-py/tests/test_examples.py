@@ -36,7 +36,8 @@ PRINTS = {
 }
 
 OWN_CLOCK = {"quickstart", "policy", "episodes", "script", "impedance_law"}
-"""Examples that let time pass themselves: their robots are no faster than the clock on the wall, and wait for this machine."""
+"""Examples that let time pass themselves: their robots run at most as fast as the clock on the wall, and wait for this
+machine."""
 
 
 def ran(name: str) -> subprocess.CompletedProcess[str]:
@@ -68,7 +69,7 @@ def ran(name: str) -> subprocess.CompletedProcess[str]:
 
 @pytest.fixture(scope="module")
 def runs() -> Iterator[dict[str, Future[subprocess.CompletedProcess[str]]]]:
-    """All of them side by side, since most wait most of the time."""
+    """Runs all of them in parallel, since most of them wait most of the time."""
     with ThreadPoolExecutor(len(PRINTS)) as pool:
         yield {name: pool.submit(ran, name) for name in PRINTS}
 

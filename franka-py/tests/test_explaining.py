@@ -96,7 +96,7 @@ def test_an_error_is_pickled_with_its_log(hit: tuple[Path, ControlError]) -> Non
     assert copy.copy(error.log).to_csv() == error.to_csv()
     with pytest.raises(ValueError, match="this log was pickled"):
         explain(same)
-    # As another process hands it on.
+    # As another process passes it on.
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         raised = pool.submit(_raise, pickle.dumps(error)).exception()
     assert isinstance(raised, ControlError) and raised.errors == error.errors and len(raised.log) == len(error.log)

@@ -196,7 +196,7 @@ def check_actions_end(face: Any, refused: type[Exception], address: str) -> None
 
 
 def connected(connect: Callable[[], T]) -> T:
-    """Connects once the client before has left: there is room for one."""
+    """Connects once the previous client has left: the robot has room for one."""
     made: list[T] = []
 
     def attempt() -> bool:

@@ -66,7 +66,7 @@ def test_cancelling_an_action_stops_the_fingers(sim_fr3: franka_async.Sim) -> No
             moving.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await moving
-            # At rest, far from where it was going to: ten states, in which it would have moved on.
+            # At rest, far from its target: ten states, in which it would have moved on.
             rest = await at_rest(gripper)
             assert rest.width > 0.03
 

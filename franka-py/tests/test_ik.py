@@ -29,7 +29,7 @@ def test_every_posture_for_an_angle_of_joint_7_is_found(kind: str) -> None:
 
 
 def turned(all_of_them: list[list[float]], lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Those within limits, angles taken a turn on where that brings them in."""
+    """Returns the solutions within limits, with angles shifted by a turn where that brings them within."""
     q = np.array(all_of_them).reshape(-1, 7)
     q = np.where(q < lower, q + 2 * np.pi, np.where(q > upper, q - 2 * np.pi, q))
     return q[((q >= lower) & (q <= upper)).all(axis=1)]

@@ -112,7 +112,7 @@ int main(void) {
 
 
 def compile_c(source: str, directory: Path, *options: str) -> Path:
-    """Compiles a C source, strictly; returns what comes out."""
+    """Compiles a C source with strict warnings; returns the library."""
     compiler = shutil.which("cc")
     if compiler is None:
         pytest.skip("no C compiler: there is no program called cc")

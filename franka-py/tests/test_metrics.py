@@ -12,7 +12,7 @@ from franka_async import Sim, metrics, sync
 
 
 def test_metrics_of_several_robots_are_one_text(sim: Sim) -> None:
-    """As OpenMetrics has it: one end, and every family once, with all of its samples."""
+    """Follows OpenMetrics: one end, and every family once, with all of its samples."""
     left, absent = connection(sim), franka_async.Robot("127.255.255.1")
     left.connect().wait()
     with Sim.fer(virtual_time=True, patience=5.0) as other, sync.Robot(other.address, **PATIENT) as right:

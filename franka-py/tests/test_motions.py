@@ -1,4 +1,4 @@
-"""Motions of a robot: every way to say where to, every option, what they report and what they raise."""
+"""Motions of a robot: every form of target, every option, reports and errors."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def test_what_the_table_names_is_there() -> None:
 
 
 def test_reasons_name_what_is_there() -> None:
-    """A reason that begins with a class of the package and its attribute is held against it."""
+    """If a reason begins with a class of the package and its attribute, the attribute must exist."""
     for line in TABLE.read_text().splitlines():
         _, _, reason = line.partition(": ")
         first = reason.split()[0].rstrip(",:") if reason else ""
@@ -108,7 +108,7 @@ STUBS = "\n".join(path.read_text() for path in Path(franka_async.__file__).paren
 
 @pytest.mark.parametrize("page", sorted(path.name for path in BOOK.glob("*.md")))
 def test_what_the_book_names_is_there(page: str) -> None:
-    """A cell that begins with ``same: `` names what has attributes of the names of its row."""
+    """A cell that begins with ``same: `` names an object that has attributes with the names of its row."""
     for names, cell in rows(BOOK / page):
         for ours in re.findall("`(.*?)`", cell):
             item = found(ours)

@@ -27,7 +27,7 @@ def test_metadata_is_complete() -> None:
 
 
 def test_plugin_loads_nothing_before_a_fixture_is_used(pytester: pytest.Pytester) -> None:
-    """Tests of other programs in the same environment do not pay for the driver, and are not broken by it."""
+    """Tests of other programs in the same environment do not pay for the driver, and the driver does not break them."""
     pytester.makepyfile(
         """
         import sys

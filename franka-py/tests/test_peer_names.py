@@ -21,7 +21,7 @@ def listed(package: str) -> set[str]:
 
 @pytest.mark.parametrize("package", ["pylibfranka", "franka", "franky", "panda_py"])
 def test_a_list_has_the_names_of_its_package(package: str) -> None:
-    """franky and panda_py are not among the packages that the tests install: they are compared where they are."""
+    """franky and panda_py are not among the packages that the tests install. They are compared where they are installed."""
     if importlib.util.find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
     printed = subprocess.run([sys.executable, NAMES / "of_module.py", package], capture_output=True, text=True, check=True)
@@ -35,7 +35,7 @@ def test_the_list_of_libfranka_has_the_functions_of_its_library() -> None:
         pytest.skip("pylibfranka or nm is not installed")
     library = Path(package.origin).with_name("libfranka.so")
     printed = subprocess.run(["nm", "-DC", "--defined-only", library], capture_output=True, text=True, check=True).stdout
-    # Functions of classes and of the namespace, without what a template makes of them.
+    # Functions of classes and of the namespace, without the instances of templates.
     symbols = re.findall(r" [TW] franka::([\w:]+)(?:\[abi:cxx11\])?\(", re.sub(r"<[^<>]*>", "", printed))
     found = {re.sub(r"(\w+)::\1$", r"\1", symbol) for symbol in symbols}
     found = {name for name in found if not name.startswith(INTERNAL) and name not in UNLISTED}

@@ -52,7 +52,7 @@ def test_nothing_is_lost_while_the_interpreter_is_busy(fr3: Robot) -> None:
     with fr3.record(["q", "tau_c"]) as recording:
         before = fr3.stats()
         begin = fr3.state().time_ms
-        # The interpreter is released nowhere in here, for as long as three seconds of the robot take.
+        # The interpreter is not released in this loop, which lasts for three seconds of the robot.
         while fr3.state().time_ms < begin + 3000:
             pass
         after = fr3.stats()

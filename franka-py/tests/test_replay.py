@@ -29,7 +29,7 @@ def test_a_recorded_motion_is_made_again(motion: RecordingFile) -> None:
     with getattr(Sim, str(kind))(patience=5.0) as sim:
         with sync.Robot(sim.address, **PATIENT) as robot:
             robot.move_by([0.05, 0.0, 0.0])
-            # It begins where the recording does, wherever the arm is.
+            # It begins where the recording does, regardless of the position of the arm.
             report = robot.replay(motion, speed=0.5)
             assert report.duration == pytest.approx(2 * len(recorded) / 1000, rel=0.1) and report.states > len(recorded)
             assert 0.0 <= report.joints.median <= report.joints.p95 <= report.joints.max < 0.05

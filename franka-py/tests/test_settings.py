@@ -45,14 +45,14 @@ def test_frames_and_load_are_in_the_state_that_follows(franka_robot: Robot) -> N
             if event.kind == "load_changed":
                 break
         assert event.mass == 0.5
-        # Robots say it in single precision.
+        # Robots report it in single precision.
         np.testing.assert_allclose(event.center, [0.0, 0.02, 0.03], rtol=1e-7)
         np.testing.assert_allclose(event.inertia, inertia, rtol=1e-7)
         state = robot.state()
         np.testing.assert_allclose(state.EE_T_K, frame, atol=1e-7)
         assert state.NE_T_EE[2, 3] == pytest.approx(0.05)
         assert state.m_load == pytest.approx(0.5)
-        # As the vendor writes it.
+        # In the form of the vendor.
         await robot.set_load(0.5, [0.0, 0.02, 0.03], 2.0 * inertia.ravel(order="F"))
         async for event in events:
             if event.kind == "load_changed":

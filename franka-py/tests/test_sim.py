@@ -152,7 +152,7 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
     """It comes in mid-motion, by the robot's own time: in virtual time, in which a program may see no motion at all."""
 
     def lift() -> float:
-        """By how much the hand has gone up when a motion by 0.1 m was stopped."""
+        """Returns the height by which the hand has risen when a motion by 0.1 m was stopped."""
         before = robot.pose()[2, 3]
         with pytest.raises(ControlError):
             robot.move_by([0.0, 0.0, 0.1]).wait()
@@ -177,7 +177,7 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
     sim.let_go()
     assert sim.waiting == 0 and not push.release()
     assert robot.move_by([0.0, 0.0, -0.05]).wait().final_error is not None
-    # And as the last one the robot is gone.
+    # Last, the robot is gone.
     sim.stop(once_moving=True)
     with pytest.raises(MotionError) as caught:
         robot.move_by([0.0, 0.0, 0.1]).wait()
@@ -195,7 +195,7 @@ def test_a_simulator_without_grippers_has_no_address_of_them(sim: Sim) -> None:
 
 
 def test_a_network_is_cut_in_mid_motion() -> None:
-    """Once a second, for as long as the slowest machine takes to begin: the motion lasts longer than that."""
+    """Once a second, for as long as the slowest machine takes to begin. The motion lasts longer."""
     cuts = Network(cuts=[(second, second + 0.1) for second in range(2, 200)])
     with Sim.fr3(patience=0.5, network=cuts) as sim, sync.Robot(sim.address, realtime="ignore", link_timeout=10.0) as robot:
         with pytest.raises(ControlError, match="communication_constraints_violation"):

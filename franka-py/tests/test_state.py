@@ -37,7 +37,7 @@ def test_flat_has_the_parts_that_its_layout_names(state: RobotState) -> None:
 
 
 def quaternion_of(rotation: np.ndarray) -> np.ndarray:
-    """x y z w with w >= 0: the eigenvector that a rotation's quaternion is."""
+    """x y z w with w >= 0: the eigenvector that is the quaternion of a rotation."""
     r = rotation
     if not r.any():
         # O_T_EE_c of a robot that no Cartesian command moves.

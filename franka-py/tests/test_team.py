@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 import franka_async
 from franka_async import Follow, Latest, Motion, MotionError, MotionReport, Robot, Sim, Team, TeamError, start_tickets
 
-# Simulators whose time does not go in step: a robot that waits for the machine is no fault here.
+# The times of the simulators do not run in step: a robot that waits for the machine is not at fault here.
 SILENCE = 10.0
 
 
@@ -20,7 +20,7 @@ def up(robot: Robot, height: float) -> NDArray[np.float64]:
 
 
 async def moves(robots: tuple[Robot, ...], motion: asyncio.Future[list[MotionReport]]) -> None:
-    """Waits until each of the arms is led somewhere: measured velocities are noisy at rest. The motion takes far longer than that."""
+    """Waits until each of the arms follows a target: measured velocities are noisy at rest. The motion takes far longer."""
     for robot in robots:
         while (reference := robot.reference()) is None or np.abs(reference.dq).max() < 2e-3:
             assert not motion.done()

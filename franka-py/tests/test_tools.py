@@ -36,7 +36,7 @@ def test_tools_are_kept_by_name(file: Path) -> None:
     tools.delete("brush")
     with pytest.raises(KeyError, match="there is no tool 'brush' in .*: it has screwdriver"):
         tools.get("brush")
-    # Nothing is left beside it.
+    # No other file is left in the directory.
     assert os.listdir(file.parent) == ["tools.json"]
     assert pickle.loads(pickle.dumps(SCREWDRIVER)) == SCREWDRIVER
 
@@ -137,7 +137,7 @@ def test_tools_that_make_no_sense_are_refused(fields: dict[str, Any], message: s
 
 
 def test_a_thin_plate_is_a_tool() -> None:
-    """Its greatest moment is the sum of the others; rounded to six digits, it is more."""
+    """Its greatest moment is the sum of the others; rounded to six digits, it is greater than the sum."""
     for moment in (1.234567e-4, 4e-7):
         assert Tool(mass=0.1, inertia=np.diag([moment, moment, 2 * moment])).mass == 0.1
 
@@ -162,7 +162,7 @@ def test_what_is_on_the_flange_is_found_and_declared(fr3: Robot, sim_fr3: Sim) -
         assert (found.friction > 0).any()
         assert found.center is not None
         np.testing.assert_allclose(found.center, [0.0, 0.02, 0.05], atol=0.03)
-        # Stored, and begun with by a later connection.
+        # Stored, and used by a later connection from the beginning.
         again = Identified.from_json(found.to_json())
         assert again == found and pickle.loads(pickle.dumps(found)) == found
         assert "load" in str(found)

@@ -13,7 +13,7 @@ NAN, INF = math.nan, math.inf
 
 
 def everything(f: Any, address: str, outcome: Any) -> None:
-    """All of them with one robot, as one process takes longer to start than a program to run."""
+    """Runs all of them with one robot, as one process takes longer to start than a program to run."""
     given: list[list[Any]] = [[], [address, "ignore"], [5]]
     for n, arguments in enumerate(given):
         outcome.usage(f"connect {n}", f.Robot, *arguments)

@@ -15,7 +15,7 @@ NAN, INF = math.nan, math.inf
 
 
 def everything(p: Any, address: str, outcome: Any) -> None:
-    """All of them with one robot, as one process takes longer to start than a program to run."""
+    """Runs all of them with one robot, as one process takes longer to start than a program to run."""
     commands(p, outcome)
     robot = p.Robot(robot_ip_address=address, realtime_config=p.RealtimeConfig.kIgnore)
     for use in (enumerations, states, parameters, frames, loads, models, cycle, modes, motions, poses, exceptions):
@@ -198,7 +198,7 @@ def modes(p: Any, robot: Any, outcome: Any) -> None:
 
 
 def motions(p: Any, robot: Any, outcome: Any) -> None:
-    """One after the other with one robot."""
+    """Runs one after the other with one robot."""
     for turn in range(3):
         control = robot.start_joint_velocity_control(p.ControllerMode.CartesianImpedance)
         for n in range(20):

@@ -12,5 +12,5 @@ DIRECTORY = Path(__file__).parents[2] / "tests" / "vectors"
 
 @functools.cache
 def load(name: str) -> Any:
-    """The file of this name, ``model/ik_vectors``, as Python objects."""
+    """Returns the file of this name, such as ``model/ik_vectors``, as Python objects."""
     return json.loads((DIRECTORY / f"{name}.json").read_text())

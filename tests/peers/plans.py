@@ -9,7 +9,7 @@ from pylibfranka import CartesianPose, CartesianVelocities, JointPositions, Join
 from steps import column_major, equal, matrix
 
 CYCLE = 1e-3
-# How fast a setpoint returns to its plan, 1/s, and how long that takes at the end of a motion, s.
+# Rate at which a setpoint returns to its plan, 1/s, and the time that this takes at the end of a motion, s.
 RETURN = 20.0
 SETTLE = 0.3
 # States carry setpoints in single precision; steering from them ends this close to the plan, rad or m.
@@ -41,7 +41,7 @@ def follow(control, command, duration, finish=True):
 
 
 def success_rate(states):
-    """The median of the success rates that the robot reports."""
+    """Returns the median of the success rates that the robot reports."""
     rates = sorted(state.control_command_success_rate for state in states)
     return rates[len(rates) // 2]
 

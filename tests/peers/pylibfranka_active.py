@@ -214,7 +214,7 @@ def stop_ends_a_motion_of_another_thread(session):
 
 
 def stop_shows(session, start, action, repeat=False):
-    """Checks that `action` ends as one of a motion that was stopped, and that the arm rests on the way."""
+    """Checks that the error of `action` reports a stopped motion, and that the arm rests on the way."""
 
     def until_it_ends():
         # States from before the stop may still be waiting in the socket.

@@ -12,21 +12,21 @@ import numpy
 from pylibfranka import AsyncPositionControlHandler as Handler
 from pylibfranka import InvalidOperationException, RobotMode
 
-# The client's package does not export the type by name, only its values.
+# The client's package exports only the values of the type, not its name.
 from pylibfranka._pylibfranka import TargetStatus
 
 from steps import Session, check, equal, near, refuses, script, spread
 
 OFFSET = numpy.array([0.2, -0.1, 0.1, 0.2, 0.1, 0.1, 0.3])
-# Takes five seconds, of which those below this velocity, rad/s, are the least part.
+# Takes five seconds, most of them above this velocity, rad/s.
 FAR = numpy.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -3.4])
 UNDER_WAY = 0.2
 # The velocities of the vendor's example, rad/s.
 SPEED = [0.655] * 4 + [1.315] * 3
 TOLERANCE = 1e-3
-# Of the client: faster than this, no target is reached yet, rad/s.
+# Limit for the client: no target is reached while the arm moves faster than this, rad/s.
 ARRIVED = 0.01
-# Robot time, s: more than any motion takes and than a busy machine takes from the client.
+# Robot time, s: longer than any motion, and longer than a busy machine delays the client.
 TIME_MAX = 30.0
 # The accelerations of the joints of the Franka Research 3, rad/s².
 ACCELERATION = 10.0

@@ -1,7 +1,7 @@
 """One motion with pylibfranka, for a cassette: pylibfranka_cassette.py ADDRESS
 
-Sets an impedance, turns the last joint by a fraction of a degree and back, and prints where the joint was commanded to
-be halfway. Every command follows from the states that the robot sent, so that the same robot gets the same commands.
+Sets an impedance, turns the last joint by a fraction of a degree and back, and prints the position of the joint that was
+commanded halfway. Every command follows from the states that the robot sent, so that the same robot gets the same commands.
 """
 
 import math

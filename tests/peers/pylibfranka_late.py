@@ -8,7 +8,7 @@ from plans import standing_joints
 from pylibfranka_reflexes import by_joints, joint_motion, violates
 from steps import Session, script
 
-# The robot bridges one less.
+# The robot bridges one command less.
 LOST_MAX = 20
 
 

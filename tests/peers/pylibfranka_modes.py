@@ -30,7 +30,7 @@ DURATION = 0.1
 
 
 class Tapped(Session):
-    """A connection by way of a relay, at an address beside the robot's."""
+    """A connection by way of a relay, at an address next to the robot's address."""
 
     def __init__(self, address):
         network, subnet, *host = address.split(".")
@@ -105,7 +105,7 @@ def a_reflex_and_its_recovery_show(session):
 
 
 def shows(session, starter, standing, generator):
-    """Both controllers, one after the other; `standing` makes commands that do not move the arm."""
+    """Runs both controllers, one after the other; `standing` makes commands that do not move the arm."""
     summaries = []
     for controller, number in CONTROLLERS:
 

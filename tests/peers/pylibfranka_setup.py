@@ -28,7 +28,7 @@ GRAVITY = 9.81
 
 
 def reads_states_of_every_millisecond(session):
-    """In a motion each; at rest a client that is slow misses some."""
+    """Reads every state in a motion; at rest a slow client misses some."""
     at_rest = [session.fresh_state(), *(session.robot.read_once() for _ in range(500))]
     check(min(gaps(at_rest)) > 0, "time runs forwards")
     control = session.robot.start_joint_position_control(ControllerMode.JointImpedance)

@@ -124,7 +124,7 @@ def near(what, got, want, tolerance):
 
 
 def raises(kind, action):
-    """The text of the exception that `action` raises, which has exactly this type, not a subclass."""
+    """Returns the text of the exception that `action` raises, which has exactly this type, not a subclass."""
     try:
         action()
     except kind as error:

@@ -1,10 +1,10 @@
 """Conditions that end a motion: ``until=force_z(8.0) & elapsed(0.2)``.
 
-Quantities are compared: ``(POSITION_Z < 0.15) & (SPEED < 0.01)``. The control thread looks in every cycle, and the arm brakes, or
-turns to the target of ``.then(target)``, within the next millisecond.
+Quantities are compared: ``(POSITION_Z < 0.15) & (SPEED < 0.01)``. The control thread checks the condition in every cycle. The
+arm brakes, or turns to the target of ``.then(target)``, within the next millisecond.
 
-The robot's estimate of the external force shows the friction of its joints, too: a threshold below 8 N along z, or 10 N along
-another axis, reacts to nothing on some arm.
+The robot's estimate of the external force also contains the friction of its joints. On some arms, a threshold below 8 N along
+z, or 10 N along another axis, reacts without a contact.
 """
 
 from ._native import (

@@ -91,13 +91,13 @@ class ReadConnectionLostError(ReadError, ConnectionLostError):
 
 
 class ActionError(FrankaError):
-    """An end effector did not do it. The kind is ``aborted`` if a newer action or ``stop()`` ended it."""
+    """An end effector did not carry out an action. The kind is ``aborted`` if a newer action or ``stop()`` ended it."""
 
     kind: kinds.ActionErrorKind
 
 
 class ActionConnectionLostError(ActionError, ConnectionLostError):
-    """A connection was lost before an end effector had answered; it may have done it."""
+    """A connection was lost before an end effector had answered; it may have carried out the action."""
 
 
 class RecordError(FrankaError):
@@ -143,7 +143,8 @@ class MotionError(FrankaError):
 
 
 class GoalError(MotionError):
-    """A goal or a path was refused. Nothing has moved; a stream that it belongs to brakes the arm. The kind is ``goal`` or ``path``."""
+    """A goal or a path was refused. Nothing has moved; a stream that the goal belongs to brakes the arm. The kind is ``goal``
+    or ``path``."""
 
 
 class SupersededError(MotionError):
@@ -167,7 +168,7 @@ class NotReadyError(MotionError):
 
 
 class TargetNotReachedError(MotionError):
-    """The arm rests, and not at its target."""
+    """The arm rests away from its target."""
 
 
 class MotionConnectionLostError(MotionError, ConnectionLostError):
@@ -175,7 +176,7 @@ class MotionConnectionLostError(MotionError, ConnectionLostError):
 
 
 class ReplayError(MotionError):
-    """A recorded motion was not made again. Unless the kind is ``off`` nothing has moved."""
+    """A recorded motion was not repeated. Unless the kind is ``off`` nothing has moved."""
 
     kind: kinds.ReplayErrorKind
 
@@ -207,7 +208,7 @@ class ControlError(MotionError):
     """The errors that stopped it, by the vendor's names."""
 
     move_status: str
-    """The robot's last word on the motion: ``reflex_aborted``, ``preempted``, ..."""
+    """The robot's last report on the motion: ``reflex_aborted``, ``preempted``, ..."""
 
     log: ControlLog
     """The last cycles of the motion. A log that was pickled can be read, but not given to ``explain``."""

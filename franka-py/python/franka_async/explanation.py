@@ -14,7 +14,7 @@ __all__ = ["Approach", "Contact", "Moment", "Peak"]
 
 @dataclass(frozen=True)
 class Moment:
-    """Something that happened, and when."""
+    """Something that happened, with its time."""
 
     time_ms: int
     """The cycle, by the robot's clock."""
@@ -31,16 +31,16 @@ class Approach:
     """Smallest distance of a quantity to its limit."""
 
     joint: int | None
-    """The joint, 1 to 7; ``None`` of the end effector."""
+    """The joint, 1 to 7; ``None`` for the end effector."""
 
     value: float
     """Measured value: rad, rad/s or N m of joints, m/s or rad/s of the end effector."""
 
     limit: float
-    """The limit there, on the side of the value."""
+    """The limit at that cycle, on the side of the value."""
 
     margin: float
-    """From the value to the limit; negative beyond it."""
+    """Distance from the value to the limit; negative beyond it."""
 
     time_ms: int
     """Time by the robot's clock, ms."""
@@ -48,10 +48,10 @@ class Approach:
 
 @dataclass(frozen=True)
 class Peak:
-    """A largest value."""
+    """Largest value of a quantity."""
 
     joint: int | None
-    """The joint, 1 to 7; ``None`` of the end effector."""
+    """The joint, 1 to 7; ``None`` for the end effector."""
 
     value: float
     """Its size: N m of ``external_torque``, N of ``force``, rad of ``following_error``."""
@@ -77,10 +77,10 @@ class Contact(Value):
     """Extent of the places that explain the torques equally well, m."""
 
     probability: float
-    """That it is this link, 0 to 1."""
+    """Probability of this link, 0 to 1."""
 
     next: tuple[int, float] | None
     """The next likely link, and its probability."""
 
     time_ms: int
-    """The cycle whose torques tell, by the robot's clock."""
+    """The cycle whose torques were evaluated, by the robot's clock."""

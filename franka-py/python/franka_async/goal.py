@@ -68,7 +68,7 @@ class Offset(Value):
 
     way: ArrayLike
     frame: Literal["base", "tool"] = "base"
-    """Whose axes it is along and about."""
+    """The frame whose axes it is along and about."""
 
     from_arm: bool = False
     """True if it counts from the measured arm. It also does if there is no target."""
@@ -182,10 +182,10 @@ class Gains:
     """True if the springs of the joints act only where they do not push at the end effector."""
 
     compensation: Sequence[float] = _COMPLIANT["compensation"]
-    """The most that friction and bias of each joint are compensated by, N m, 7 numbers; 0 for none."""
+    """Largest compensation of friction and bias of each joint, N m, 7 numbers; 0 for none."""
 
     torque_limits: Sequence[float] = _COMPLIANT["torque_limits"]
-    """The most that is commanded at each joint, N m, 7 numbers."""
+    """Largest commanded torque of each joint, N m, 7 numbers."""
 
     torque_cutoff: float = _COMPLIANT["torque_cutoff"]
     """Cutoff frequency of the low-pass on the torques, Hz; 1000 is off."""
@@ -298,7 +298,7 @@ class Settling:
     """Time for which it has to stay within the tolerance and at rest, s, in whole milliseconds."""
 
     timeout: float = _native._SETTLING[1]
-    """The longest that it gets for that, s, up to 60."""
+    """Longest time for that, s, up to 60."""
 
 
 @dataclass(frozen=True)
@@ -349,10 +349,12 @@ class Chunk(Value):
     """True if the points are joint positions."""
 
     observed_at: Any = None
-    """The ``RobotState`` that the policy saw, or its ``time_ms``: the origin. ``None`` counts from when the chunk is taken up."""
+    """The ``RobotState`` that the policy saw, or its ``time_ms``: the origin. ``None`` counts from the time at which the
+    chunk is taken up."""
 
     blend: float | None = None
-    """Time over which it is blended with what the arm does, s; 0 turns to it as fast as the limits allow. ``None`` is 0.1 s."""
+    """Time over which it is blended with the present motion of the arm, s; 0 turns to it as fast as the limits allow.
+    ``None`` is 0.1 s."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -90,10 +90,11 @@ class EnvOptions(TypedDict, total=False):
     """True if the robot has a Franka Hand, the default."""
 
     speed: float
-    """The share of its greatest velocity, 0.5 by default."""
+    """Share of the robot's greatest velocity, 0.5 by default."""
 
     start: Start | None
-    """Draws the joint positions of an episode's beginning: the ready pose unless given, or ``options={"q": ...}`` of ``reset``."""
+    """Draws the joint positions at the beginning of an episode. The default is the ready pose, or ``options={"q": ...}`` of
+    ``reset``."""
 
     reward: Reward | None
     """Called after each step; 0 without it."""

@@ -1,6 +1,7 @@
 """Kinds of errors: the values that ``error.kind`` of each class of :mod:`franka_async.errors` may have.
 
-They do not change with the driver's code: a kind that goes is a change of the interface, and is in the change log. New ones may come.
+The driver's internal changes do not alter them. A kind that is removed changes the interface and is in the change log. New
+ones may be added.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ CYCLE: np.dtype[np.record] = _cycle_dtype()
 
 
 def header() -> Path:
-    """Returns where ``franka_async_law.h`` is, which a law in C or C++ includes."""
+    """Returns the path of ``franka_async_law.h``, which a law in C or C++ includes."""
     return Path(__file__).with_name("include") / "franka_async_law.h"
 
 
@@ -90,7 +90,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
     cycles = numba.types.CPointer(numba.from_dtype(CYCLE))
     signature = numba.types.int32(cycles, numbers, numbers, numbers)
     try:
-        # Without the runtime of numba nothing can be allocated.
+        # Without numba's runtime nothing can be allocated.
         law = numba.njit(error_model="numpy", _nrt=False)(function)
 
         def entry(cycle: Any, parameters: Any, memory: Any, output: Any) -> Any:
@@ -113,7 +113,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
 
 
 def make_cycle(**fields: npt.ArrayLike) -> np.record:
-    """Returns what a law gets, with these fields and zeros in the others: for trying out a law before it is compiled."""
+    """Returns the input of a law with these fields and zeros in the others, to try out a law before it is compiled."""
     cycle = np.zeros((), dtype=CYCLE)
     for name, value in fields.items():
         cycle[name] = value

@@ -33,14 +33,14 @@ class Reacted(Value):
     """Time since the first state of the motion, s, by the robot's clock."""
 
     time_ms: int
-    """The robot's clock then, ms."""
+    """The robot's clock at that moment, ms."""
 
     wrench: NDArray[np.float64]
     """External wrench at that moment, ``(6,)`` N and N m, in base axes with its torque about the origin of the stiffness
     frame. Positive values are exerted by the arm."""
 
     pose: NDArray[np.float64]
-    """Pose of the end effector then, base frame, ``(4, 4)``."""
+    """Pose of the end effector at that moment, base frame, ``(4, 4)``."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Phases:
     """The state, read from its bytes."""
 
     program: float
-    """Law and guards, a compiled law, or under active control what the program did until it wrote."""
+    """Law and guards, a compiled law, or, under active control, the work of the program until it wrote."""
 
     send: float
     """The command, written into bytes and sent."""
@@ -88,10 +88,10 @@ class CycleTimes:
     """The robot's clock, ms."""
 
     late: float
-    """From when the state was due to when the control thread had it."""
+    """Time from the due time of the state to its receipt by the control thread."""
 
     turnaround: float
-    """From then to the departure of the command."""
+    """Time from the receipt to the departure of the command."""
 
     slack: float
     """Time left until the next state was due; negative if the command left later."""
@@ -130,13 +130,13 @@ class MotionReport(Value):
     """The lowest success rate of commands that the robot reported, 0 to 1."""
 
     success_rate_avg: float
-    """The mean of it."""
+    """The mean of that rate."""
 
     worst_turnaround: float
     """The longest time from the receipt of a state to the departure of its command."""
 
     slack_min: float | None
-    """The least time that was left until the next state was due; as below, ``None`` if no command left."""
+    """The shortest time that was left until the next state was due; as below, ``None`` if no command left."""
 
     overruns: int
     """Commands that left only after the next state was due."""
@@ -151,7 +151,7 @@ class MotionReport(Value):
     """Times from the receipt of a state to the departure of its command."""
 
     def __str__(self) -> str:
-        """One line for people; ``repr`` has all."""
+        """Returns one line for people; ``repr`` has all fields."""
         how = "arrived" if self.reacted is None else "reacted"
         off = self.final_error
         where = "" if off is None else f", {1e3 * off.translation:.1f} mm and {1e3 * off.rotation:.1f} mrad from the target"
@@ -170,7 +170,7 @@ class Progress:
 
     @property
     def fraction(self) -> float:
-        """The share of its time that has passed, 0 to 1."""
+        """Share of the time that has passed, 0 to 1."""
         whole = self.elapsed + self.remaining
         return self.elapsed / whole if whole > 0.0 else 1.0
 

@@ -95,7 +95,7 @@ class TeamOptions(SessionOptions, total=False):
     """Options of the session of several robots, for each of them."""
 
     speed_cap: float | None
-    """The most of any joint, the flange and the end effector, in m/s."""
+    """Largest speed of any joint, the flange and the end effector, m/s."""
 
 
 class EngageOptions(TeamOptions, total=False):
@@ -105,7 +105,7 @@ class EngageOptions(TeamOptions, total=False):
     """Regions that the arm keeps out of."""
 
     deadman: Deadman | None
-    """While it is silent, and once it is gone, the arm brakes and holds."""
+    """The deadman. While it is silent, and once it is gone, the arm brakes and holds."""
 
     backend: Backend | None
     """The controller that turns setpoints into torques."""

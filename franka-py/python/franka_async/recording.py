@@ -69,10 +69,10 @@ class RecordedRobot:
     """A robot of a recording."""
 
     name: str
-    """Its name; empty for an only robot that was given none."""
+    """Its name; empty for a single robot without a name."""
 
     kind: str | None
-    """``fr3`` or ``fer``; ``None`` if the file does not say."""
+    """``fr3`` or ``fer``; ``None`` if the file does not contain it."""
 
     metadata: dict[str, str]
     """Other metadata of the robot."""
@@ -96,7 +96,7 @@ class RecordedEvent:
     """Severity: ``info``, ``warning`` or ``error``."""
 
     source: str
-    """Who says it."""
+    """Source of the event."""
 
     text: str
     """Description in words."""
@@ -137,10 +137,10 @@ class Recovery:
     """Messages in the new file."""
 
     chunks: int
-    """Chunks that were whole."""
+    """Chunks that were intact."""
 
     lost: int
-    """Chunks that were not, and are left out."""
+    """Chunks that were damaged, and are left out."""
 
     damage: str | None
     """Damage of the file; ``None`` if it has none."""
@@ -151,13 +151,13 @@ class Spread:
     """Distribution of distances."""
 
     median: float
-    """Half of them are less."""
+    """Median."""
 
     p95: float
-    """95 % of them are less."""
+    """95th percentile."""
 
     max: float
-    """The greatest."""
+    """Maximum."""
 
 
 @dataclass(frozen=True)
@@ -165,13 +165,13 @@ class ReplayReport:
     """Result of a replay."""
 
     duration: float
-    """From the first target to the last, s."""
+    """Time from the first target to the last, s."""
 
     joints: Spread
     """Distances between the joints and their positions in the recording, rad. Each state counts with its furthest joint."""
 
     position: Spread
-    """Between the end effector and where it was in the recording, m."""
+    """Distances between the end effector and its place in the recording, m."""
 
     states: int
-    """States that were compared."""
+    """Number of states that were compared."""

@@ -19,7 +19,7 @@ class Network:
     """Delay of a packet, s."""
 
     jitter: float = 0.0
-    """Up to this much later a datagram leaves, s; the order stays."""
+    """Largest additional delay of a datagram, s; the order stays."""
 
     duplication: float = 0.0
     """Probability that a datagram arrives twice, 0 to 1."""
@@ -32,4 +32,4 @@ class Network:
     is 1.5 s then."""
 
     seed: int = 1
-    """Seed of all this."""
+    """Seed of the faults."""

@@ -59,7 +59,7 @@ class Stream(Generic[T]):
 
 
 class Reading(NamedTuple):
-    """A state, and how many are missing before it."""
+    """A state, with the number of missing states before it."""
 
     state: RobotState
     """The state."""

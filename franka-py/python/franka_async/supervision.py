@@ -63,7 +63,7 @@ class Backoff:
     """The longest pause, s."""
 
     jitter: float = 0.3
-    """Share of each pause that is left to chance, 0 to 1: a pause is shorter by up to so much."""
+    """Random share of each pause, 0 to 1: a pause is shorter by up to this share."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,25 +81,25 @@ class Policy:
     count."""
 
     only: Iterable[str] | None = None
-    """Recovers from those reflexes only whose errors are all among these, by the vendor's names. Needs ``recover``."""
+    """Limits recovery to reflexes whose errors are all among these, by the vendor's names. Needs ``recover``."""
 
     ask_first: bool = False
     """Recovers only after someone has agreed: by ``robot.agree(reflex)``, or a function ``ask_before_recovery``."""
 
     reconnect: Backoff | None = field(default_factory=Backoff)
-    """Pauses between two attempts to connect, and between two to recover; ``None`` makes no new connection."""
+    """Pauses between two attempts to connect, and between two attempts to recover; ``None`` makes no new connection."""
 
     give_up_after: float | None = None
     """Seconds after which the supervisor gives up a lost connection; ``None``: never."""
 
     silence: float = 3.0
-    """Seconds that the robot may be silent, on a connection that looks alive, before that is closed and a new one made."""
+    """Seconds that the robot may be silent on an open connection, before the connection is closed and a new one made."""
 
     motions_wait: float | None = None
     """Seconds that a motion waits while the supervisor reconnects or recovers; ``None`` refuses it."""
 
     seed: int | None = None
-    """Seed of what is left to chance; ``None``: each robot draws its own."""
+    """Seed of the random part of pauses; ``None``: each robot draws its own."""
 
     def __post_init__(self) -> None:
         if self.only is not None:
@@ -202,13 +202,13 @@ class Health:
     """``ready`` if the robot takes motions, or a motion runs; otherwise the reason why it does not."""
 
     since: float
-    """Since when, seconds after the robot was first connected to."""
+    """Time since which the condition holds, in seconds after the robot was first connected to."""
 
     reflex: int | None
-    """Number of the reflex that holds it, if one does."""
+    """Number of the reflex that holds the robot, if any."""
 
     attempts: int
-    """Attempts to connect since the connection was lost; 0 while there is one."""
+    """Attempts to connect since the connection was lost; 0 while connected."""
 
     reconnects: int
     """Connections made after the first one."""
@@ -217,10 +217,10 @@ class Health:
     """Recoveries by the supervisor."""
 
     last_reconnect: float | None
-    """Seconds that the newest reconnect took, from the loss on."""
+    """Duration of the newest reconnect, from the loss on, s."""
 
     last_recovery: float | None
-    """Seconds that the newest recovery by the supervisor took, from when the reflex was noticed."""
+    """Duration of the newest recovery by the supervisor, from the notice of the reflex on, s."""
 
     @property
     def is_ready(self) -> bool:

@@ -75,7 +75,7 @@ class Tool:
         if not np.array_equal(np.transpose(np.asarray(self.inertia)), np.asarray(self.inertia)):
             raise ValueError(f"inertia is {self.inertia}, expected a symmetric matrix")
         least, middle, greatest = np.linalg.eigvalsh(np.asarray(self.inertia)).tolist()
-        # As much as the driver does: states, whose loads become tools, have single precision.
+        # The same tolerance as the driver's: states, whose loads become tools, have single precision.
         rounding = 1e-9 + 1e-6 * float(np.abs(self.inertia).max())
         if least < -rounding or greatest > least + middle + rounding:
             moments = f"{round(least, 6):g}, {round(middle, 6):g} and {round(greatest, 6):g} kg m^2"
@@ -88,17 +88,17 @@ class Tool:
 
     @property
     def pose(self) -> NDArray[np.float64]:
-        """``frame`` as a new array, ``(4, 4)``."""
+        """Returns ``frame`` as a new array, ``(4, 4)``."""
         return np.array(self.frame)
 
 
 def path() -> Path:
-    """Returns where the file is, whether or not it exists."""
+    """Returns the path of the file, which may not exist yet."""
     chosen = os.environ.get("FRANKA_TOOLS")
     if chosen:
         return Path(chosen)
     home = os.environ.get("XDG_CONFIG_HOME")
-    # The specification of these directories has relative ones ignored.
+    # The specification of these directories requires programs to ignore relative paths.
     base = Path(home) if home and os.path.isabs(home) else Path.home() / ".config"
     return base / "franka_async" / "tools.json"
 
@@ -109,7 +109,7 @@ def names() -> list[str]:
 
 
 def get(name: str) -> Tool:
-    """Returns the tool of this name. Raises ``KeyError`` with the names that there are."""
+    """Returns the tool of this name. Raises ``KeyError`` with the existing names."""
     tools = _read()
     if name not in tools:
         known = ", ".join(sorted(tools)) or "none"
@@ -127,7 +127,7 @@ def save(name: str, tool: Tool) -> None:
 
 
 def delete(name: str) -> None:
-    """Forgets the tool of this name. Raises ``KeyError`` as ``get``."""
+    """Deletes the tool of this name. Raises ``KeyError`` as ``get``."""
     get(name)
     tools = _read()
     del tools[name]
@@ -148,7 +148,7 @@ async def load(robot: Robot, tool: str | Tool) -> Tool:
 
 
 async def unload(robot: Robot) -> None:
-    """Declares to the robot that there is no tool: no load, and the nominal end effector's frame. Raises as ``load``."""
+    """Removes the declared tool from the robot: no load, and the nominal end effector's frame. Raises as ``load``."""
     await load(robot, Tool())
 
 

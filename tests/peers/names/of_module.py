@@ -19,11 +19,11 @@ def is_public(name: str) -> bool:
 
 
 def modules(root: types.ModuleType) -> Iterator[tuple[str, types.ModuleType]]:
-    """The package and its public submodules, with the prefix of their names."""
+    """Returns the package and its public submodules, with the prefix of their names."""
     yield "", root
     for module in pkgutil.iter_modules(root.__path__):
         if is_public(module.name) and module.name not in SKIPPED:
-            # A shared library beside the modules is taken for one, and cannot be imported.
+            # A shared library next to the modules is taken for a module, and cannot be imported.
             with contextlib.suppress(ImportError):
                 yield f"{module.name}.", importlib.import_module(f"{root.__name__}.{module.name}")
 

@@ -27,7 +27,7 @@ class Fingers:
             wait(gripper.connect())
 
     def homing(self) -> bool:
-        """Finds how wide the fingers open; returns whether that succeeded."""
+        """Homes the fingers to find their largest opening; returns whether that succeeded."""
         return self._act(self._gripper.homing)
 
     def grasp(
@@ -48,7 +48,7 @@ class Fingers:
             try:
                 return bool(wait(action()))
             except ValueError as error:
-                # The originals leave it to the Hand to say so.
+                # The originals leave the check to the Hand.
                 raise self._refused("libfranka gripper: Command failed!") from error
 
     def _next(self) -> _native.GripperState | None:

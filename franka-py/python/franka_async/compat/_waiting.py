@@ -19,8 +19,8 @@ _PAUSE = 0.0002
 def wait(operation: Any) -> Any:
     """Waits for an operation; returns its result. The interpreter is left to other threads.
 
-    A notebook runs its cells on a thread with an event loop. There the operation is waited for on another thread, and the event
-    loop stands still meanwhile, as these packages have it.
+    A notebook runs its cells on a thread with an event loop. There the operation is waited for on another thread. The event
+    loop is blocked meanwhile, as in the original packages.
     """
     if not _in_event_loop():
         return operation.wait()
@@ -42,7 +42,7 @@ def wait(operation: Any) -> Any:
     thread.start()
     try:
         while thread.is_alive():
-            thread.join(0.05)  # Signals are looked at in between.
+            thread.join(0.05)  # Python handles signals between two waits.
     except BaseException:
         loop.call_soon_threadsafe(task.cancel)
         thread.join()
@@ -64,7 +64,8 @@ def _in_event_loop() -> bool:
 
 
 def changed(read: Callable[[], T], when: Callable[[T], Any]) -> T | None:
-    """Returns what ``read()`` gives as soon as ``when`` of it has changed; ``None`` if it does not within :data:`SILENCE`."""
+    """Returns the result of ``read()`` as soon as ``when`` of it has changed; ``None`` if it does not change within
+    :data:`SILENCE`."""
     before = when(read())
     end = time.monotonic() + SILENCE
     while time.monotonic() < end:

@@ -27,7 +27,7 @@ _HAND = np.array(
         [0.0, 0.0, 0.0, 1.0],
     ]
 )
-"""The Hand on the flange: turned by -45 degrees about z."""
+"""Pose of the Hand on the flange: turned by -45 degrees about z."""
 
 
 class Model:
@@ -69,7 +69,7 @@ class Model:
 
 
 class Robot:
-    """A connected robot, from the call on for as long as the object lives."""
+    """A connected robot. The constructor connects; the connection lasts as long as the object lives."""
 
     def __init__(self, address: str, *, realtime: str | None = None, log_size: int | None = None) -> None:
         if realtime is not None:
@@ -132,7 +132,7 @@ class Robot:
         lower_force_thresholds: npt.ArrayLike,
         upper_force_thresholds: npt.ArrayLike,
     ) -> None:
-        """Sets the same thresholds whether the arm accelerates or not."""
+        """Sets the same thresholds for accelerating and other motions."""
         torque, force = (lower_torque_thresholds, upper_torque_thresholds), (lower_force_thresholds, upper_force_thresholds)
         self.set_collision_behavior(*torque, *torque, *force, *force)
 
@@ -150,7 +150,7 @@ class Robot:
         try:
             operation = setting()
         except ValueError as error:
-            # The original leaves it to the robot to say so.
+            # The original leaves the check to the robot.
             raise FrankaError(f"libfranka: {command} command rejected: invalid argument!", kind="command") from error
         with translated():
             wait(operation)
@@ -364,7 +364,7 @@ def _gains(defaults: Gains, given: dict[str, Any], project: bool) -> Gains:
         name: _of_length(name, value, _LENGTHS[name]) if name in _LENGTHS else value
         for name, value in given.items()
     }
-    # Without word of it the original uses none.
+    # Without an explicit value the original uses no feedforward.
     chosen = {"feedforward": 0.0, **chosen, "project_joint_gains": project}
     try:
         return dataclasses.replace(defaults, **chosen)

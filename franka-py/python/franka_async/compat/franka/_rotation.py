@@ -19,13 +19,13 @@ def rotated_by(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> Arr
 
 
 def product(a: Array, b: Array) -> Array:
-    """Returns the quaternion of ``b`` first, then ``a``."""
+    """Returns the quaternion of the rotation ``b`` followed by ``a``."""
     vector = a[3] * b[:3] + b[3] * a[:3] + np.cross(a[:3], b[:3])
     return np.append(vector, a[3] * b[3] - a[:3] @ b[:3])
 
 
 def normalised(quaternion: Array) -> Array:
-    """Returns it with length 1. Raises ``ValueError`` if it has none."""
+    """Returns the quaternion with length 1. Raises ``ValueError`` if its length is zero."""
     length = float(np.linalg.norm(quaternion))
     if length < 1e-12:
         raise ValueError("franka: the orientation quaternion has zero length")
@@ -33,8 +33,8 @@ def normalised(quaternion: Array) -> Array:
 
 
 def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
-    """Returns a vector of one of these lengths. Raises ``TypeError`` for what is no vector, and ``ValueError`` for another length and
-    for numbers that are not finite.
+    """Returns a vector of one of these lengths. Raises ``TypeError`` for anything but a vector, and ``ValueError`` for
+    another length and for numbers that are not finite.
     """
     array = vector(name, values, *counts)
     if not np.isfinite(array).all():

@@ -24,14 +24,14 @@ _STOPPED = (
 
 
 _HELD = 5.0
-"""Seconds without progress after which something holds the arm."""
+"""Seconds without progress after which the arm counts as held."""
 
 _COMES_FURTHER = 5e-3
-"""Way of a joint of the reference that counts as progress, rad: slower arms than 1 mrad/s are held."""
+"""Change of a joint of the reference that counts as progress, rad. An arm slower than 1 mrad/s counts as held."""
 
 
 class _Targets:
-    """A session. It runs from the call that made it on, with or without ``with``."""
+    """A session. It runs from the call that made it, with or without ``with``."""
 
     def __init__(self, robot: _native.Robot, arm: _native.Arm, target: Array) -> None:
         self._robot = robot
@@ -39,11 +39,11 @@ class _Targets:
         self._lock = threading.Lock()
         self._target = target
         self._is_stopped = False
-        # Which `follow` is the newest: an older one ends.
+        # Number of the newest `follow`: an older one ends.
         self._following = 0
 
     def _locked(self) -> threading.Lock:
-        self._arm.reference()  # Raises in a forked child, where a thread that is not there may hold the lock.
+        self._arm.reference()  # Raises in a forked child, where a thread that does not exist there may hold the lock.
         return self._lock
 
     def _goal(self, target: Array) -> Any:
@@ -64,18 +64,18 @@ class _Targets:
         except FrankaError as error:
             if error.kind == "invalid_argument":
                 raise
-            # The session ended since it was seen running.
+            # The session ended after the last check.
             raise FrankaError(_STOPPED) from error
         self._target = target
 
     def move_to(self, target: npt.ArrayLike) -> None:
-        """Moves the target there; never waits."""
+        """Moves the target to a new place; never waits."""
         with self._locked():
             self._following += 1
             self._set(self._absolute(target))
 
     def move_by(self, delta: npt.ArrayLike) -> None:
-        """Moves the target by so much, from where the target is; never waits."""
+        """Moves the target relative to its present place; never waits."""
         with self._locked():
             self._following += 1
             self._set(self._moved(delta))

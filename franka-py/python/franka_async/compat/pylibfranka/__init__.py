@@ -23,7 +23,7 @@ from ._robot import ActiveControlBase, Robot
 from ._state import ControllerMode, Duration, Errors, RealtimeConfig, RobotMode, RobotState
 
 __version__ = "0.21.3"
-"""The version of the original whose interface this is."""
+"""The version of the original that this interface matches."""
 
 __all__ = [
     "ActiveControlBase",

@@ -106,7 +106,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         return result(made(AsyncPositionControlHandler, control, reaches), None)
 
     def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
-        """Sends the robot to a target, wherever it was going before."""
+        """Sends the robot to a target, which replaces the previous target."""
         result = AsyncPositionControlHandler.CommandResult
         _check("target", target, AsyncPositionControlHandler.JointPositionTarget)
         if self._control is None:
@@ -120,7 +120,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         return result(str(uuid.uuid4()), True, None)
 
     def get_target_feedback(self, robot_state: RobotState | None = None) -> TargetFeedback:
-        """Returns how far the newest target has been followed, by the newest state."""
+        """Returns the progress towards the newest target, from the newest state."""
         result = AsyncPositionControlHandler.TargetFeedback
         if self._control is None:
             return result(TargetStatus.kAborted, _ABORTED)

@@ -1,4 +1,4 @@
-"""Commands: numbers, and whether they are the last."""
+"""Commands: numbers, and a flag for the last command."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def numbers(what: str, values: Iterable[SupportsFloat], count: int) -> list[floa
 
 
 def number(what: str, value: SupportsFloat) -> float:
-    """Returns a number; text is none. Raises ``TypeError``."""
+    """Returns a number. Raises ``TypeError`` for anything else, texts included."""
     if isinstance(value, str | bytes):
         raise TypeError(f"{what}: got {value!r}, expected a number")
     return float(value)

@@ -19,7 +19,7 @@ class NetworkException(RuntimeError):
 
 
 class ControlException(RuntimeError):
-    """A motion ended otherwise than asked. ``__cause__`` has the log and the diagnosis."""
+    """A motion did not end as requested. ``__cause__`` has the log and the diagnosis."""
 
 
 class InvalidOperationException(RuntimeError):

@@ -39,7 +39,7 @@ _WRONG = "Wrong writeOnce method called for currently active control!"
 
 
 class ActiveControlBase(metaclass=NoConstructor):
-    """A motion whose states and commands the program reads and writes itself, one after the other, once a millisecond."""
+    """A motion in which the program itself reads states and writes commands, in turn, once a millisecond."""
 
     def __init__(self, control: _native.ActiveControl, command: type) -> None:
         self._control = control
@@ -78,7 +78,7 @@ class ActiveControlBase(metaclass=NoConstructor):
             with translated():
                 self._control.write_once(values, command.motion_finished)
         except Exception as error:
-            # The thread that stops it may have it just now.
+            # The thread that stops the motion may hold it at this moment.
             if self._is_preempted:
                 raise ControlException(PREEMPTED) from error
             raise
@@ -91,7 +91,7 @@ class ActiveControlBase(metaclass=NoConstructor):
 
 
 class Robot:
-    """A connected robot, from the call on for as long as the object lives."""
+    """A connected robot. The constructor connects; the connection lasts as long as the object lives."""
 
     def __init__(
         self, robot_ip_address: str, realtime_config: RealtimeConfig = RealtimeConfig.kEnforce
@@ -105,7 +105,7 @@ class Robot:
             try:
                 wait(self._robot.connect())
             except errors.ConnectError as error:
-                # The original looks for the robot first, and then at this computer.
+                # The original first looks for the robot, and then checks this computer.
                 if error.kind == "realtime":
                     robot = _native.Robot(robot_ip_address, realtime="ignore")
                     wait(robot.connect())
@@ -124,23 +124,23 @@ class Robot:
         return made(RobotState, state)
 
     def start_torque_control(self) -> ActiveControlBase:
-        """Begins control by torques."""
+        """Begins torque control."""
         return self._start(self._robot.active_torques, Torques)
 
     def start_joint_position_control(self, control_type: ControllerMode, /) -> ActiveControlBase:
-        """Begins control by joint positions."""
+        """Begins control with joint positions."""
         return self._start(self._robot.active_joint_positions, JointPositions, control_type)
 
     def start_joint_velocity_control(self, control_type: ControllerMode, /) -> ActiveControlBase:
-        """Begins control by joint velocities."""
+        """Begins control with joint velocities."""
         return self._start(self._robot.active_joint_velocities, JointVelocities, control_type)
 
     def start_cartesian_pose_control(self, control_type: ControllerMode, /) -> ActiveControlBase:
-        """Begins control by poses of the end effector."""
+        """Begins control with poses of the end effector."""
         return self._start(self._robot.active_cartesian_pose, CartesianPose, control_type)
 
     def start_cartesian_velocity_control(self, control_type: ControllerMode, /) -> ActiveControlBase:
-        """Begins control by twists of the end effector."""
+        """Begins control with twists of the end effector."""
         return self._start(self._robot.active_cartesian_velocities, CartesianVelocities, control_type)
 
     def _start(self, begin: Callable[..., Any], command: type, *mode: ControllerMode) -> ActiveControlBase:
@@ -184,11 +184,11 @@ class Robot:
         self._set("Set Cartesian Impedance", lambda: self._robot.set_cartesian_impedance(stiffness))
 
     def set_K(self, EE_T_K: Sequence[float], /) -> None:
-        """Sets the stiffness frame in the end effector's, 16, column by column."""
+        """Sets the stiffness frame in the end effector frame, 16, column by column."""
         self._set_pose("set_K()", "Set EE to K", self._robot.set_k, EE_T_K)
 
     def set_EE(self, NE_T_EE: Sequence[float], /) -> None:
-        """Sets the end effector in the nominal one's frame, 16, column by column."""
+        """Sets the end effector frame in the nominal end effector frame, 16, column by column."""
         self._set_pose("set_EE()", "Set NE to EE", self._robot.set_ee, NE_T_EE)
 
     def _set_pose(self, name: str, command: str, setter: Callable[..., Any], values: Sequence[float]) -> None:
@@ -199,7 +199,7 @@ class Robot:
         try:
             operation = setting()
         except ValueError as error:
-            # The original leaves it to the robot to say so.
+            # The original leaves the check to the robot.
             raise CommandException(f"libfranka: {command} command rejected: invalid argument!") from error
         with translated():
             wait(operation)
@@ -228,7 +228,7 @@ class Robot:
 
     def stop(self) -> None:
         """Stops every motion; its ``readOnce`` raises ControlException."""
-        # Under active control the robot stops without the thread that reads: it may be this one.
+        # Under active control the robot stops without the thread that reads, which may be this thread.
         if active := self._active and self._active():
             active._preempt()
         with translated():
