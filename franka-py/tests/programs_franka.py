@@ -23,7 +23,7 @@ def until(condition: Any) -> bool:
 
 
 def aligned(target: Any) -> Any:
-    """Returns the same target with the one of its two quaternions whose largest part is positive."""
+    """Returns the same target. Of its two quaternions, it has the quaternion whose largest part is positive."""
     quaternion = target[3:]
     return np.append(target[:3], quaternion * np.sign(quaternion[np.abs(quaternion).argmax()]))
 

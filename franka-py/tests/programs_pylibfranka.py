@@ -198,8 +198,7 @@ def asynchronous(p: Any, address: str, outcome: Any) -> None:
 
 
 def asynchronous_as_in_the_example(p: Any, address: str, outcome: Any) -> None:
-    """Uses the numbers of the vendor's example for sparse targets: a tolerance that every posture is within, targets at 50
-    Hz."""
+    """Uses the numbers of the vendor's example for sparse targets: a tolerance that every posture is within, targets at 50 Hz."""
     robot = connect(p, address)
     handlers = p.AsyncPositionControlHandler
     made = handlers.configure(robot, handlers.Configuration([0.655] * 4 + [1.315] * 3, 10.0))

@@ -1,5 +1,6 @@
 """The lists of names of other packages, each of which has a row in the book's chapters for users of those packages. The lists
-match the packages themselves. ``cargo xtask check --only names`` checks the chapters against the lists."""
+match the packages themselves. ``cargo xtask check --only names`` checks the chapters against the lists.
+"""
 
 from __future__ import annotations
 

@@ -144,8 +144,7 @@ def steer(setpoint, velocity, plan):
 
 
 def ease(x):
-    """A function that rises from 0 to 1 for ``x`` within ``0 <= x <= 1``, at rest at both ends, and its first two
-    derivatives."""
+    """A function that rises from 0 to 1 for ``x`` within ``0 <= x <= 1``, at rest at both ends, and its first two derivatives."""
     x = min(max(x, 0.0), 1.0)
     return (
         x**3 * (10.0 + x * (6.0 * x - 15.0)),

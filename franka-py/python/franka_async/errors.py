@@ -144,7 +144,8 @@ class MotionError(FrankaError):
 
 class GoalError(MotionError):
     """A goal or a path was refused. Nothing has moved; a stream that the goal belongs to brakes the arm. The kind is ``goal``
-    or ``path``."""
+    or ``path``.
+    """
 
 
 class SupersededError(MotionError):

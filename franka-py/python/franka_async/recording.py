@@ -105,8 +105,7 @@ class RecordedEvent:
     """The number of the goal that it is about, as in the column ``goal``."""
 
     ending: str | None
-    """The way in which the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ...
-    """
+    """The way in which the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from .. import errors
 
 def text_of(error: errors.FrankaError) -> str:
     """The text of an error, without the parts that the originals lack: the address and cause of a missing connection, the
-    argument that was out of range, and the advice."""
+    argument that was out of range, and the advice.
+    """
     text = str(error).removesuffix(" (`recover` first)")
     is_connecting = isinstance(error, errors.ConnectError)
     kinds = ("refused", "connection_closed", "realtime") if is_connecting else ("out_of_range", "invalid_argument")
@@ -21,7 +22,8 @@ def text_of(error: errors.FrankaError) -> str:
 
 def translation(exception: Callable[[errors.FrankaError], Exception]) -> Callable[[], AbstractContextManager[None]]:
     """Returns a context that raises the exceptions that ``exception`` makes of the exceptions of this package. The latter are
-    the causes."""
+    the causes.
+    """
 
     @contextmanager
     def translated() -> Iterator[None]:

@@ -65,7 +65,8 @@ def _in_event_loop() -> bool:
 
 def changed(read: Callable[[], T], when: Callable[[T], Any]) -> T | None:
     """Returns the result of ``read()`` as soon as ``when`` of it has changed; ``None`` if it does not change within
-    :data:`SILENCE`."""
+    :data:`SILENCE`.
+    """
     before = when(read())
     end = time.monotonic() + SILENCE
     while time.monotonic() < end:

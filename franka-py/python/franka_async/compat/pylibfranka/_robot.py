@@ -161,7 +161,8 @@ class Robot:
         upper_force_thresholds: Sequence[float],
     ) -> None:
         """Sets the thresholds of contact (lower) and collision (upper). Each torque threshold has 7 numbers, N m; each force
-        threshold has 6, N and N m."""
+        threshold has 6, N and N m.
+        """
         thresholds = [
             numbers("set_collision_behavior()", values, count)
             for values, count in (
