@@ -18,7 +18,7 @@ STEP, STEPS = 0.05, 16
 
 
 def predict(at: NDArray[np.float64], way: float) -> tuple[NDArray[np.float64], float]:
-    """The poses of the next 0.8 s, 4 cm/s up or down, and how wide the fingers are to be. A policy would look at the state, too."""
+    """Poses of the next 0.8 s, 4 cm/s up or down, and the target width of the fingers. A policy would also use the state."""
     time.sleep(0.02)
     poses = np.tile(at, (STEPS, 1, 1))
     poses[:, 2, 3] += way * 0.04 * STEP * np.arange(1, STEPS + 1)
@@ -26,7 +26,7 @@ def predict(at: NDArray[np.float64], way: float) -> tuple[NDArray[np.float64], f
 
 
 async def grip(gripper: Gripper, width: float) -> None:
-    """Moves the fingers, unless the policy wants another width meanwhile."""
+    """Moves the fingers, unless the policy requests another width meanwhile."""
     try:
         await gripper.move_to(width)
     except ActionError as error:
@@ -42,13 +42,13 @@ async def run(robot: Robot, arm: Arm, deadman: Deadman, gripper: Gripper, way: f
         if reference is None:
             await arm.ended()  # raises why: a reflex, the user stop, a lost robot
             return False
-        # Relative actions go on from where the arm is to be. The event loop goes on while the policy computes.
+        # Relative actions continue from the target of the arm. The event loop runs while the policy computes.
         poses, width = await asyncio.to_thread(predict, reference.pose, way)
         deadman.keep_alive()
         try:
             await arm.chunk(poses, times=STEP * np.arange(1, STEPS + 1), observed_at=seen)
         except MotionError as refused:
-            # One that is late, or the first after the deadman was silent. Nothing else is for the policy to go on after.
+            # A late chunk, or the first one after the deadman was silent. The policy continues after no other refusal.
             if refused.kind not in ("goal", "held"):
                 raise
             print(refused)
@@ -71,7 +71,7 @@ async def main(address: str, hand: str, folder: Path) -> None:
             await recorder.attach(robot)
             recorder.attach_gripper(gripper)
             for name, way in [("up", 1.0), ("down", -1.0)]:
-                # The control thread brakes the arm if the deadman is silent for so long, whatever Python is busy with.
+                # The control thread brakes the arm if the deadman is silent for this time, even if Python is busy.
                 deadman = Deadman(1.0)
                 async with robot.engage(deadman=deadman) as arm:
                     with recorder.episode(name, task=f"move {name}") as episode:

@@ -14,7 +14,7 @@ async def main(address: str) -> None:
     # "ignore" is for simulators. Leave it out for a robot, which needs a real-time kernel.
     async with Robot(address, realtime="ignore") as robot:
         start = robot.pose()
-        # Slowly: what the arm hits something with grows with its velocity.
+        # Slowly, because the force of an impact grows with the velocity.
         slow = Budget(translation=Limits(velocity=0.05))
         # Friction alone shows up to 6.5 N here, more while the arm sets out.
         touched = force_z(8.0).relative() & elapsed(0.2)

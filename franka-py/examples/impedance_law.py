@@ -1,4 +1,4 @@
-"""Joint impedance as a control law of one's own, compiled by numba: ``python impedance_law.py [ADDRESS]``.
+"""Joint impedance as a custom control law, compiled by numba: ``python impedance_law.py [ADDRESS]``.
 
 The law runs in the control cycle, without the interpreter. It is tried out before: one call on a state, then one cycle at a time on
 a simulated arm in virtual time. Without an address it then moves a simulated robot. Needs ``pip install 'franka-async[numba]'``.

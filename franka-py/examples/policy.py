@@ -27,7 +27,7 @@ async def main(address: str) -> None:
         start = robot.pose()
         targets = Latest(start)
         deciding = asyncio.create_task(policy(targets, start))
-        # The control thread brakes the arm if no target comes for a second, whatever Python is busy with.
+        # The control thread brakes the arm if no target comes for a second, even if Python is busy.
         report = await robot.follow(targets, watchdog=(1.0, "brake"))
         await deciding
         print(f"followed for {report.duration:.1f} s, {report.lost_states} states were lost")

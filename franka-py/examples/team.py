@@ -1,6 +1,6 @@
 """Two arms as one: both begin together, and the fault of one stops the other: ``python team.py [LEFT RIGHT [SILENCE]]``.
 
-A robot that is silent for so long, s, is at fault: more than the usual 0.02 for simulators on a busy machine. Without addresses it
+A robot without a state for SILENCE, s, is at fault. Simulators on a busy machine need more than the usual 0.02. Without addresses it
 moves two simulated robots.
 """
 

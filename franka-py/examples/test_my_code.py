@@ -1,4 +1,4 @@
-"""Tests of one's own code against a simulated robot: ``pytest test_my_code.py``. The fixtures come with the package."""
+"""Tests of your code against a simulated robot: ``pytest test_my_code.py``. The fixtures come with the package."""
 
 import asyncio
 
