@@ -9,7 +9,7 @@ use franka_rt::driver::Program;
 use franka_rt::lifecycle::{MotionError, Outcome};
 use franka_rt::session::{GoalError, GoalId};
 use franka_rt::shaping::check;
-use franka_rt::slot::SlotWriter;
+use franka_rt::triple_buffer::Writer;
 use futures::FutureExt;
 use futures::future::{BoxFuture, Shared};
 
@@ -137,7 +137,7 @@ pub struct AsynchronousControl {
 
 #[derive(Debug)]
 struct Targets {
-    writer: SlotWriter<AsynchronousTarget>,
+    writer: Writer<AsynchronousTarget>,
     newest: Option<[f64; 7]>,
 }
 
@@ -213,7 +213,7 @@ impl AsynchronousControl {
     fn write(&self, q: [f64; 7], finished: bool) {
         let mut targets = self.lock();
         targets.newest = Some(q);
-        targets.writer.write(&AsynchronousTarget { q, finished });
+        targets.writer.write(AsynchronousTarget { q, finished });
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Targets> {

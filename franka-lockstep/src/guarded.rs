@@ -16,7 +16,7 @@ use franka_rt::session::{
     Backend, Chunk, ChunkWriter, Deadman, Fate, ForceCap, Free, Goal, GoalId, Guard, KeepOut, Lead,
     OnArrival, OnTimeout, Reaction, Target, TargetSession, Watchdog, chunk_ring,
 };
-use franka_rt::slot::{SlotWriter, slot};
+use franka_rt::triple_buffer::{Writer, triple_buffer};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -75,7 +75,7 @@ pub struct Guarded {
     backend: Backend,
     random: SmallRng,
     home: Isometry3<f64>,
-    goals: SlotWriter<Goal>,
+    goals: Writer<Goal>,
     chunks: ChunkWriter,
     deadman: Deadman,
     goal: Goal,
@@ -116,11 +116,11 @@ impl Guarded {
 
         let version = lockstep.client.version();
         let home = lockstep.arm_pose();
-        let (mut goals, reader) = slot();
+        let (mut goals, reader) = triple_buffer();
         let (chunks, taken) = chunk_ring();
         let (deadman, monitor) = Deadman::new(SILENCE);
         let goal = Goal::new(GoalId(1), Target::Rest, OnArrival::Hold, limits());
-        goals.write(&goal);
+        goals.write(goal);
         let session = TargetSession::new(Model::fr3().clone().into(), version, reader)
             .going_on()
             .out_of(regions(&home))
@@ -247,7 +247,7 @@ impl Guarded {
         if alike && self.random.random_bool(0.5) {
             self.goal.target = target;
             self.goal.revision += 1;
-            self.goals.write(&self.goal);
+            self.goals.write(self.goal);
         } else {
             self.submit(target);
         }
@@ -305,7 +305,7 @@ impl Guarded {
                 ..goal
             },
         };
-        self.goals.write(&self.goal);
+        self.goals.write(self.goal);
     }
 
     /// A condition that becomes true soon, sometimes, and rest or a target that follows.

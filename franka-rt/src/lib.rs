@@ -56,6 +56,7 @@ pub mod team;
 #[cfg(unix)]
 pub mod thread;
 pub mod together;
+pub mod triple_buffer;
 
 // The program in the README compiles.
 #[cfg(doctest)]

@@ -162,7 +162,7 @@ fn sparse_targets_allocate_and_free_nothing() {
     let program = Program::Asynchronous(program);
     let calls = calls_of(Version::V10, program, &request, |time| {
         if time % 5 == 0 {
-            targets.write(&AsynchronousTarget {
+            targets.write(AsynchronousTarget {
                 q: [time as f64; 7],
                 finished: false,
             });

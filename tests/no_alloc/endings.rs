@@ -13,9 +13,9 @@ use franka_rt::driver::{
     Activity, ControlLog, Driver, Event, LINK_TIMEOUT, MotionId, Order, Program,
 };
 use franka_rt::session::{Goal, GoalId, OnArrival, Target, TargetSession};
-use franka_rt::slot;
 use franka_rt::stats::{Arrival, CycleTimes};
 use franka_rt::together::{StartBarrier, StartTicket};
+use franka_rt::triple_buffer::triple_buffer;
 
 use crate::calls_during;
 
@@ -79,10 +79,10 @@ fn programs(end: End) -> [Program; 3] {
             _ => Torques([0.0; 7]).into(),
         }
     });
-    let (mut goals, reader) = slot::slot();
+    let (mut goals, reader) = triple_buffer();
     let target = Target::Joints(READY.into());
     let limits = Model::fr3().joint_limits();
-    goals.write(&Goal::new(
+    goals.write(Goal::new(
         GoalId(1),
         target,
         OnArrival::ReportAndFinish,

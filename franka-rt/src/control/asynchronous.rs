@@ -3,16 +3,16 @@
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotMode, RobotState};
 
 use super::{Command, JointPositions};
-use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
+use crate::triple_buffer::{Reader, Writer, triple_buffer};
 
 /// The program of a motion between sparse joint targets: one command per new target, not one per
 /// state. Protocol 10 only.
 #[derive(Debug)]
 pub struct AsynchronousPositions {
-    targets: SlotReader<AsynchronousTarget>,
+    targets: Reader<AsynchronousTarget>,
 }
 
-/// A target as it crosses in the slot.
+/// One target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
     /// Positions to go to and hold, `[rad]`.
@@ -23,8 +23,8 @@ pub struct AsynchronousTarget {
 
 impl AsynchronousPositions {
     /// Returns a program without a target, and the writer of its targets.
-    pub fn new() -> (Self, SlotWriter<AsynchronousTarget>) {
-        let (writer, targets) = slot();
+    pub fn new() -> (Self, Writer<AsynchronousTarget>) {
+        let (writer, targets) = triple_buffer();
         (Self { targets }, writer)
     }
 
@@ -42,32 +42,12 @@ impl AsynchronousPositions {
 
     /// The command for a target that has not been sent yet, and whether it is the last.
     pub(crate) fn step(&mut self) -> Option<(Command, bool)> {
-        match self.targets.read_newer() {
-            Read::Newer(AsynchronousTarget { q, finished }) => {
-                let command = Command {
-                    motion: Some(JointPositions(q).into()),
-                    torques: None,
-                };
-                Some((command, finished))
-            }
-            Read::Same | Read::Torn => None,
-        }
-    }
-}
-
-impl Words for AsynchronousTarget {
-    const WORDS: usize = 8;
-
-    fn store(&self, words: &mut [u64]) {
-        self.q.store(&mut words[..7]);
-        words[7] = u64::from(self.finished);
-    }
-
-    fn load(words: &[u64]) -> Self {
-        Self {
-            q: Words::load(&words[..7]),
-            finished: words[7] != 0,
-        }
+        let AsynchronousTarget { q, finished } = self.targets.read_newer()?;
+        let command = Command {
+            motion: Some(JointPositions(q).into()),
+            torques: None,
+        };
+        Some((command, finished))
     }
 }
 
@@ -203,14 +183,14 @@ mod tests {
     fn a_target_is_sent_once() {
         let (mut program, mut targets) = AsynchronousPositions::new();
         assert!(program.step().is_none());
-        targets.write(&AsynchronousTarget {
+        targets.write(AsynchronousTarget {
             q: [0.1; 7],
             finished: false,
         });
         let (command, finished) = program.step().expect("a new target");
         assert_eq!(command.motion, Some(JointPositions([0.1; 7]).into()));
         assert!(!finished && program.step().is_none());
-        targets.write(&AsynchronousTarget {
+        targets.write(AsynchronousTarget {
             q: [0.1; 7],
             finished: true,
         });

@@ -13,8 +13,8 @@ use crate::control::{
 use crate::law::Gains;
 use crate::session::{Backend, Goal, GoalId, OnArrival, Target, TargetSession};
 use crate::shaping::InvalidCommand;
-use crate::slot;
 use crate::stats::{Arrival, CycleTimes};
+use crate::triple_buffer::triple_buffer;
 
 const MODES: Modes = Modes {
     generator: MotionGeneratorMode::None,
@@ -33,9 +33,9 @@ fn moving(time: u64) -> RobotState {
 }
 
 fn session(target: Target, backend: Backend) -> Program {
-    let (mut goals, reader) = slot::slot();
+    let (mut goals, reader) = triple_buffer();
     let limits = Model::fr3().joint_limits();
-    goals.write(&Goal {
+    goals.write(Goal {
         gains: Gains::joint(),
         ..Goal::new(GoalId(1), target, OnArrival::ReportAndFinish, limits)
     });
@@ -228,11 +228,11 @@ fn a_command_that_is_not_finite_fails_the_motion_whatever_program_made_it() {
         q: [0.1; 7],
         finished: false,
     };
-    targets.write(&target);
+    targets.write(target);
     let sent = answer(&mut driver, &moving(101)).expect("a command");
     assert_eq!(sent.q_c, [0.1; 7]);
     target.q[4] = f64::NAN;
-    targets.write(&target);
+    targets.write(target);
     assert!(answer(&mut driver, &moving(102)).is_none());
     assert_eq!(driver.record().activity, Activity::Silent);
     let failed = core::iter::from_fn(|| driver.take_event()).last();
@@ -244,7 +244,7 @@ fn a_command_that_is_not_finite_fails_the_motion_whatever_program_made_it() {
         Failure::Invalid(InvalidCommand::NotFinite)
     ));
     target.q[4] = 0.1;
-    targets.write(&target);
+    targets.write(target);
     assert!(answer(&mut driver, &moving(103)).is_none(), "nothing later");
 }
 

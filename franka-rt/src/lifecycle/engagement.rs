@@ -249,7 +249,7 @@ impl Lifecycle {
         // Also a goal that was taken back: it is held until the next one comes.
         if let Some(goals) = self.goals_mut() {
             goals.current = tuned;
-            goals.slot.write(&tuned);
+            goals.newest.write(tuned);
         }
         Ok(())
     }

@@ -12,12 +12,12 @@ use crate::session::{
     Backend, Chunk, ChunkWriter, Goal, GoalError, GoalId, Lapse, OnArrival, Pulse, Reacted,
     Settlement, Target, TooManyChunks,
 };
-use crate::slot::SlotWriter;
+use crate::triple_buffer::Writer;
 
 /// The goals of a motion under target control.
 #[derive(Debug)]
 pub(super) struct Goals {
-    pub(super) slot: SlotWriter<Goal>,
+    pub(super) newest: Writer<Goal>,
     /// The newest goal.
     pub(super) current: Goal,
     /// True if its owner has taken it back.
@@ -102,10 +102,10 @@ pub(super) struct Settled {
 }
 
 impl Goals {
-    /// A separate motion to `goal`, which `slot` holds already.
-    pub(super) fn new(goal: Goal, slot: SlotWriter<Goal>, chunks: ChunkWriter) -> Self {
+    /// A separate motion to `goal`, which `newest` holds already.
+    pub(super) fn new(goal: Goal, newest: Writer<Goal>, chunks: ChunkWriter) -> Self {
         Self {
-            slot,
+            newest,
             current: goal,
             cancelled: false,
             verdict: Verdict::Open,
@@ -145,7 +145,7 @@ impl Goals {
 
     /// Brakes, and ends the motion at rest.
     pub(super) fn brake(&mut self) {
-        self.slot.write(&Goal {
+        self.newest.write(Goal {
             revision: self.current.revision + 1,
             ..self.current.at_rest(OnArrival::ReportAndFinish)
         });
@@ -158,7 +158,7 @@ impl Goals {
         goal: Goal,
         reason: MotionError,
     ) -> Option<(GoalId, Outcome)> {
-        self.slot.write(&goal);
+        self.newest.write(goal);
         self.take_chunk_error();
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);

@@ -67,7 +67,7 @@ impl Lifecycle {
             _ => match self.goals_mut() {
                 Some(goals) if goals.current.id == id && !goals.cancelled => {
                     goals.current.paused = paused;
-                    goals.slot.write(&goals.current);
+                    goals.newest.write(goals.current);
                     return;
                 }
                 _ => return,
@@ -169,13 +169,13 @@ impl Lifecycle {
         state: Option<&RobotState>,
     ) -> Result<bool, GoalError> {
         let model = self.model.clone();
-        let (goal, slot, backend) = match &mut self.next {
+        let (goal, newest, backend) = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => {
                 (&mut **goal, None, Backend::Torques)
             }
             _ => match self.goals_mut() {
                 Some(goals) if goals.current.id == id && !goals.cancelled => {
-                    (&mut goals.current, Some(&mut goals.slot), goals.backend)
+                    (&mut goals.current, Some(&mut goals.newest), goals.backend)
                 }
                 _ => return Ok(false),
             },
@@ -189,8 +189,8 @@ impl Lifecycle {
             backend.check(&amended)?;
         }
         *goal = amended;
-        if let Some(slot) = slot {
-            slot.write(&amended);
+        if let Some(newest) = newest {
+            newest.write(amended);
         }
         Ok(true)
     }

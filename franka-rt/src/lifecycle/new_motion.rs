@@ -15,9 +15,9 @@ use crate::session::check::check_keep_out;
 use crate::session::{
     self, Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target, TargetSession, TooManyChunks,
 };
-use crate::slot;
 use crate::stats::MotionTimes;
 use crate::together::StartTicket;
+use crate::triple_buffer::triple_buffer;
 
 /// A motion to begin. Its name, a goal's or its own, must be a name that was never used before.
 #[derive(Debug)]
@@ -269,14 +269,14 @@ impl Lifecycle {
         engagement: Option<Engagement>,
         now: Duration,
     ) {
-        let (mut slot, reader) = slot::slot();
-        slot.write(&goal);
+        let (mut newest, reader) = triple_buffer();
+        newest.write(goal);
         let mut session = TargetSession::new(self.model.clone(), self.version, reader)
             .out_of(self.keep_out)
             .knowing(self.learned);
         let (writer, reader) = session::chunk_ring();
         session = session.with_chunks(reader);
-        let mut goals = Goals::new(goal, slot, writer);
+        let mut goals = Goals::new(goal, newest, writer);
         if let Some(path) = path
             && goal.along_path
         {

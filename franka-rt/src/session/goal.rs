@@ -1,7 +1,5 @@
 //! Goals: the requests of target control.
 
-mod words;
-
 use core::time::Duration;
 
 use franka_model::limits::JointLimits;
@@ -146,18 +144,6 @@ impl Free {
         axes: [true; 6],
         elbow: true,
     };
-
-    fn to_word(self) -> u64 {
-        let all = self.axes.into_iter().chain([self.elbow]);
-        all.fold(0, |word, free| word << 1 | u64::from(free))
-    }
-
-    fn from_word(word: u64) -> Self {
-        Self {
-            axes: core::array::from_fn(|i| word >> (6 - i) & 1 == 1),
-            elbow: word & 1 == 1,
-        }
-    }
 }
 
 /// Action of the session once the reference has arrived.

@@ -1,7 +1,7 @@
 //! Target control: turns goals into one continuous joint-space reference and torques.
 //!
 //! ```text
-//! prepared: goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics)
+//! prepared: newest goal -> lead -> course (joint generator | pose generator -> inverse kinematics)
 //!           -> clearance
 //! answered: -> leash -> law -> guards of the torques -> torques
 //! ```
@@ -57,9 +57,9 @@ use franka_model::Model;
 use franka_proto::{RobotState, Version};
 
 use crate::law::compensation::Learned;
-use crate::slot::{Read, SlotReader};
 use crate::team::{Member, MemberFault};
 use crate::together::{Gate, StartFault};
+use crate::triple_buffer;
 
 pub use approach::{target_range, target_range_of};
 pub use backend::{Backend, Controller, Setpoints};
@@ -103,7 +103,7 @@ pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 #[derive(Debug)]
 pub struct TargetSession {
     model: Arc<Model>,
-    goals: SlotReader<Goal>,
+    goals: triple_buffer::Reader<Goal>,
     active: Option<RunningSession>,
     /// A goal that waits for its common start.
     held: Option<Goal>,
@@ -130,7 +130,7 @@ pub struct TargetSession {
 impl TargetSession {
     /// Creates a session that follows the goals written to `goals`, for a robot that speaks
     /// `version`. The first goal must be there before the session runs.
-    pub fn new(model: Arc<Model>, version: Version, goals: SlotReader<Goal>) -> Self {
+    pub fn new(model: Arc<Model>, version: Version, goals: triple_buffer::Reader<Goal>) -> Self {
         Self {
             model,
             goals,
@@ -412,11 +412,6 @@ impl TargetSession {
     }
 
     fn read(&mut self) -> Option<Goal> {
-        match self.goals.read_newer() {
-            Read::Newer(goal) => Some(goal),
-            // A torn read keeps the previous goal for this cycle; the next cycle sees the new one
-            // whole.
-            Read::Same | Read::Torn => None,
-        }
+        self.goals.read_newer()
     }
 }

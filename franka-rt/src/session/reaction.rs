@@ -8,7 +8,6 @@ use nalgebra::Isometry3;
 
 use crate::session::condition::{Condition, ConditionError};
 use crate::session::{Budget, GoalError, Target, check};
-use crate::slot::Words;
 
 /// A condition, and the target of the motion once it is true: rest by default, or the target of
 /// [`Condition::then`].
@@ -90,28 +89,6 @@ impl Budget {
             translation: brisk(self.translation, &other.translation),
             rotation: brisk(self.rotation, &other.rotation),
         }
-    }
-}
-
-/// One word for the presence of a reaction, 8 for the target, then the words of the condition.
-impl Words for Option<Reaction> {
-    const WORDS: usize = 1 + Target::WORDS + Condition::WORDS;
-
-    fn store(&self, words: &mut [u64]) {
-        words[0] = u64::from(self.is_some());
-        if let Some(reaction) = self {
-            let (target, condition) = words[1..].split_at_mut(Target::WORDS);
-            reaction.then.store(target);
-            reaction.condition.store(condition);
-        }
-    }
-
-    fn load(words: &[u64]) -> Self {
-        let (target, condition) = words[1..].split_at(Target::WORDS);
-        (words[0] == 1).then(|| Reaction {
-            condition: Condition::load(condition),
-            then: Target::load(target),
-        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::condition::{elapsed, force_z};
 use super::*;
-use crate::slot::{SlotWriter, slot};
+use crate::triple_buffer::{Writer, triple_buffer};
 use franka_model::{JointVector, READY, transform};
 use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
@@ -18,7 +18,7 @@ pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
 /// A session whose arm is always at its reference.
 struct Arm {
     session: TargetSession,
-    goals: SlotWriter<Goal>,
+    goals: Writer<Goal>,
     state: RobotState,
     /// Report of the newest answer.
     event: Option<SessionEvent>,
@@ -26,7 +26,7 @@ struct Arm {
 
 impl Arm {
     fn new() -> Self {
-        let (goals, reader) = slot();
+        let (goals, reader) = triple_buffer();
         let rigid = transform::array(&Isometry3::identity());
         Self {
             session: TargetSession::new(Arc::new(Model::fr3().clone()), Version::V10, reader),
@@ -47,7 +47,7 @@ impl Arm {
         q[0] += by;
         let limits = Model::fr3().joint_limits();
         let goal = Goal::new(GoalId(id), q.into(), OnArrival::ReportAndHold, limits);
-        self.goals.write(&goal);
+        self.goals.write(goal);
     }
 
     /// Answers the next state.
@@ -110,7 +110,7 @@ fn a_guided_arm_is_answered_from_where_it_is() {
     let limits = Model::fr3().joint_limits();
     let guided = Target::Guide(Free::ALL);
     let goal = Goal::new(GoalId(1), guided, OnArrival::Hold, limits);
-    arm.goals.write(&goal);
+    arm.goals.write(goal);
     for cycle in 0..1000 {
         arm.state.q[0] += if cycle < 10 { 0.0 } else { 1e-3 };
         let q = arm.state.q;
@@ -159,7 +159,7 @@ fn watched(by: f64, milliseconds: u64) -> Goal {
 #[test]
 fn a_state_with_a_force_that_is_no_number_is_answered_and_not_reacted_to() {
     let mut arm = Arm::new();
-    arm.goals.write(&watched(1.0, 100_000));
+    arm.goals.write(watched(1.0, 100_000));
     for force in [0.0, f64::NAN, f64::INFINITY, 0.0] {
         arm.state.O_F_ext_hat_K[2] = force;
         for _ in 0..50 {
@@ -180,7 +180,7 @@ fn a_state_with_a_force_that_is_no_number_is_answered_and_not_reacted_to() {
 #[test]
 fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
     let mut arm = Arm::new();
-    arm.goals.write(&watched(1.0, 100));
+    arm.goals.write(watched(1.0, 100));
     assert!(!arm.session.is_withdrawn());
     arm.state.O_F_ext_hat_K[2] = -20.0;
     for _ in 0..500 {
@@ -214,7 +214,7 @@ fn a_time_too_long_for_a_duration_does_not_panic() {
     for joint in &mut goal.budget.joints {
         joint.velocity = 1e-20;
     }
-    arm.goals.write(&goal);
+    arm.goals.write(goal);
     arm.answer(Gate::Open);
     arm.session.prepare();
     let step = arm.answer(Gate::Open);
@@ -265,7 +265,7 @@ fn a_budget_has_least_limits_with_which_a_plan_ends() {
         }
     }
     let mut arm = Arm::new();
-    arm.goals.write(&Goal {
+    arm.goals.write(Goal {
         budget: Budget {
             joints: [least; 7],
             ..goal.budget

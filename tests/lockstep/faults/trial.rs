@@ -10,7 +10,7 @@ use franka_rt::control::{
 };
 use franka_rt::driver::{Activity, Program};
 use franka_rt::session::{GoalId, OnArrival, Target};
-use franka_rt::slot::SlotWriter;
+use franka_rt::triple_buffer::Writer;
 use nalgebra::{Isometry3, Translation3};
 
 use crate::faults::course;
@@ -59,7 +59,7 @@ enum ExternalControl {
     },
     /// One sparse target, and a finish there.
     Targets {
-        slot: SlotWriter<AsynchronousTarget>,
+        targets: Writer<AsynchronousTarget>,
         q: [f64; 7],
     },
     /// A held goal whose target moves, from its start.
@@ -115,11 +115,11 @@ impl Trial {
                 )
             }
             Way::Asynchronous => {
-                let (program, slot) = AsynchronousPositions::new();
+                let (program, targets) = AsynchronousPositions::new();
                 let request = AsynchronousPositions::request([0.655; 7]);
                 let mut q: [f64; 7] = READY.into();
                 q[course::JOINT] += 0.003;
-                let external = ExternalControl::Targets { slot, q };
+                let external = ExternalControl::Targets { targets, q };
                 (
                     lockstep.control(Program::Asynchronous(program), request),
                     external,
@@ -222,13 +222,13 @@ impl Trial {
                     Err(error) => self.refused.push(error),
                 }
             }
-            ExternalControl::Targets { slot, q } => {
+            ExternalControl::Targets { targets, q } => {
                 let finished = match *cycles {
                     course::REST => false,
                     course::END => true,
                     _ => return,
                 };
-                slot.write(&AsynchronousTarget { q: *q, finished });
+                targets.write(AsynchronousTarget { q: *q, finished });
             }
             ExternalControl::Leader { start } => {
                 let goal = self.work;
@@ -245,10 +245,10 @@ impl Trial {
 
     /// Sets another sparse target.
     pub(crate) fn give_target(&mut self, target: &AsynchronousTarget) {
-        let ExternalControl::Targets { slot, .. } = &mut self.external else {
+        let ExternalControl::Targets { targets, .. } = &mut self.external else {
             panic!("{} has no sparse targets", self.variant);
         };
-        slot.write(target);
+        targets.write(*target);
     }
 
     /// Runs up to `moment`.

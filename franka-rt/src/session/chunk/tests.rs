@@ -18,8 +18,8 @@ use crate::session::reference::Reference;
 use crate::session::{
     Budget, Goal, GoalId, OnArrival, SessionEvent, Settlement, Target, TargetSession, rigid,
 };
-use crate::slot::{SlotWriter, slot};
 use crate::together::Gate;
+use crate::triple_buffer::{Writer, triple_buffer};
 
 mod replanning;
 
@@ -359,14 +359,14 @@ fn a_chunk_of_poses_is_walked_to_its_end_and_rests_there() {
 /// A session whose arm is always at its reference.
 struct Session {
     session: TargetSession,
-    goals: SlotWriter<Goal>,
+    goals: Writer<Goal>,
     chunks: ChunkWriter,
     state: RobotState,
 }
 
 impl Session {
     fn new() -> Self {
-        let (goals, reader) = slot();
+        let (goals, reader) = triple_buffer();
         let (chunks, chunk_reader) = chunk_ring();
         let identity = Isometry3::<f64>::identity().to_homogeneous();
         let rigid: [f64; 16] = identity.as_slice().try_into().expect("sixteen numbers");
@@ -387,7 +387,7 @@ impl Session {
 
     fn set(&mut self, id: u64, target: Target, on_arrival: OnArrival) {
         let goal = Goal::new(GoalId(id), target, on_arrival, Model::fr3().joint_limits());
-        self.goals.write(&Goal {
+        self.goals.write(Goal {
             along_path: on_arrival == OnArrival::ReportAndHold,
             ..goal
         });

@@ -30,7 +30,6 @@ mod quantity;
 #[cfg(test)]
 mod tests;
 mod watch;
-mod words;
 
 use core::ops::{BitAnd, BitOr, Not};
 use core::time::Duration;

@@ -8,7 +8,6 @@ use rand::{Rng, SeedableRng};
 
 use super::*;
 use crate::session::running::Measured;
-use crate::slot::Words;
 
 /// Shows states to conditions.
 struct Arm {
@@ -357,73 +356,6 @@ fn a_condition_that_outgrows_its_room_is_refused_with_its_size() {
     }
 }
 
-#[test]
-fn every_condition_survives_its_words() {
-    let axes = [Axis::X, Axis::Y, Axis::Z];
-    let along = axes.into_iter().flat_map(|axis| {
-        [
-            Quantity::Force(axis),
-            Quantity::Torque(axis),
-            Quantity::Position(axis),
-            Quantity::Velocity(axis),
-            Quantity::AngularVelocity(axis),
-        ]
-    });
-    let joints = (1..=7).flat_map(|joint| {
-        [
-            Quantity::JointTorque(joint),
-            Quantity::JointPosition(joint),
-            Quantity::JointVelocity(joint),
-        ]
-    });
-    let others = [
-        Quantity::ForceNorm,
-        Quantity::TorqueNorm,
-        Quantity::LargestJointTorque,
-        Quantity::Speed,
-        Quantity::AngularSpeed,
-    ];
-    let compared = along
-        .chain(joints)
-        .chain(others)
-        .flat_map(|quantity| {
-            [
-                quantity.above(-1.5),
-                quantity.below(0.25),
-                quantity.beyond(3.0),
-            ]
-        })
-        .flat_map(|condition| [condition, condition.relative()]);
-    let flags = [
-        contact(),
-        joint_contact(6),
-        cartesian_contact(),
-        collision(),
-    ];
-    let times = [
-        elapsed(77 * MS),
-        elapsed(Duration::MAX),
-        contact().held_for(5 * MS),
-    ];
-    let full = (1..12).fold(!contact(), |all, i| {
-        if i % 2 == 0 {
-            all & force_z(f64::from(i))
-        } else {
-            all | elapsed(i as u32 * MS)
-        }
-    });
-    assert_eq!(full.length, Condition::ROOM);
-    for condition in compared
-        .chain(flags)
-        .chain(times)
-        .chain([full, full & full])
-    {
-        let mut words = [u64::MAX; Condition::WORDS];
-        condition.store(&mut words);
-        assert_eq!(Condition::load(&words), condition);
-    }
-}
-
 /// Uses an arm whose stiffness frame is turned by half a turn about x against the base.
 #[test]
 fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
@@ -455,11 +387,6 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
         (position.above(0.51), false),
     ] {
         assert_eq!(arm.meets(condition.tared(&tare)), met, "{condition:?}");
-        // Reads the condition on the other side of the slot.
-        let mut words = [u64::MAX; Condition::WORDS];
-        let tared = condition.tared(&tare);
-        tared.store(&mut words);
-        assert_eq!(Condition::load(&words), tared);
     }
     // A change has no tare, in either order of the calls.
     let (change, tared) = (force_z(1.0).relative(), force_z(1.0).tared(&tare));

@@ -71,23 +71,6 @@ impl ForceCap {
             Self::Off => None,
         }
     }
-
-    /// Encodes the cap as a number: NaN for the default, infinity for no cap.
-    pub(crate) fn to_number(self) -> f64 {
-        match self {
-            Self::Default => f64::NAN,
-            Self::Newtons(newtons) => newtons,
-            Self::Off => f64::INFINITY,
-        }
-    }
-
-    pub(crate) fn from_number(number: f64) -> Self {
-        match number {
-            f64::INFINITY => Self::Off,
-            number if number.is_nan() => Self::Default,
-            newtons => Self::Newtons(newtons),
-        }
-    }
 }
 
 /// Limits the force of the torques of `springs` and `dampers`, `[N m]`, to `cap`, `[N]`. Returns

@@ -10,8 +10,8 @@ use crate::session::geometry::corrected;
 use crate::session::{
     Backend, Goal, GoalId, OnArrival, SessionCommand, SessionEvent, Settlement, TargetSession,
 };
-use crate::slot::slot;
 use crate::together::Gate;
+use crate::triple_buffer::triple_buffer;
 
 fn resting() -> RobotState {
     let rigid = transform::array(&Isometry3::identity());
@@ -34,10 +34,10 @@ fn resting() -> RobotState {
 fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
     let mut q: [f64; 7] = READY.into();
     q[0] += 0.3;
-    let (mut goals, reader) = slot();
+    let (mut goals, reader) = triple_buffer();
     let limits = Model::fr3().joint_limits();
     let finish = OnArrival::ReportAndFinish;
-    goals.write(&Goal::new(GoalId(1), q.into(), finish, limits));
+    goals.write(Goal::new(GoalId(1), q.into(), finish, limits));
     let model = Arc::new(Model::fr3().clone());
     let mut session = TargetSession::new(model, Version::V10, reader)
         .with_backend(Backend::joint_impedance(Setpoints::JointVelocities));

@@ -3,7 +3,8 @@
 //!
 //! | module | crossing |
 //! |---|---|
-//! | [`slot`] | newest values: goals in, states out |
+//! | [`slot`] | newest values for several readers: states out |
+//! | [`triple_buffer`] | newest values for one reader: goals in |
 //! | [`handoff`] | the cycle, lent to a thread of the user's |
 //! | [`event_fd`] | wake-ups, and the end of the thread |
 //! | [`together`] | motions of several robots that begin together, or not at all |
@@ -21,3 +22,4 @@ mod slot;
 mod state_wakeups;
 mod team;
 mod together;
+mod triple_buffer;
