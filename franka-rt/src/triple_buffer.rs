@@ -92,3 +92,29 @@ impl<T> Reader<T> {
         self.shared.buffers[self.own].try_lock().ok()?.take()
     }
 }
+
+#[cfg(all(test, not(loom)))]
+mod tests {
+    use super::*;
+
+    /// Runs every order of ten writes and reads.
+    #[test]
+    fn each_buffer_has_one_owner_and_reads_return_the_newest_value() {
+        for order in 0_u32..1 << 10 {
+            let (mut writer, mut reader) = triple_buffer();
+            let mut newest = None;
+            for step in 0..10 {
+                if order >> step & 1 == 1 {
+                    writer.write(step);
+                    newest = Some(step);
+                } else {
+                    assert_eq!(reader.read_newer(), newest.take(), "order {order:010b}");
+                }
+                let between = writer.shared.between.load(Ordering::Relaxed) & !FRESH;
+                let mut owned = [writer.own, reader.own, between];
+                owned.sort_unstable();
+                assert_eq!(owned, [0, 1, 2], "order {order:010b}");
+            }
+        }
+    }
+}
