@@ -4,7 +4,7 @@
 //! A motion towards goals is braked within the robot's limits, and so is a session before it ends.
 //! A control function or program is ended by stopping the robot. All of it is one input to the
 //! bridge, which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's
-//! future is the `Drop` of `Moving`, in `motion`. Handles that cancel when dropped are in
+//! future is the `Drop` of `Moving`, in `move_to`. Handles that cancel when dropped are in
 //! `session`, `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`, decides what happens.
 

@@ -1,4 +1,4 @@
-//! The causes in a diagnosis, and their text. `reasoning` selects them.
+//! The causes in a diagnosis, and their text. `reflex_reason` selects them.
 
 use core::fmt;
 use core::time::Duration;

@@ -1,5 +1,5 @@
 //! Explains why a Franka robot ended a motion, by a reflex or otherwise. It determines the limit
-//! that was exceeded, by how much and since when, the causes, and the changes to make. `reasoning`
+//! that was exceeded, by how much and since when, the causes, and the changes to make. `reflex_reason`
 //! combines the evidence.
 //!
 //! ```text
@@ -20,7 +20,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `reasoning` | the error that explains the others, its checks, causes and advice |
+//! | `reflex_reason` | the error that explains the others, its checks, causes and advice |
 //! | `evidence` | the log, prepared for these checks |
 //! | `commanded`, `measured` | commands and sensor values relative to the limits of the model |
 //! | `command_steps`, `contact`, `lost_cycles`, `posture` | causes, one kind each |
@@ -75,7 +75,7 @@ mod finding;
 mod lost_cycles;
 mod measured;
 mod posture;
-mod reasoning;
+mod reflex_reason;
 #[cfg(test)]
 mod tests;
 
@@ -203,16 +203,16 @@ impl Diagnosis {
     }
 
     fn of_evidence(errors: Errors, evidence: &Evidence<'_>) -> Self {
-        let (error, finding) = reasoning::explaining(evidence, errors);
+        let (error, finding) = reflex_reason::explaining(evidence, errors);
         let causes = error.map_or_else(Vec::new, |error| {
-            reasoning::causes(evidence, error, finding.as_ref())
+            reflex_reason::causes(evidence, error, finding.as_ref())
         });
         Self {
             commander: evidence.commander,
             errors,
             error,
             advice: error.map_or_else(Vec::new, |error| {
-                reasoning::advice(error, finding.as_ref(), &causes)
+                reflex_reason::advice(error, finding.as_ref(), &causes)
             }),
             finding,
             causes,

@@ -20,6 +20,7 @@
 
 mod aim;
 mod approach;
+mod arrival;
 mod backend;
 mod budget;
 pub(crate) mod check;
@@ -34,13 +35,11 @@ mod guard;
 mod guide;
 mod joints;
 mod kinematics;
-mod landing;
 mod margin;
 mod membership;
 mod pose;
 mod reaction;
 mod reference;
-mod route;
 mod running;
 mod setpoint_stream;
 mod settlement;
@@ -62,6 +61,8 @@ use crate::together::{Gate, StartFault};
 use crate::triple_buffer;
 
 pub use approach::{target_range, target_range_of};
+pub(crate) use arrival::REST_VELOCITY;
+pub use arrival::{PoseError, RELEASE_TIMEOUT, Settling, Shortfall};
 pub use backend::{Backend, Controller, Setpoints};
 pub use budget::Budget;
 pub use chunk::{
@@ -80,8 +81,6 @@ pub use guard::torque_clamp::LimitedTorque;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
-pub(crate) use landing::REST_VELOCITY;
-pub use landing::{PoseError, RELEASE_TIMEOUT, Settling, Shortfall};
 pub use margin::Margin;
 pub use reaction::{Reacted, Reaction};
 pub use settlement::{Lapse, SessionEvent, Settlement};

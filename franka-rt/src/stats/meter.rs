@@ -4,7 +4,7 @@ use core::time::Duration;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::arrivals::Arrivals;
+use super::lateness::Arrivals;
 use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 

@@ -17,12 +17,12 @@
 //!
 //! * [`Histogram`]: durations in logarithmic buckets. [`CycleTimes`]: one cycle and its phases.
 //! * [`MotionStatistics`]: counts over the running time of one motion.
-//! * `arrivals`: when the next state is due. `meter`: the writing side of it all.
+//! * `lateness`: when the next state is due. `meter`: the writing side of it all.
 
-mod arrivals;
 mod cycle;
 mod histogram;
 mod laps;
+mod lateness;
 mod meter;
 mod motion;
 

@@ -14,7 +14,6 @@
 //!    like `kReflexAborted` must not overtake the state that explains it.
 
 mod boards;
-mod condition;
 mod control;
 mod interaction;
 mod interface;
@@ -23,10 +22,11 @@ mod operation;
 mod publish;
 mod ratchet;
 mod recovery;
+mod robot_mode;
 mod session;
 mod shaking;
+mod supervision;
 mod touch;
-mod watch;
 
 pub use crate::connection::{Datagram, SessionError};
 pub use operation::Freeze;
@@ -58,8 +58,8 @@ use motion::ActiveMotion;
 pub(crate) use motion::Awaited;
 use operation::{Frozen, Guidance, Lock};
 use recovery::Recovery;
+use supervision::Watch;
 use touch::Touches;
-use watch::Watch;
 
 /// A simulated robot; see the [module](self).
 pub struct Robot {

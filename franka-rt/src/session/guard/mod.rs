@@ -5,7 +5,7 @@
 //! | leash | `leash` |
 //! | deviation | `deviation` |
 //! | lead | `lead` |
-//! | clearance | `clearance` |
+//! | clearance | `clearance`; slowing down and braking before an obstacle: `clear_course` |
 //! | bounds of joints that follow a pose: velocity, position, acceleration | `joint_bounds` |
 //! | speed cap | `speed_cap` |
 //! | force cap | `force_cap` |
@@ -21,6 +21,7 @@
 
 pub(super) mod backstop;
 mod binding;
+pub(super) mod clear_course;
 pub(super) mod clearance;
 pub(super) mod deadman;
 pub(super) mod deviation;

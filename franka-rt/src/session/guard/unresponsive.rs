@@ -19,8 +19,8 @@ use franka_proto::RobotState;
 use nalgebra::Vector3;
 
 use crate::law::Gains;
+use crate::session::arrival::REST_VELOCITY;
 use crate::session::backend::Controller;
-use crate::session::landing::REST_VELOCITY;
 
 /// Counts how long the arm has ignored its commands.
 #[derive(Debug)]

@@ -25,11 +25,13 @@ use crate::session::reference::Reference;
 use crate::team::TeamStop;
 
 use super::aim::Aim;
+use super::arrival::{self, PoseError};
 use super::backend::Backend;
 use super::chunk::ChunkReader;
 use super::course::{Course, CourseStep};
 use super::effort::{Effort, Resistance};
 use super::goal::{Goal, OnArrival, Target};
+use super::guard::clear_course::ClearCourse;
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Displacement;
 use super::guard::leash::{self, Held, Leash};
@@ -38,8 +40,6 @@ use super::guard::unresponsive::{Commanded, Unresponsive};
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
 use super::kinematics::Posture;
-use super::landing::{self, PoseError};
-use super::route::Route;
 use super::setpoint_stream::SetpointStream;
 use super::{
     Lapse, Reacted, SessionCommand, SessionEvent, SessionStep, Trace, end_effector_of, load_of,
@@ -78,7 +78,7 @@ pub(super) struct RunningSession {
     aim: Target,
     /// True if a moving target got no update for too long.
     halted: bool,
-    route: Route,
+    route: ClearCourse,
     reference: Reference,
     drive: Drive,
     displacement: Displacement,
@@ -198,7 +198,7 @@ impl RunningSession {
             aim: goal.target,
             halted: false,
             // The state shows that a tool is mounted, but not its shape: the Hand is assumed.
-            route: Route::new(
+            route: ClearCourse::new(
                 Clearance::new(model, state.m_ee > 0.0, keep_out),
                 goal.budget,
             ),
@@ -410,7 +410,7 @@ impl RunningSession {
             }
         };
         self.reference = step.reference;
-        let at_rest = dq.amax() < landing::REST_VELOCITY;
+        let at_rest = dq.amax() < arrival::REST_VELOCITY;
         self.advance_stage(model, at_rest, state.message_id, event);
         self.observe(state);
         // Under the robot's own controller the reference is anchored at the robot's setpoint.

@@ -3,8 +3,8 @@
 use franka_model::{Frame, Model};
 
 use super::{Drive, RunningSession, Standing};
+use crate::session::arrival::{self, Landing, PoseError, Release, Verdict};
 use crate::session::guard::joint_bounds;
-use crate::session::landing::{self, Landing, PoseError, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
     Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
@@ -154,7 +154,7 @@ impl RunningSession {
         }
         // The hand may have reached its target before the elbow has.
         let turns =
-            self.goal.posture.is_some() && self.reference.dq.amax() > landing::REST_VELOCITY;
+            self.goal.posture.is_some() && self.reference.dq.amax() > arrival::REST_VELOCITY;
         // A reference that halts on its way rests, too. An arm that others wait for gives up when
         // it was held back for too long.
         let arrived = done && !turns && !(pursued && self.waits);

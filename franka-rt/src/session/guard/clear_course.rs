@@ -1,4 +1,4 @@
-//! A course that keeps clear of the arm itself and of the keep-out regions.
+//! A course that slows down and brakes before the arm itself and before keep-out regions.
 
 use franka_model::{EndEffector, Model};
 
@@ -26,8 +26,8 @@ const HINDERED: u32 = 250;
 
 /// Moves the reference along a course, and brakes it before any obstacle that is too near.
 #[derive(Debug)]
-pub(super) struct Route {
-    pub(super) course: Course,
+pub(in crate::session) struct ClearCourse {
+    pub(in crate::session) course: Course,
     clearance: Clearance,
     pace: Pace,
     /// True if the course must be planned anew before its next step: for another target, budget or
@@ -41,9 +41,9 @@ pub(super) struct Route {
     judged: Budget,
     /// A chunk whose course has been replaced. It is returned in the next cycle, to be freed
     /// outside the thread.
-    pub(super) retired_chunk: Option<ChunkCourse>,
+    pub(in crate::session) retired_chunk: Option<ChunkCourse>,
     /// Target at which the goal's last chunk has ended, if no chunk runs.
-    pub(super) chunk_end: Option<Target>,
+    pub(in crate::session) chunk_end: Option<Target>,
     /// True if a brake has ended the chunk before its end. The caller did not ask for the straight
     /// line to its end, so the course rests until another target or chunk arrives.
     left_chunk: bool,
@@ -64,9 +64,9 @@ enum Pace {
 /// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
 const AT_REST: f64 = 1e-4;
 
-impl Route {
-    /// Returns the route of an arm at rest, which begins with this budget.
-    pub(super) fn new(clearance: Clearance, budget: Budget) -> Self {
+impl ClearCourse {
+    /// Returns the course of an arm at rest, which begins with this budget.
+    pub(in crate::session) fn new(clearance: Clearance, budget: Budget) -> Self {
         Self {
             course: Course::Rest,
             clearance,
@@ -83,12 +83,12 @@ impl Route {
     }
 
     /// Makes the course be planned anew before its next step.
-    pub(super) fn outdate(&mut self) {
+    pub(in crate::session) fn outdate(&mut self) {
         self.stale = true;
     }
 
     /// Plans anew towards `aim` if that is due.
-    pub(super) fn renew(
+    pub(in crate::session) fn renew(
         &mut self,
         model: &Model,
         ee: &EndEffector,
@@ -121,12 +121,12 @@ impl Route {
     }
 
     /// True if a plan could not be made since the last call.
-    pub(super) fn take_failure(&mut self) -> bool {
+    pub(in crate::session) fn take_failure(&mut self) -> bool {
         core::mem::take(&mut self.failed)
     }
 
     /// Follows a chunk towards its end, `aim`, at the present pace. Returns the previous chunk.
-    pub(super) fn follow(
+    pub(in crate::session) fn follow(
         &mut self,
         model: &Model,
         ee: &EndEffector,
@@ -185,7 +185,7 @@ impl Route {
 
     /// Plans anew towards `aim` from a reference that something else has moved, unless it has
     /// arrived and rests.
-    pub(super) fn begin_again(
+    pub(in crate::session) fn begin_again(
         &mut self,
         model: &Model,
         ee: &EndEffector,
@@ -208,7 +208,7 @@ impl Route {
     }
 
     /// Ends the motion to the previous target, so that the next one is planned.
-    pub(super) fn turn(&mut self) {
+    pub(in crate::session) fn turn(&mut self) {
         self.retire_chunk();
         self.left_chunk = false;
         self.stale = true;
@@ -238,7 +238,7 @@ impl Route {
     }
 
     /// Clears course and pace; the reference stays where it is.
-    pub(super) fn rest(&mut self) {
+    pub(in crate::session) fn rest(&mut self) {
         self.course = Course::Rest;
         self.pace = Pace::Full;
         self.stale = false;
@@ -247,7 +247,7 @@ impl Route {
     /// Advances by one nominal millisecond towards `aim`, for the answer to the state `now`, or
     /// brakes before an obstacle that is too near.
     #[expect(clippy::too_many_arguments, reason = "each is of another type")]
-    pub(super) fn step(
+    pub(in crate::session) fn step(
         &mut self,
         model: &Model,
         ee: &EndEffector,
@@ -303,18 +303,18 @@ impl Route {
     }
 
     /// True if an obstacle slows the course down or keeps it from its aim.
-    pub(super) fn is_bound(&self) -> bool {
+    pub(in crate::session) fn is_bound(&self) -> bool {
         !matches!(self.pace, Pace::Full)
     }
 
     /// Obstacle that keeps the course from its goal, or did so a moment ago.
-    pub(super) fn hindrance(&self) -> Option<Lapse> {
+    pub(in crate::session) fn hindrance(&self) -> Option<Lapse> {
         let region = self.obstacle.map(|index| index + 1);
         (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 
     /// True if the course has ended.
-    pub(super) fn is_done(&self) -> bool {
+    pub(in crate::session) fn is_done(&self) -> bool {
         !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
     }
 }

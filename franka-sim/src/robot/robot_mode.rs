@@ -15,7 +15,7 @@ use franka_proto::{
 };
 
 use super::motion::{ActiveMotion, Rules, Verdict};
-use super::watch::Sight;
+use super::supervision::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::config::ErrorBits;
