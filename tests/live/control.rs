@@ -164,37 +164,6 @@ async fn torques_alone_and_beside_a_generator() {
     }
 }
 
-#[tokio::test(flavor = "multi_thread")]
-async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
-    let _alone = alone();
-    for (robot, _sim) in each().await {
-        let mut calls = 0;
-        let panicking = robot.control_joint_velocities(move |_: &RobotState, _| {
-            calls += 1;
-            assert!(calls < 100, "a bug of the user's");
-            JointVelocities([0.0; 7])
-        });
-        let error = panicking.await.unwrap_err();
-        let text = "the control function panicked: a bug of the user's";
-        assert_eq!(error.to_string(), text);
-        // The robot has missed the commands of a function that panicked, or not.
-        robot.recover().await.unwrap();
-
-        let mut calls = 0;
-        let spoiled = robot.control_torques(move |_: &RobotState, _| {
-            calls += 1;
-            Torques([if calls < 100 { 0.0 } else { f64::NAN }; 7])
-        });
-        let error = spoiled.cutoff_frequency(1000.0).await.unwrap_err();
-        assert_eq!(error.to_string(), "Commanding value is infinite or NaN.");
-        robot.recover().await.unwrap();
-
-        let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
-        robot.move_to(up).await.expect("the thread goes on");
-        robot.shutdown().await;
-    }
-}
-
 /// A captured value whose drop panics.
 struct Bad;
 

@@ -2,13 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use franka_async::MotionError;
 use franka_async::error::CommandError;
 use franka_async::state::RobotMode;
-use franka_async::{MotionError, Realtime, Robot};
-use franka_proto::RobotError;
-use franka_rt::lifecycle::END_TIMEOUT;
-use franka_sim::{Network, Sim};
-use franka_tests::PATIENCE;
+use franka_sim::Network;
 
 use crate::{SOON, alone, connect, long_way, simulated, under_way, until};
 
@@ -94,30 +91,6 @@ async fn a_robot_that_dies_ends_the_motion_and_everything_after_it() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_reflex_is_named_and_can_be_recovered_from() {
-    let _alone = alone();
-    let (robot, sim) = simulated().await;
-    let moving = tokio::spawn(long_way(&robot).into_future());
-    under_way(&robot).await;
-    sim.with(|robot| robot.trip(RobotError::JointReflex))
-        .await
-        .unwrap();
-    let error = moving.await.unwrap().unwrap_err();
-    let text = error.to_string();
-    assert!(
-        text.starts_with(
-            r#"libfranka: Move command aborted: motion aborted by reflex! ["joint_reflex"]"#
-        ),
-        "{text}"
-    );
-    let refused = robot.move_to(robot.pose()).await.unwrap_err();
-    assert!(matches!(refused, MotionError::Rejected(_)), "{refused:?}");
-    robot.recover().await.unwrap();
-    robot.move_to(robot.pose()).await.unwrap();
-    robot.shutdown().await;
-}
-
-#[tokio::test(flavor = "multi_thread")]
 async fn the_last_handle_dropped_in_mid_motion_brakes_and_closes() {
     let _alone = alone();
     let (robot, sim) = simulated().await;
@@ -187,28 +160,5 @@ async fn a_recovery_that_no_state_confirms_is_no_success() {
         matches!(recovered, CommandError::LinkLost { .. }),
         "{recovered:?}"
     );
-    robot.shutdown().await;
-}
-
-/// The robot has reported over TCP long before that it has ended the motion.
-#[tokio::test(flavor = "multi_thread")]
-async fn an_end_that_no_state_confirms_waits_for_the_link_timeout() {
-    let _alone = alone();
-    let sim = Sim::fr3().ideal().virtual_time(PATIENCE).start();
-    let sim = sim.await.expect("a simulator starts");
-    let link_timeout = END_TIMEOUT + Duration::from_secs(1);
-    let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-    let robot = robot.link_timeout(link_timeout).connect().await.unwrap();
-    let moving = tokio::spawn(long_way(&robot).into_future());
-    under_way(&robot).await;
-    let cut = |network: &mut Option<Network>, now| {
-        let network = network.get_or_insert_with(Network::perfect);
-        network.to_client.cut(now..Duration::MAX);
-    };
-    sim.with_network(cut).await.unwrap();
-    match moving.await.unwrap().unwrap_err() {
-        MotionError::LinkLost { silence } => assert!(silence >= link_timeout, "{silence:?}"),
-        other => panic!("{other:?}"),
-    }
     robot.shutdown().await;
 }

@@ -1,14 +1,14 @@
 //! The end effectors: the driver's handles and the simulated devices over real sockets.
 
 use std::io::{Read, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
 use franka_async::Pose;
-use franka_async::error::{ActionError, ConnectError, GripperError, Party};
-use franka_async::gripper::{Grasp, Gripper, State as GripperState};
+use franka_async::error::{ConnectError, GripperError, Party};
+use franka_async::gripper::{Grasp, Gripper};
 use franka_async::vacuum::{Profile, Vacuum, VacuumGripper};
-use franka_proto::{gripper, server, vacuum};
+use franka_proto::gripper;
 use franka_sim::{Fingers, Running, Sim, Suction};
 use franka_tests::PATIENCE;
 use tokio::time::{sleep, timeout};
@@ -308,93 +308,4 @@ async fn a_vacuum_gripper_holds_drops_and_stops() {
     assert_eq!(aborted.unwrap_err().to_string(), text);
     let text = "libfranka vacuum gripper: Command failed!";
     assert_eq!(suck(50, -1).await.unwrap_err().to_string(), text);
-}
-
-/// A device that answers every request with the next of `statuses`, and its port.
-fn scripted<P>(version: P, state: Vec<u8>, statuses: Vec<u16>) -> SocketAddr
-where
-    P: franka_proto::Protocol + Send + 'static,
-    P::Command: Send,
-{
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-    let address = listener.local_addr().unwrap();
-    std::thread::spawn(move || {
-        let (mut stream, _) = listener.accept().unwrap();
-        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
-        let mut session = server::Session::new(version);
-        let mut statuses = statuses.into_iter();
-        let mut received = Vec::new();
-        let mut buffer = [0; 256];
-        while let Ok(length @ 1..) = stream.read(&mut buffer) {
-            received.extend_from_slice(&buffer[..length]);
-            while let Ok(Some(message)) = gripper::next_message(&received) {
-                let size = message.size();
-                if let Ok(server::Event::Connect {
-                    udp_port, reply, ..
-                }) = session.on_message(message)
-                {
-                    stream.write_all(reply.as_bytes()).unwrap();
-                    socket
-                        .send_to(&state, (Ipv4Addr::LOCALHOST, udp_port))
-                        .unwrap();
-                } else {
-                    // The header again, with the size of one status.
-                    let mut reply = received[..6].to_vec();
-                    reply.extend(12_u32.to_le_bytes());
-                    reply.extend(statuses.next().expect("a status").to_le_bytes());
-                    stream.write_all(&reply).unwrap();
-                }
-                received.drain(..size);
-            }
-        }
-    });
-    address
-}
-
-/// libfranka's interpretation of the statuses 0 to 3, and of an undefined status: scenario 18.
-fn check<C: franka_proto::ServiceCommand>(status: u16, result: Result<bool, ActionError<C>>) {
-    let service = C::SERVICE;
-    let expected = match status {
-        0 => Ok(true),
-        2 => Ok(false),
-        1 => Err(format!("{service}: Command failed!")),
-        3 => Err(format!("{service}: Command aborted!")),
-        _ => Err(format!(
-            "{service}: Unexpected response while handling command!"
-        )),
-    };
-    assert_eq!(result.map_err(|error| error.to_string()), expected);
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn conformance_18_every_status_of_every_command() {
-    let statuses = || (0..5).flat_map(|status| [status; 4]).collect::<Vec<u16>>();
-    let state = GripperState {
-        max_width: 0.08,
-        ..GripperState::default()
-    };
-    let state = state.encode().to_vec();
-    let address = scripted(gripper::Version::V3, state, statuses());
-    let gripper = Gripper::connect(address).await.expect("a session");
-    for status in 0..5 {
-        check(status, gripper.homing().await);
-        check(status, gripper.move_to(0.05, 0.1).await);
-        check(status, gripper.grasp(object()).await);
-        check(status, gripper.stop().await);
-    }
-
-    let state = vacuum::State::default().encode().to_vec();
-    let statuses = (0..5).flat_map(|status| [status; 3]).collect();
-    let address = scripted(vacuum::Version::V1, state, statuses);
-    let gripper = VacuumGripper::connect(address).await.expect("a session");
-    let request = Vacuum {
-        vacuum: 50,
-        profile: Profile::P3,
-        timeout: 100,
-    };
-    for status in 0..5 {
-        check(status, gripper.vacuum(request).await);
-        check(status, gripper.drop_off(Duration::from_secs(1)).await);
-        check(status, gripper.stop().await);
-    }
 }

@@ -1,13 +1,4 @@
-//! An FER's transmit stalls over sockets, for the driver as it is. `tests/lockstep/stalls.rs` has
-//! their exact effect in virtual time. These tests detect them, and this command measures them for
-//! the duration of the measurements on robots:
-//!
-//! ```text
-//! FRANKA_STALLS_SECONDS=30 cargo test --package franka-tests --test live stalls -- --nocapture
-//! ```
-//!
-//! Here a newer state replaces more states than on robots: a burst leaves the simulator faster than
-//! the driver's thread wakes up.
+//! Commands over a network that delays like a cable.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -15,44 +6,8 @@ use std::time::Duration;
 use franka_async::control::{Finish as _, Torques};
 use franka_sim::network::Conditions;
 use franka_sim::{Network, Sim};
-use franka_tests::cycle_counts::CycleCounts;
 
-use crate::{ahead_of_the_client, alone, by_the_clock};
-
-/// Every client answers late the states that have waited for the end of a stall: some 14 of 1000
-/// cycles.
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
-    let _alone = alone();
-    let seconds = std::env::var("FRANKA_STALLS_SECONDS").ok();
-    let seconds: u64 = seconds.map_or(SECONDS, |text| text.parse().expect("a number"));
-    let (robot, sim) = ahead_of_the_client(Sim::fer().ideal().network(Network::fer(1))).await;
-    let counts = Arc::new(Mutex::new(CycleCounts::default()));
-    let noted = Arc::clone(&counts);
-    let before = sim.pace().await.expect("it runs");
-    let motion = robot.control_torques(move |state, step| {
-        let mut counts = noted.lock().expect("no panic");
-        counts.note(state, step);
-        Torques([0.0; 7]).finish_if(counts.cycles >= 1000 * seconds)
-    });
-    let report = motion.await.expect("the robot bridges such gaps");
-    let after = sim.pace().await.expect("it runs");
-    robot.shutdown().await;
-    let counts = *counts.lock().expect("no panic");
-    println!(
-        "{} of {} lost, {} in a row at most, success rate {:.4}; {} states skipped, {:?}; the host \
-         was late for {} states",
-        counts.lost(),
-        counts.cycles,
-        counts.row,
-        counts.rate(),
-        report.skipped_states,
-        report.turnaround,
-        after.late() - before.late(),
-    );
-    // No machine is better than the robot's network.
-    assert!(counts.rate() < 0.995, "{counts:?}");
-}
+use crate::{alone, by_the_clock};
 
 /// An answer may be on its way when the next cycle is due: it is waited for as well.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -78,6 +33,3 @@ async fn no_command_is_lost_behind_a_cable_where_commands_are_waited_for() {
     let least = *least.lock().expect("no panic");
     assert_eq!(least, 1.0);
 }
-
-/// Default duration, in seconds.
-const SECONDS: u64 = 4;
