@@ -66,9 +66,6 @@ mod programs {
     #[doc = include_str!("../../docs/src/start/first-motion.md")]
     struct FirstMotion;
 
-    #[doc = include_str!("../../docs/src/start/three-ways.md")]
-    struct ThreeWays;
-
     #[doc = include_str!("../../docs/src/tutorial/control.md")]
     struct TutorialControl;
 
@@ -86,9 +83,6 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/explaining.md")]
     struct Explaining;
-
-    #[doc = include_str!("../../docs/src/gripper.md")]
-    struct Gripper;
 
     #[doc = include_str!("../../docs/src/guards.md")]
     struct Guards;
