@@ -44,7 +44,7 @@ fn mode(state: &RobotState) -> Judged {
             Judged::warning("the robot has stopped itself").fix(Needs::Nothing, "franka recover")
         }
         RobotMode::UserStopped => {
-            Judged::warning("the user stop is pressed, or a safety function holds the robot")
+            Judged::warning("the user stop is pressed, or a safety function is active")
         }
         RobotMode::Other => Judged::warning("not ready: the brakes are closed, or it is starting"),
     }

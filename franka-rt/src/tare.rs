@@ -71,8 +71,9 @@ impl WrenchTare {
 pub enum TareRefused {
     /// A joint moves.
     #[error(
-        "joint {joint} moves: got {speed:.3} rad/s or {way:.4} rad since the first state, expected \
-         an arm at rest, with at most {SPEED} rad/s and {WAY} rad; await the end of the motion"
+        "joint {joint} moves at {speed:.3} rad/s, {way:.4} rad since the first state, expected at \
+         most \
+         {SPEED} rad/s and {WAY} rad: wait until the arm rests"
     )]
     Moves {
         /// The joint, 1 to 7.
@@ -83,25 +84,28 @@ pub enum TareRefused {
         way: f64,
     },
     /// A goal is under way: the arm may stick yet, and is pushed.
-    #[error("a motion is under way: await its end, and take the tare of an arm that holds itself")]
+    #[error("a motion is running, expected none: await its end before the tare")]
     UnderWay,
     /// The robot is in a mode in which its torques show something else.
-    #[error("got the mode {got}, expected idle or move: the arm has to hold itself, untouched")]
+    #[error(
+        "the robot is in mode {got}, expected idle or move: the arm must hold itself, untouched"
+    )]
     Mode {
         /// The mode.
         got: RobotMode,
     },
     /// The robot reports a contact.
-    #[error("the robot reports a contact: nothing may touch the arm while a tare is taken")]
+    #[error("the robot reports a contact, expected none: nothing may touch the arm during a tare")]
     Contact,
     /// The robot has no estimate in this posture.
     #[error(
-        "the robot reports no external wrench, expected one: this posture is near a singularity; \
-         take the tare in another one"
+        "the robot reports no external wrench, expected one: this posture is near a singularity, \
+         so take \
+         the tare in another posture"
     )]
     NoEstimate,
     /// The given time is out of range.
-    #[error("a tare over {got:?}, expected 20 ms to 60 s")]
+    #[error("the duration of the tare is {got:?}, expected 20 ms to 60 s")]
     Duration {
         /// The time given.
         got: Duration,
@@ -322,13 +326,16 @@ mod tests {
             taken(changed).expect_err("refused").to_string()
         };
         let changes: [(Change, &str); 6] = [
-            (|it| it.dq[3] = -0.05, "joint 4 moves: got -0.050 rad/s"),
+            (|it| it.dq[3] = -0.05, "joint 4 moves at -0.050 rad/s"),
             (
                 |it| it.q[1] += 0.01,
-                "joint 2 moves: got 0.000 rad/s or 0.0100",
+                "joint 2 moves at 0.000 rad/s, 0.0100 rad since",
             ),
             (|it| it.dq[0] = f64::NAN, "joint 1 moves"),
-            (|it| it.robot_mode = RobotMode::Guiding, "got the mode"),
+            (
+                |it| it.robot_mode = RobotMode::Guiding,
+                "the robot is in mode",
+            ),
             (|it| it.joint_contact[2] = 1.0, "reports a contact"),
             (|it| it.cartesian_contact[5] = 1.0, "reports a contact"),
         ];

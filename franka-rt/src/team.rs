@@ -105,7 +105,7 @@ pub enum MemberFault {
 impl core::fmt::Display for TeamStop {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Requested => write!(f, "the team was told to stop"),
+            Self::Requested => write!(f, "the team was stopped on request"),
             Self::Member { member, fault } => write!(f, "member {member} of the team: {fault}"),
         }
     }
@@ -114,15 +114,15 @@ impl core::fmt::Display for TeamStop {
 impl core::fmt::Display for MemberFault {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::RobotStopped => "its robot has stopped by itself",
-            Self::Silent => "its robot is silent",
+            Self::RobotStopped => "its robot stopped itself",
+            Self::Silent => "no states arrive from its robot",
             Self::Failed => "its command could not be sent",
-            Self::Gone => "its session is gone",
+            Self::Gone => "its session has ended",
             Self::GivenUp => "its goal was given up",
-            Self::NotReached => "it did not reach its target",
-            Self::TakenBack => "its motion was taken back",
+            Self::NotReached => "its target was not reached",
+            Self::TakenBack => "its motion was cancelled",
             Self::Refused => "its goal was refused",
-            Self::TimedOut => "it has waited for the others for too long",
+            Self::TimedOut => "it waited too long for the other members",
         })
     }
 }

@@ -110,7 +110,7 @@ pub enum StartError {
     #[error(transparent)]
     Scheduling(#[from] SchedError),
     /// No thread, no descriptor, or a socket that does not take its options.
-    #[error("the control thread cannot be started: {0}")]
+    #[error("cannot start the control thread: {0}")]
     System(#[from] io::Error),
 }
 

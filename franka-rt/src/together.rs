@@ -43,10 +43,10 @@ use core::time::Duration;
 /// assert_eq!((left.member(), right.member()), (0, 1));
 /// drop(right); // its motion will never begin, so the other one will not either
 /// let fault = left.fault().expect("a member is gone");
-/// assert_eq!(fault.to_string(), "member 1 of the common start was dropped or refused before it began");
+/// assert_eq!(fault.to_string(), "member 1 of the common start was dropped or refused before the start");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use = "a common start is nothing without its tickets"]
+#[must_use = "only the tickets of a common start do something"]
 pub struct StartBarrier {
     timeout: Duration,
 }
@@ -143,13 +143,13 @@ pub enum Gate {
 pub enum StartFault {
     /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was
     /// refused before a request to its robot.
-    #[error("member {member} of the common start was dropped or refused before it began")]
+    #[error("member {member} of the common start was dropped or refused before the start")]
     Dropped {
         /// Number of the member.
         member: usize,
     },
     /// A motion was dropped, stopped or superseded while it waited.
-    #[error("member {member} of the common start was taken back while it waited")]
+    #[error("member {member} of the common start was cancelled while it waited")]
     Withdrawn {
         /// Number of the member.
         member: usize,
@@ -163,7 +163,8 @@ pub enum StartFault {
     },
     /// Not all were there in time.
     #[error(
-        "{present} of {members} members were there when the common start was given up, after {} ms",
+        "{present} of {members} members were ready for the common start after {} ms, expected all \
+         of them",
         .waited.as_millis()
     )]
     TimedOut {

@@ -206,7 +206,7 @@ fn scenario_11_a_stop_that_is_refused() {
             assert_eq!(pair.client.outcome(motion.work), None);
         }
         pair.step();
-        let what = "the robot neither ran the motion nor stopped it";
+        let what = "the robot neither ran nor stopped the motion";
         assert_eq!(pair.error(motion.work), MotionError::Protocol { what });
 
         // Without commands the robot ends the motion after all, and accepts the next.

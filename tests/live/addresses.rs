@@ -138,7 +138,7 @@ async fn a_log_of_more_than_ten_seconds_is_refused_with_the_bound() {
         let builder = builder.realtime(Realtime::Ignore);
         let error = builder.connect().await.expect_err("nothing listens");
         if refused {
-            let text = format!("a log of {cycles} cycles is too long: expected 10000 at most");
+            let text = format!("the log has {cycles} cycles, expected 10000 at most");
             assert_eq!(error.to_string(), text);
             assert_eq!(error.party(), Party::Caller);
         } else {
@@ -177,7 +177,7 @@ async fn a_link_timeout_out_of_range_is_refused_with_the_range() {
         let error = builder.connect().await.expect_err("out of range");
         assert_eq!(
             error.to_string(),
-            format!("a link timeout of {timeout:?} is out of range: expected 20ms to 10s")
+            format!("the link timeout is {timeout:?}, expected 20ms to 10s")
         );
         assert_eq!(error.party(), Party::Caller);
     }

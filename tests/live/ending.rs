@@ -175,7 +175,7 @@ fn a_runtime_that_ends_in_mid_motion_leaves_nothing_running() {
     let moving = elsewhere.spawn(long_way(&robot).into_future());
     elsewhere.block_on(under_way(&robot));
     drop(runtime);
-    let text = "the runtime that served the connection has ended";
+    let text = "the Tokio runtime that served the connection has ended";
     let outcome = elsewhere.block_on(moving).unwrap();
     assert_eq!(outcome.unwrap_err().to_string(), text);
     let error = elsewhere.block_on(robot.recover()).unwrap_err();

@@ -303,19 +303,16 @@ fn bad_goals_are_named_and_change_nothing() {
     for (target, expected) in [
         (
             Target::Joints(beyond),
-            "joint 4: 0.5 rad, expected between -3.0642 and -0.1297",
+            "the target of joint 4 is 0.5 rad, expected between -3.0642 and -0.1297 rad",
         ),
         (
             Target::Joints(nan),
-            "a number of the target's joint positions is not finite",
+            "got a number that is not finite in the target's joint positions",
         ),
-        (
-            Target::Pose(far),
-            "no joint positions inside their ranges reach (2.",
-        ),
+        (Target::Pose(far), "the pose at (2."),
         (
             Target::Pose(Translation3::new(1e300, 0.0, 0.0) * lockstep.arm_pose()),
-            "no joint positions inside their ranges reach (1.000e300,",
+            "the pose at (1.000e300,",
         ),
     ] {
         let bad = lockstep.goal(target, OnArrival::ReportAndFinish);
@@ -330,7 +327,7 @@ fn bad_goals_are_named_and_change_nothing() {
     let error = lockstep.submit(fast).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "speed is 300 m/s, expected between 0 and 3"
+        "speed of the target is 300 m/s, expected between 0 and 3 m/s"
     );
     let mut fast = lockstep.goal(Target::Joints(READY.into()), OnArrival::ReportAndFinish);
     fast.budget.joints[1].velocity = 3.0;

@@ -460,28 +460,28 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
         ),
         (
             leash(0.004),
-            "leash is 0.004 m, expected between 0.005 and 0.1",
+            "leash (end effector) is 0.004 m, expected between 0.005 and 0.1 m",
         ),
         (
             leash(f64::INFINITY),
-            "leash is inf m, expected between 0.005 and 0.1",
+            "leash (end effector) is inf m, expected between 0.005 and 0.1 m",
         ),
-        (deviation, "deviation of the joints is NaN rad"),
+        (deviation, "deviation (joints) is NaN rad"),
         (
             settling(0, 100),
-            "time to hold the target is 0 s, expected between 0.001 and 60",
+            "hold time of settling is 0 s, expected between 0.001 and 60 s",
         ),
         (
             settling(200, 100),
-            "timeout of settling is 0.1 s, expected between 0.2 and 60",
+            "timeout of settling is 0.1 s, expected between 0.2 and 60 s",
         ),
         (
             gains(12.0, 100.0),
-            "torque limit of axis 7 is 12, expected between 1 and 11.5",
+            "torque limit [N m] of axis 7 is 12, expected between 1 and 11.5",
         ),
         (
             gains(11.0, 10.0),
-            "torque cutoff frequency is 10, expected between 20 and 1000",
+            "torque cutoff frequency [Hz] is 10, expected between 20 and 1000",
         ),
         (stretched, "joint 4: 0 rad"),
     ] {

@@ -176,7 +176,8 @@ fn a_target_that_moves_has_no_arrival() {
     let pose = lockstep.arm_pose();
     let goal = lockstep.goal((pose, twist()).into(), OnArrival::ReportAndFinish);
     let error = lockstep.submit(goal).expect_err("refused");
-    let text = "the target moves, so that the arm cannot come to rest at it";
+    let text = "got a target with a velocity, expected a target at rest, where the motion can \
+        end: use `set` or `follow` for moving targets";
     assert_eq!(error.to_string(), text);
 }
 

@@ -24,7 +24,10 @@ fn run(name: &str, robot: &str) -> String {
 fn engage_goes_from_goal_to_goal_and_back() {
     for robot in ROBOTS {
         let said = run("engage", robot);
-        assert!(said.contains("held: no target came"), "{robot}: {said}");
+        assert!(
+            said.contains("held: no new target arrived"),
+            "{robot}: {said}"
+        );
         assert!(said.contains("back after "), "{robot}: {said}");
     }
 }
@@ -74,7 +77,7 @@ fn carry_says_why_it_is_refused() {
     let said = program::run("carry", &["--speed", "1000"], "");
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(
-        said.stderr.contains("speed 1000, expected between"),
+        said.stderr.contains("speed is 1000, expected between"),
         "{said:?}"
     );
 }

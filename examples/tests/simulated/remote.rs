@@ -155,7 +155,12 @@ fn targets_are_followed_to_the_last_and_silence_is_a_status() {
                 Err(status) => {
                     assert!(!ends, "{status}");
                     assert_eq!(status.code(), Code::Aborted);
-                    assert!(status.message().starts_with("braked: "), "{status}");
+                    assert!(
+                        status
+                            .message()
+                            .starts_with("the motion was given up and the arm braked: "),
+                        "{status}"
+                    );
                 }
             }
         }

@@ -50,7 +50,7 @@ impl Default for LinkTimeout {
 /// Caller: no such timeout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a link timeout of {got:?} is out of range: expected {:?} to {:?}",
+    "the link timeout is {got:?}, expected {:?} to {:?}",
     LinkTimeout::MIN,
     LinkTimeout::MAX
 )]
@@ -84,7 +84,7 @@ mod tests {
         let error = LinkTimeout::new(Duration::from_millis(5)).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "a link timeout of 5ms is out of range: expected 20ms to 10s"
+            "the link timeout is 5ms, expected 20ms to 10s"
         );
     }
 }

@@ -57,8 +57,8 @@ struct Window {
 pub enum FitError {
     /// A joint has hardly moved as planned: something held the arm, or records were missed.
     #[error(
-        "joint {joint} was in steady motion for {got} intervals one way, expected {expected}: \
-         something holds the arm, or the program fell behind"
+        "joint {joint} moved steadily in one direction for {got} intervals, expected at least \
+         {expected}: something held the arm, or the program was too slow"
     )]
     TooLittle {
         /// The joint, 1 to 7.
@@ -70,8 +70,8 @@ pub enum FitError {
     },
     /// The torques of a joint do not fit any friction, bias and load: something pushed the arm.
     #[error(
-        "the torques of joint {joint} are {got:.2} N m (rms) off any friction, bias and load, \
-         expected {expected} N m at most: something pushed the arm"
+        "the torques of joint {joint} differ by {got:.2} N m (rms) from the fitted friction, bias \
+         and load, expected {expected} N m at most: something pushed the arm"
     )]
     Disturbed {
         /// The joint, 1 to 7.

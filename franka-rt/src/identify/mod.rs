@@ -105,7 +105,9 @@ pub struct Identified {
 #[non_exhaustive]
 pub enum KnownError {
     /// It is of another kind of robot.
-    #[error("what is known is of another robot: got {got:?}, expected {expected:?}")]
+    #[error(
+        "the identified values belong to another kind of robot: got {got:?}, expected {expected:?}"
+    )]
     Kind {
         /// The kind that it is of.
         got: RobotKind,
@@ -113,7 +115,9 @@ pub enum KnownError {
         expected: RobotKind,
     },
     /// A number that no arm has.
-    #[error("what is known has an implausible {name}: got {got}, expected {least} to {most}")]
+    #[error(
+        "the identified values have an implausible {name}: got {got}, expected {least} to {most}"
+    )]
     Number {
         /// Name of the number, with its unit.
         name: &'static str,
@@ -150,15 +154,18 @@ impl Identified {
             number(deviation, of.deviation, 0.0, f64::MAX)
         };
         for joint in &self.joints {
-            let names = ["friction [N m]", "deviation of a friction [N m]"];
+            let names = ["friction [N m]", "deviation of the friction [N m]"];
             estimate(names, &joint.friction, 0.0, TORQUE_MAX)?;
-            let names = ["bias [N m]", "deviation of a bias [N m]"];
+            let names = ["bias [N m]", "deviation of the bias [N m]"];
             estimate(names, &joint.bias, -TORQUE_MAX, TORQUE_MAX)?;
         }
-        let names = ["mass of a load [kg]", "deviation of a mass [kg]"];
+        let names = ["mass of the load [kg]", "deviation of the mass [kg]"];
         estimate(names, &self.load.mass, -1.0, MASS_MAX)?;
         for moment in &self.load.moment {
-            let names = ["moment of a load [kg m]", "deviation of a moment [kg m]"];
+            let names = [
+                "moment of the load [kg m]",
+                "deviation of the moment [kg m]",
+            ];
             estimate(names, moment, -MASS_MAX, MASS_MAX)?;
         }
         Ok(())
@@ -193,7 +200,10 @@ impl fmt::Display for Identified {
         }
         write!(f, "load   {} kg", self.load.mass)?;
         match self.load.center() {
-            Some([x, y, z]) => write!(f, ", centre at {x:.3}, {y:.3}, {z:.3} m of the flange"),
+            Some([x, y, z]) => write!(
+                f,
+                ", centre of mass at {x:.3}, {y:.3}, {z:.3} m in the flange frame"
+            ),
             None => Ok(()),
         }
     }
@@ -265,7 +275,7 @@ mod tests {
     fn another_kind_and_implausible_numbers_are_refused() {
         assert_eq!(found().check(RobotKind::Fr3), Ok(()));
         let error = found().check(RobotKind::Fer).unwrap_err();
-        let text = "what is known is of another robot: got Fr3, expected Fer";
+        let text = "the identified values belong to another kind of robot: got Fr3, expected Fer";
         assert_eq!(error.to_string(), text);
         type Number = fn(&mut Identified) -> &mut f64;
         let numbers: [(Number, f64); 6] = [

@@ -213,15 +213,17 @@ impl Gains {
         for (i, got) in self.to_array().into_iter().enumerate() {
             if !(least[i]..=most[i]).contains(&got) {
                 let (what, axis) = match i {
-                    0..6 => ("end-effector stiffness", Some(i + 1)),
-                    6..12 => ("end-effector damping", Some(i - 5)),
-                    12..19 => ("joint stiffness", Some(i - 11)),
-                    19..26 => ("joint damping", Some(i - 18)),
+                    0..3 => ("end-effector stiffness [N/m]", Some(i + 1)),
+                    3..6 => ("end-effector stiffness [N m/rad]", Some(i + 1)),
+                    6..9 => ("end-effector damping [N s/m]", Some(i - 5)),
+                    9..12 => ("end-effector damping [N m s/rad]", Some(i - 5)),
+                    12..19 => ("joint stiffness [N m/rad]", Some(i - 11)),
+                    19..26 => ("joint damping [N m s/rad]", Some(i - 18)),
                     26 => ("feedforward weight", None),
-                    30..37 => ("compensation", Some(i - 29)),
-                    37..44 => ("torque limit", Some(i - 36)),
-                    44.. => ("torque cutoff frequency", None),
-                    _ => ("feedforward cutoff frequency", None),
+                    30..37 => ("compensation [N m]", Some(i - 29)),
+                    37..44 => ("torque limit [N m]", Some(i - 36)),
+                    44.. => ("torque cutoff frequency [Hz]", None),
+                    _ => ("feedforward cutoff frequency [Hz]", None),
                 };
                 return Err(GainError {
                     what,
@@ -277,7 +279,7 @@ mod tests {
         let error = gains.check().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "end-effector stiffness of axis 5 is 301, expected between 0 and 300"
+            "end-effector stiffness [N m/rad] of axis 5 is 301, expected between 0 and 300"
         );
         gains = Gains::joint();
         gains.joint_damping[6] = f64::NAN;
@@ -288,12 +290,12 @@ mod tests {
         gains = Gains::droid();
         gains.compensation[3] = -1.0;
         let error = gains.check().unwrap_err();
-        assert_eq!((error.what, error.axis), ("compensation", Some(4)));
+        assert_eq!((error.what, error.axis), ("compensation [N m]", Some(4)));
         gains = Gains::droid();
         gains.feedforward_cutoff = 0.0;
         assert_eq!(
             gains.check().unwrap_err().to_string(),
-            "feedforward cutoff frequency is 0, expected between 1 and 1000"
+            "feedforward cutoff frequency [Hz] is 0, expected between 1 and 1000"
         );
     }
 

@@ -31,19 +31,19 @@ pub enum CloseReason {
         text: String,
     },
     /// Host: the control thread has ended or does not respond.
-    #[error("the control thread is gone: {text}")]
+    #[error("the control thread failed: {text}")]
     ThreadEnded {
         /// Evidence of that.
         text: String,
     },
     /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
-    #[error("the robot was silent for {} ms more than the link timeout", .silence.as_millis())]
+    #[error("no robot state for {} ms more than the link timeout", .silence.as_millis())]
     Silent {
         /// Length of the silence, from when it was noticed.
         silence: Duration,
     },
     /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
-    #[error("no new connection in {} s, {attempts} attempts: {text}", .after.as_secs())]
+    #[error("no new connection within {} s, {attempts} attempts; the last one: {text}", .after.as_secs())]
     GivenUp {
         /// Attempts that failed.
         attempts: u32,
@@ -60,7 +60,7 @@ pub enum CloseReason {
         text: String,
     },
     /// Caller: the runtime that served the connection was shut down.
-    #[error("the runtime that served the connection has ended")]
+    #[error("the Tokio runtime that served the connection has ended")]
     RuntimeEnded,
 }
 

@@ -16,7 +16,7 @@ use crate::panic;
 use crate::stats::MotionTimes;
 
 /// Fault of a robot that starts a motion and shows no state of it.
-pub(super) const NEVER_SHOWN: &str = "the robot never showed the modes of the motion";
+pub(super) const NEVER_SHOWN: &str = "the robot's states never showed the motion's modes";
 
 /// One motion, with the reports of the two sides so far.
 #[derive(Debug)]
@@ -90,7 +90,7 @@ impl CurrentMotion {
             (Ending::LinkLost { silence }, _) => return Err(MotionError::LinkLost { silence }),
             (Ending::Refused, _) => {
                 return Err(MotionError::Protocol {
-                    what: "another motion was under way",
+                    what: "another motion was running",
                 });
             }
             (_, CommandSide::Ended(status)) => status,

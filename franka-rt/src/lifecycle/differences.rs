@@ -26,14 +26,14 @@ impl Differences {
     }
 }
 
-/// One line, such as `its clock does not continue; joint 3 is elsewhere`.
+/// One line, such as `its clock does not continue, as after a restart; joint 3 has moved`.
 impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flags = [
-            (self.description, "its description is another one"),
+            (self.description, "its description has changed"),
             (
                 self.frames,
-                "the frames or the mass of its end effector are others",
+                "the frames or mass of its end effector have changed",
             ),
             (
                 self.clock,
@@ -47,8 +47,8 @@ impl fmt::Display for Differences {
             first = false;
         }
         match self.joint {
-            Some(joint) if first => write!(f, "joint {joint} is elsewhere"),
-            Some(joint) => write!(f, "; joint {joint} is elsewhere"),
+            Some(joint) if first => write!(f, "joint {joint} has moved"),
+            Some(joint) => write!(f, "; joint {joint} has moved"),
             None => Ok(()),
         }
     }

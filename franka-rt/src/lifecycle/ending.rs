@@ -12,7 +12,7 @@ use crate::session::{GoalId, OnArrival, Target};
 
 /// Reason why no motion begins: the previous motion was given up, and does not end.
 pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
-    what: "no state has shown the end of the motion before, which the robot was told to stop",
+    what: "the robot's states still show the previous motion, which it was asked to stop",
 };
 
 impl Lifecycle {

@@ -127,15 +127,15 @@ pub enum MotionError {
     #[error("stopped on request")]
     Stopped,
     /// Caller: the goal was given up, and the arm holds: at the last target, or where it stopped.
-    #[error("held: {0}")]
+    #[error("the motion was given up and the arm holds its position: {0}")]
     Held(Lapse),
     /// The goal was given up and the arm braked, for this reason. It holds where it stopped.
     /// Caller: its targets stopped coming, or lead too near to the arm itself or to a region to
     /// keep out of; or the arm was pushed off its way.
-    #[error("braked: {0}")]
+    #[error("the motion was given up and the arm braked: {0}")]
     Braked(Lapse),
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
-    #[error("the arm is not engaged any more")]
+    #[error("the arm is no longer engaged: call `engage` again")]
     Disengaged,
     /// Caller: something else controls the arm, and does not yield.
     #[error(
@@ -168,7 +168,7 @@ pub enum MotionError {
     /// Caller: the thread that runs active control has read no state for this long. The robot was
     /// asked to stop.
     #[error(
-        "active control has read no state for {} ms: its thread has to call `read_once` for each",
+        "active control has read no state for {} ms, expected a `read_once` every millisecond",
         .silence.as_millis()
     )]
     Stalled {
@@ -179,8 +179,8 @@ pub enum MotionError {
     /// motion because commands were missing. A control function has not returned, or the thread was
     /// not scheduled.
     #[error(
-        "the control thread has run no cycle for {} ms: its function has not returned, or this \
-         computer holds it up",
+        "the control thread has run no cycle for {} ms, expected one every millisecond: the \
+         control function has not returned, or this computer delays the thread",
         .silence.as_millis()
     )]
     Hung {
@@ -207,13 +207,11 @@ pub enum MotionError {
     /// where it is.
     ///
     /// Caller: if a torque limit of its gains kept it, [`Shortfall::limited`].
-    #[error("the arm came to rest {0}")]
+    #[error("the arm stopped {0}")]
     TargetNotReached(Shortfall),
     /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
     /// guides it, or its joints still move.
-    #[error(
-        "no motion runs, and the arm does not rest: joint {joint} moves at {velocity:.3} rad/s"
-    )]
+    #[error("joint {joint} moves at {velocity:.3} rad/s without a motion, expected an arm at rest")]
     NotAtRest {
         /// A joint that moves, 1 to 7.
         joint: usize,
@@ -223,7 +221,7 @@ pub enum MotionError {
     /// The condition of the motion was true, and the arm did not reach its new target, for `error`:
     /// [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party of the error can
     /// act on it.
-    #[error("{error}, after its condition was true at {} ms", .reacted.after.as_millis())]
+    #[error("{error} (after the motion's condition was true at {} ms)", .reacted.after.as_millis())]
     AfterReaction {
         /// Values at the time when the condition became true.
         reacted: Box<Reacted>,
@@ -380,8 +378,8 @@ fn recover_first(refusal: &Refusal) -> &'static str {
 
 fn not_ready(why: Unready, waited: Duration) -> String {
     match waited.as_millis() {
-        0 => format!("the motion does not begin: {why}"),
-        waited => format!("the motion has waited for {waited} ms and does not begin: {why}"),
+        0 => format!("the motion did not begin: {why}"),
+        waited => format!("the motion did not begin, after waiting for {waited} ms: {why}"),
     }
 }
 

@@ -288,7 +288,7 @@ impl Lifecycle {
                 current.given_up = Some(match (current.command, &current.thread) {
                     (_, ThreadSide::Armed) => NEVER_SHOWN,
                     (CommandSide::Requested, _) => "the robot never answered the Move command",
-                    _ => "the robot did not end a motion that was finished",
+                    _ => "the robot did not end the finished motion",
                 });
                 current.command = CommandSide::Cancelled;
                 current.deadline = Some(now + END_TIMEOUT);
@@ -298,12 +298,12 @@ impl Lifecycle {
             }
             (command, _) => {
                 let what = match command {
-                    CommandSide::Cancelled => "the robot neither ran the motion nor stopped it",
+                    CommandSide::Cancelled => "the robot neither ran nor stopped the motion",
                     CommandSide::Ended(_) => {
-                        "the robot has ended the motion but goes on showing it"
+                        "the robot has ended the motion, but its states still show it"
                     }
                     CommandSide::Requested | CommandSide::Started => {
-                        "the robot never said how the motion ended"
+                        "the robot did not report how the motion ended"
                     }
                 };
                 self.give_up(MotionError::Protocol { what }, now);

@@ -11,41 +11,41 @@ use super::{Differences, Party};
 #[non_exhaustive]
 pub enum Unready {
     /// Link: there is no connection. The supervisor makes a new one.
-    #[error("there is no connection to the robot")]
+    #[error("the robot is not connected")]
     Disconnected,
     /// Link: the robot is silent.
-    #[error("the robot is silent")]
+    #[error("no states arrive from the robot")]
     Silent,
     /// Robot: a reflex, from which it is being recovered.
     #[error("the robot is being recovered from a reflex")]
     Recovering,
     /// Robot: a reflex. Its recovery waits for someone to agree.
-    #[error("somebody has to agree to the recovery from a reflex")]
+    #[error("the recovery from a reflex waits for approval (`agree`)")]
     AgreementAwaited,
     /// Robot: after a lost connection, the robot differs from before. Its recovery from a reflex
     /// waits for someone to agree, and a motion that waited does not begin.
-    #[error("the robot is not recognised: {0}")]
+    #[error("the robot differs from the robot before the connection was lost: {0}")]
     Unrecognised(Differences),
     /// Robot: the settings of this program are being sent to it again after a reconnect.
-    #[error("the settings of this program are being sent to the robot again")]
+    #[error("the settings of this program are being restored on the robot")]
     Configuring,
     /// Robot: a setting of this program could not be restored after a reconnect.
     #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
     /// Robot: a reflex, which someone must recover it from.
-    #[error("a reflex holds the robot")]
+    #[error("the robot stopped itself by a reflex (`recover` first)")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.
-    #[error("the user stop is pressed, or a safety function holds the robot")]
+    #[error("the user stop is pressed, or a safety function is active")]
     UserStopped,
     /// Robot: a hand guides the arm.
-    #[error("a hand guides the arm")]
+    #[error("the arm is guided by hand")]
     Guided,
     /// Robot: its brakes are closed, or it is not ready for another reason.
     #[error("the brakes are closed, or the robot is not ready")]
     Braked,
     /// Caller: this program has latched a stop, and not released it.
-    #[error("a stop is latched; it has to be released first")]
+    #[error("a stop is latched (`release_stop` first)")]
     StopLatched,
 }
 

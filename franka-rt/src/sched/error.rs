@@ -36,7 +36,7 @@ pub enum SchedError {
     LockMemory(i32),
     /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot
     /// (`ENOPROTOOPT`).
-    #[error("unable to poll the socket for {} us: {}", .duration.as_micros(), error_text(*.errno))]
+    #[error("unable to busy-poll the socket for {} us: {}", .duration.as_micros(), error_text(*.errno))]
     BusyPoll {
         /// Duration that was asked for.
         duration: Duration,
@@ -45,14 +45,14 @@ pub enum SchedError {
     },
     /// Caller: a busy poll this long leaves the thread no time. Under either
     /// [`Realtime`](super::Realtime).
-    #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
+    #[error("the busy poll is {} us, expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
         /// Value that was asked for.
         got: Duration,
     },
     /// Caller: the stack to touch is larger than allowed. Under either
     /// [`Realtime`](super::Realtime).
-    #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
+    #[error("the stack to prefault has {got} bytes, expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {
         /// Size that was asked for, in bytes.
         got: usize,

@@ -78,7 +78,7 @@ impl fmt::Display for Kernel {
                 let [boot, modules] = configuration_files(&self.release);
                 let (boot, modules) = (boot.display(), modules.display());
                 write!(f, "; {boot} and {modules}: cannot be read")?;
-                write!(f, "; /proc/config.gz: not read, since compressed")
+                write!(f, "; /proc/config.gz: not read, because it is compressed")
             }
         }
     }
@@ -145,7 +145,7 @@ mod tests {
             kernel("#1 SMP PREEMPT", None, None).to_string(),
             "uname: `#1 SMP PREEMPT`, expected PREEMPT_RT in it; /sys/kernel/realtime: cannot be \
              read; /boot/config-6.12.43 and /lib/modules/6.12.43/config: cannot be read; \
-             /proc/config.gz: not read, since compressed"
+             /proc/config.gz: not read, because it is compressed"
         );
         assert_eq!(
             kernel("#2", Some("0"), Some(false)).to_string(),

@@ -114,14 +114,15 @@ impl core::fmt::Display for Shortfall {
         if let Some([x, y, z, about_x, about_y, about_z]) = self.pull {
             write!(
                 f,
-                ", where it pulls with {x:.1} {y:.1} {z:.1} N and {about_x:.1} {about_y:.1} {about_z:.1} N m (x y z of the base)",
+                ", and pulls towards it with {x:.1} {y:.1} {z:.1} N and {about_x:.1} {about_y:.1} \
+                 {about_z:.1} N m (base axes x y z)",
             )?;
         }
         match self.limited {
             Some(limited) => write!(f, ": {limited}"),
             None => write!(
                 f,
-                ": something holds it, or its load differs from the one declared"
+                ": something holds the arm, or its load differs from the declared load"
             ),
         }
     }

@@ -227,15 +227,15 @@ impl Backend {
         let to_joints =
             joints(place) || goal.reaction.is_some_and(|reaction| joints(reaction.then));
         let (got, expected) = match place {
-            Target::Guide(_) => ("a guiding hand", OWN_LAW),
+            Target::Guide(_) => ("hand guiding", OWN_LAW),
             _ if to_joints && self.is_cartesian() => (
-                "a target of joint positions",
-                "a pose, setpoints of joints or Backend::Torques",
+                "joint positions as target",
+                "a pose, joint setpoints or Backend::Torques",
             ),
-            _ if goal.grasp.is_some() => ("an object to carry", OWN_LAW),
+            _ if goal.grasp.is_some() => ("carrying an object with a team", OWN_LAW),
             _ if matches!(goal.force_cap, ForceCap::Newtons(_)) => (
                 "a force cap",
-                "an impedance that is set on the robot, or Backend::Torques",
+                "the robot's own impedance settings, or Backend::Torques",
             ),
             _ => return Ok(()),
         };
@@ -248,8 +248,8 @@ impl Backend {
     /// [`GoalError::Backend`].
     pub(crate) fn check_start(self, q: &JointVector) -> Result<(), GoalError> {
         if self.is_cartesian() && side(q) > 0.0 {
-            let got = "a stretched arm, with joint 4 above -0.467 rad";
-            return Err(self.refuses(got, "setpoints of joints or Backend::Torques"));
+            let got = "a start from a stretched arm, with joint 4 above -0.467 rad";
+            return Err(self.refuses(got, "joint setpoints or Backend::Torques"));
         }
         Ok(())
     }
@@ -313,7 +313,7 @@ impl Backend {
 impl fmt::Display for Backend {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Torques => write!(f, "the session's own law"),
+            Self::Torques => write!(f, "the driver's own control law"),
             Self::RobotController {
                 controller,
                 setpoints,

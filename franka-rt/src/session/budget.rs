@@ -269,13 +269,14 @@ mod tests {
                 assert_eq!(budget.at_speed(factor, model), Ok(budget.scaled(factor)));
             }
             for (factor, got) in [
-                (0.0, "speed 0,"),
-                (-1.0, "speed -1,"),
-                (7.0, "speed 7,"),
-                (f64::NAN, "speed NaN,"),
+                (0.0, "speed is 0,"),
+                (-1.0, "speed is -1,"),
+                (7.0, "speed is 7,"),
+                (f64::NAN, "speed is NaN,"),
             ] {
                 let error = budget.at_speed(factor, model).unwrap_err().to_string();
-                let expected = "expected between 0.0001 and 1.709 times the limits of the motion";
+                let expected =
+                    "expected between 0.0001 and 1.709, as a factor of the motion's limits";
                 assert_eq!(error, format!("{got} {expected}"));
             }
         }

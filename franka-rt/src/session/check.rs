@@ -65,27 +65,37 @@ impl Goal {
         let longest = Settling::TIMEOUT_MAX.as_secs_f64();
         let mut numbers = vec![
             (
-                "leash",
+                "leash (end effector)",
                 leash.translation,
                 "m",
                 [least.translation, most.translation],
             ),
             (
-                "leash",
+                "leash (end effector)",
                 leash.rotation,
                 "rad",
                 [least.rotation, most.rotation],
             ),
             (
-                "leash of the joints",
+                "leash (joints)",
                 leash.joints,
                 "rad",
                 [least.joints, most.joints],
             ),
-            ("deviation", deviation.translation, "m", POSITIVE),
-            ("deviation", deviation.rotation, "rad", POSITIVE),
-            ("deviation of the joints", deviation.joints, "rad", POSITIVE),
-            ("time to hold the target", hold, "s", [1e-3, longest]),
+            (
+                "deviation (end effector)",
+                deviation.translation,
+                "m",
+                POSITIVE,
+            ),
+            (
+                "deviation (end effector)",
+                deviation.rotation,
+                "rad",
+                POSITIVE,
+            ),
+            ("deviation (joints)", deviation.joints, "rad", POSITIVE),
+            ("hold time of settling", hold, "s", [1e-3, longest]),
             (
                 "timeout of settling",
                 settling.timeout.as_secs_f64(),
@@ -94,13 +104,23 @@ impl Goal {
             ),
         ];
         if let Some(tolerance) = self.tolerance {
-            numbers.push(("tolerance", tolerance.translation, "m", POSITIVE));
-            numbers.push(("tolerance", tolerance.rotation, "rad", POSITIVE));
+            numbers.push((
+                "tolerance (end effector)",
+                tolerance.translation,
+                "m",
+                POSITIVE,
+            ));
+            numbers.push((
+                "tolerance (end effector)",
+                tolerance.rotation,
+                "rad",
+                POSITIVE,
+            ));
         }
         if let Some(lead) = self.lead {
-            numbers.push(("lead", lead.translation, "m", POSITIVE));
-            numbers.push(("lead", lead.rotation, "rad", POSITIVE));
-            numbers.push(("lead of the joints", lead.joints, "rad", POSITIVE));
+            numbers.push(("lead (end effector)", lead.translation, "m", POSITIVE));
+            numbers.push(("lead (end effector)", lead.rotation, "rad", POSITIVE));
+            numbers.push(("lead (joints)", lead.joints, "rad", POSITIVE));
         }
         if let ForceCap::Newtons(cap) = self.force_cap {
             let (least, most) = (*ForceCap::RANGE.start(), *ForceCap::RANGE.end());
@@ -163,7 +183,7 @@ pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError>
     for (i, region) in regions.iter().enumerate() {
         let refused = |why| GoalError::KeepOut { region: i + 1, why };
         let slot = checked.get_mut(i);
-        let slot = slot.ok_or_else(|| refused("is one more than a session has room for"))?;
+        let slot = slot.ok_or_else(|| refused("is one too many for a session"))?;
         let (finite, positive) = match region {
             Obstacle::Plane { normal, offset } => {
                 (normal.iter().chain([offset]).all(|x| x.is_finite()), true)
@@ -176,7 +196,7 @@ pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError>
             }
         };
         if !finite {
-            return Err(refused("has a non-finite number"));
+            return Err(refused("has a number that is not finite"));
         }
         if !positive {
             return Err(refused("has a negative side"));
@@ -205,7 +225,7 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
 pub(super) fn joint_speeds(dq: &[f64; 7], model: &Model) -> Result<(), GoalError> {
     let most = model.joint_limits().velocity;
     let mut each = dq.iter().zip(&most);
-    each.try_for_each(|(dq, &most)| speed("speed of a joint", "rad/s", dq.abs(), most))
+    each.try_for_each(|(dq, &most)| speed("joint speed of the target", "rad/s", dq.abs(), most))
 }
 
 /// Checks that the end effector of this robot can follow a target at this speed, `[m/s]` and
@@ -214,8 +234,18 @@ pub(super) fn speeds(twist: &Twist, model: &Model) -> Result<(), GoalError> {
     let most = model.cartesian_limits();
     let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
     let angular = angular.norm();
-    speed("speed", "m/s", linear.norm(), most.translation.velocity)?;
-    speed("angular speed", "rad/s", angular, most.rotation.velocity)
+    speed(
+        "speed of the target",
+        "m/s",
+        linear.norm(),
+        most.translation.velocity,
+    )?;
+    speed(
+        "angular speed of the target",
+        "rad/s",
+        angular,
+        most.rotation.velocity,
+    )
 }
 
 fn speed(what: &'static str, unit: &'static str, got: f64, most: f64) -> Result<(), GoalError> {
@@ -299,7 +329,11 @@ fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {
     for (i, l) in budget.joints.iter().enumerate() {
         let most = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];
         axis(
-            ["joint velocity", "joint acceleration", "joint jerk"],
+            [
+                "joint velocity [rad/s]",
+                "joint acceleration [rad/s^2]",
+                "joint jerk [rad/s^3]",
+            ],
             l,
             most,
         )?;
@@ -307,18 +341,18 @@ fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {
     let (t, r) = (cartesian.translation, cartesian.rotation);
     axis(
         [
-            "translational velocity",
-            "translational acceleration",
-            "translational jerk",
+            "translational velocity [m/s]",
+            "translational acceleration [m/s^2]",
+            "translational jerk [m/s^3]",
         ],
         &budget.translation,
         [t.velocity, t.acceleration, t.jerk],
     )?;
     axis(
         [
-            "rotational velocity",
-            "rotational acceleration",
-            "rotational jerk",
+            "rotational velocity [rad/s]",
+            "rotational acceleration [rad/s^2]",
+            "rotational jerk [rad/s^3]",
         ],
         &budget.rotation,
         [r.velocity, r.acceleration, r.jerk],

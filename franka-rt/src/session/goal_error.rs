@@ -11,22 +11,30 @@ use crate::session::{Backend, Budget, Chunk, Goal};
 #[non_exhaustive]
 pub enum GoalError {
     /// The target has a number that is not finite.
-    #[error("a number of the target's {what} is not finite")]
+    #[error("got a number that is not finite in the target's {what}")]
     NotFinite {
         /// The part of the target.
         what: &'static str,
     },
     /// The stream of targets ended before its first target.
-    #[error("the targets ended before the first one came")]
+    #[error("the stream of targets ended before its first target")]
     NoTarget,
     /// Commands for an external controller came without torques, which it needs.
-    #[error("an external controller needs torques beside the commands, got none: `with_torques`")]
+    #[error(
+        "got commands without torques, expected torques too for an external controller: use \
+         `with_torques`"
+    )]
     NoTorques,
     /// The target moves, so there is no arrival to wait for.
-    #[error("the target moves, so that the arm cannot come to rest at it")]
+    #[error(
+        "got a target with a velocity, expected a target at rest, where the motion can end: use \
+         `set` or `follow` for moving targets"
+    )]
     Moves,
     /// A joint position lies outside the joint's range.
-    #[error("joint {joint}: {got} rad, expected between {lower:.4} and {upper:.4}")]
+    #[error(
+        "the target of joint {joint} is {got} rad, expected between {lower:.4} and {upper:.4} rad"
+    )]
     OutOfRange {
         /// The joint, from 1.
         joint: usize,
@@ -38,7 +46,8 @@ pub enum GoalError {
         upper: f64,
     },
     /// No joint positions inside their ranges put the end effector there.
-    #[error("no joint positions inside their ranges reach {} with that orientation", place([*x, *y, *z]))]
+    #[error("the pose at {} is out of reach: no joint positions within their ranges reach it with \
+        its orientation", place([*x, *y, *z]))]
     Unreachable {
         /// Position asked for, base frame, `[m]`.
         x: f64,
@@ -50,7 +59,7 @@ pub enum GoalError {
     /// The arm reaches the pose, but not on a straight line from its present place. Joints reach
     /// the ends of their ranges on the way, with every posture that was tried.
     #[error(
-        "the arm cannot go to {} on a straight line{hindrance}: {}",
+        "the arm cannot move to {} in a straight line{hindrance}: {}",
         place([*x, *y, *z]),
         way_on(posture.as_ref())
     )]
@@ -68,7 +77,7 @@ pub enum GoalError {
         posture: Option<[f64; 7]>,
     },
     /// A limit of the budget is less than [`Budget::LIMITS_MIN`], or exceeds the robot's.
-    #[error("{what} limit {got}, expected between {least} and {most}")]
+    #[error("limit of the {what} is {got}, expected between {least} and {most}")]
     Budget {
         /// The limit.
         what: &'static str,
@@ -81,7 +90,8 @@ pub enum GoalError {
     },
     /// A speed is not positive, or raises a limit above the robot's.
     #[error(
-        "speed {got}, expected between {least} and {most:.3} times the limits of the motion",
+        "speed is {got}, expected between {least} and {most:.3}, as a factor of the motion's \
+         limits",
         least = Budget::SPEED_MIN
     )]
     Speed {
@@ -95,10 +105,14 @@ pub enum GoalError {
     Gains(#[from] GainError),
     /// Gains whose joint springs act only in the null space of the end effector have no spring at
     /// the end effector. Nothing would pull the arm to its target.
-    #[error("no spring at the end effector, and those of the joints act in its null space only")]
+    #[error(
+        "the gains leave the end effector free: got no end-effector stiffness, and joint \
+         stiffness in the null space only; expected an end-effector stiffness, or \
+         `project_joint_gains` off"
+    )]
     Unheld,
     /// A number of the goal is out of bounds.
-    #[error("{what} is {got} {unit}, expected {}", between(*.least, *.most))]
+    #[error("{what} is {got} {unit}, expected {} {unit}", between(*.least, *.most))]
     Number {
         /// The number.
         what: &'static str,
@@ -118,20 +132,22 @@ pub enum GoalError {
         length: f64,
     },
     /// The last point of a chunk has passed, so the arm has nothing left to follow.
-    #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
+    #[error("the last point of the chunk was due {} ms ago by the robot's clock, expected a point in the future: send chunks earlier", .by.as_millis())]
     Late {
         /// Time since that point, by the robot's clock.
         by: Duration,
     },
     /// The time origin of a chunk lies too far in the robot's future. It is probably from another
     /// clock.
-    #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
+    #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at \
+        most: pass times of the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {
         /// Time from the robot's newest state to the origin.
         by: Duration,
     },
     /// The observation of a chunk is older than the observation of the chunk that the arm follows.
-    #[error("the chunk was observed {} ms before the one that is followed", .by.as_millis())]
+    #[error("the chunk's observation is {} ms older than the observation of the active chunk, \
+        expected a newer observation", .by.as_millis())]
     Outdated {
         /// Time between the two observations.
         by: Duration,
@@ -140,7 +156,7 @@ pub enum GoalError {
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
     /// The backend of the session cannot do what the goal asks for.
-    #[error("{backend} cannot take {got}, expected {expected}")]
+    #[error("{backend} does not support {got}: use {expected}")]
     Backend {
         /// The backend.
         backend: Backend,
@@ -150,7 +166,7 @@ pub enum GoalError {
         expected: &'static str,
     },
     /// A keep-out region is invalid, or there are too many.
-    #[error("region {region} to keep out of {why}")]
+    #[error("keep-out region {region} {why}")]
     KeepOut {
         /// The region, from 1.
         region: usize,
@@ -162,17 +178,20 @@ pub enum GoalError {
     Condition(#[from] ConditionError),
     /// The timeout of a watchdog or a deadman is so short that a lossy network alone could exceed
     /// it.
-    #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
+    #[error("the timeout of a watchdog or deadman is {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
         /// The timeout given.
         got: Duration,
     },
     /// The target for a held object is not a pose.
-    #[error("an object that is held can only be taken to a pose")]
+    #[error("got a target that is not a pose, expected a pose for an object that the arms hold")]
     Grasp,
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite.
-    #[error("the robot reports an invalid end effector or load: mass or inertia is not physical")]
+    #[error(
+        "the robot reports an end effector or load with an unphysical mass or inertia: correct it \
+         with `set_ee` or `set_load`, or in Desk"
+    )]
     Tool,
 }
 
@@ -226,18 +245,15 @@ pub enum Hindrance {
     Itself,
 }
 
-/// Empty, or the end of a sentence after a comma.
+/// Empty, or a reason in parentheses.
 impl core::fmt::Display for Hindrance {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Range(Some(joint)) => {
-                write!(
-                    f,
-                    ", joint {joint} comes to the end of its range on the way"
-                )
+                write!(f, " (joint {joint} would reach the end of its range)")
             }
             Self::Range(None) => Ok(()),
-            Self::Itself => write!(f, ", it comes too near itself on the way"),
+            Self::Itself => write!(f, " (the arm would come too close to itself)"),
         }
     }
 }
@@ -245,15 +261,15 @@ impl core::fmt::Display for Hindrance {
 /// Advice about alternatives to a straight line.
 fn way_on(posture: Option<&[f64; 7]>) -> String {
     match posture {
-        Some(q) => format!("`move_joints` to {q:.4?} reaches the pose"),
-        None => "go there through other poses (`move_through`), or to another pose".to_owned(),
+        Some(q) => format!("use `move_joints` to {q:.4?} rad, which reaches the pose"),
+        None => "move through other poses (`move_through`), or choose another pose".to_owned(),
     }
 }
 
 /// Chunks arrived faster than the control thread takes them up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{} chunks are under way already, send fewer at once",
+    "got more chunks at once than the control thread accepts, expected {} at most: send fewer",
     Chunk::UNDER_WAY_MAX
 )]
 pub struct TooManyChunks;

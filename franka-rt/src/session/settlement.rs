@@ -131,27 +131,31 @@ impl Lapse {
 impl core::fmt::Display for Lapse {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
-            Self::Deadman => write!(f, "its deadman fell silent, or was dropped"),
+            Self::Silent { silence } => {
+                write!(f, "no new target arrived for {} ms", silence.as_millis())
+            }
+            Self::Deadman => write!(
+                f,
+                "the deadman (the program's sign of life) was silent or dropped"
+            ),
             Self::Displaced => write!(f, "the arm was pushed too far from its path"),
-            Self::Blocked { region: None } => write!(f, "the way leads too near to the arm itself"),
+            Self::Blocked { region: None } => {
+                write!(f, "the path leads too close to the arm itself")
+            }
             Self::Blocked {
                 region: Some(region),
-            } => write!(
-                f,
-                "the way leads too near to region {region} to keep out of"
-            ),
+            } => write!(f, "the path leads too close to keep-out region {region}"),
             Self::OutOfReach { joint: Some(joint) } => {
-                write!(f, "joint {joint} came to the end of its range on the way")
+                write!(f, "joint {joint} reached the end of its range on the path")
             }
             Self::OutOfReach { joint: None } => {
-                write!(f, "the joints have no way on to the target from there")
+                write!(f, "the joints cannot continue from there to the target")
             }
             Self::Team(stop) => stop.fmt(f),
-            Self::TooFast => write!(f, "the arm moved faster than its speed cap"),
+            Self::TooFast => write!(f, "the arm exceeded its speed cap"),
             Self::Unresponsive => write!(
                 f,
-                "the arm ignored its commands: it stood still, and the robot reported no error"
+                "the arm stood still under commands, and the robot reported no error"
             ),
         }
     }

@@ -148,14 +148,17 @@ impl fmt::Display for EventKind {
                 refusals.try_for_each(|refusal| write!(f, "; {refusal}"))
             }
             Self::Unrecognised { differences } => {
-                write!(f, "not recognised as the robot of before: {differences}")
+                write!(
+                    f,
+                    "the robot differs from the robot before the loss: {differences}"
+                )
             }
             Self::NotConfigured { command, text } => {
-                write!(f, "\"{command}\" is not set again: {text}")
+                write!(f, "\"{command}\" could not be restored: {text}")
             }
             Self::Lost { reason } => write!(f, "connection lost: {reason}"),
             Self::Silent { silence } => write!(f, "no state for {silence:.1?}"),
-            Self::Resumed { after } => write!(f, "states come again after {after:.1?}"),
+            Self::Resumed { after } => write!(f, "states arrive again after {after:.1?}"),
             Self::Reflex(Reflex { number, errors, .. }) => write!(f, "reflex {number}: {errors}"),
             Self::NotRecovered { reflex, why } => {
                 write!(f, "not recovered from reflex {reflex}: {why}")
@@ -167,7 +170,7 @@ impl fmt::Display for EventKind {
             } => {
                 let by = match by_supervisor {
                     true => "the supervisor",
-                    false => "program or person",
+                    false => "the program or a person",
                 };
                 write!(
                     f,
@@ -175,14 +178,14 @@ impl fmt::Display for EventKind {
                 )
             }
             Self::UserStop { pressed: true } => {
-                f.write_str("user stop pressed, or a safety function")
+                f.write_str("user stop pressed, or a safety function active")
             }
             Self::UserStop { pressed: false } => f.write_str("user stop released"),
             Self::Guiding { active: true } => f.write_str("guided by hand"),
             Self::Guiding { active: false } => f.write_str("no longer guided by hand"),
             Self::Brakes { closed: true } => f.write_str("brakes closed"),
             Self::Brakes { closed: false } => f.write_str("brakes open"),
-            Self::StopLatch { latched: true } => f.write_str("stop latched: no motion is admitted"),
+            Self::StopLatch { latched: true } => f.write_str("stop latched: motions are refused"),
             Self::StopLatch { latched: false } => f.write_str("stop released"),
             Self::MotionBegun { goal } => write!(f, "motion {goal} begun"),
             Self::MotionEnded { goal, outcome } => match &**outcome {
@@ -217,19 +220,19 @@ pub struct Reflex {
 #[non_exhaustive]
 pub enum NotRecovered {
     /// The policy recovers from no reflex.
-    #[error("the policy recovers from no reflex")]
+    #[error("the policy does not recover from reflexes")]
     Never,
     /// The policy names the errors to recover from, and there are others.
-    #[error("the policy does not name all of its errors")]
+    #[error("the policy does not allow recovery from all errors of the reflex")]
     OtherError,
     /// The robot was recovered as often as the policy allows within its window.
     #[error("the policy allows no more recoveries for now")]
     TooOften,
     /// The person or function that was asked did not agree.
-    #[error("the recovery was not agreed to")]
+    #[error("the recovery was declined")]
     Declined,
     /// The robot demands a recovery by hand, in Desk.
-    #[error("the robot has to be recovered by hand")]
+    #[error("the robot must be recovered by hand, in Desk")]
     ByHand,
 }
 

@@ -172,7 +172,7 @@ mod tests {
         assert!(before.differences(&other).description);
         let none = Identity::of(None, &state(1500), MS(500));
         let text = before.differences(&none).to_string();
-        assert_eq!(text, "its description is another one");
+        assert_eq!(text, "its description has changed");
     }
 
     #[test]
@@ -188,7 +188,7 @@ mod tests {
         let differences = before.differences(&seen(&rests, 1000));
         assert_eq!(
             differences.to_string(),
-            "its clock does not continue, as after a restart; joint 2 is elsewhere"
+            "its clock does not continue, as after a restart; joint 2 has moved"
         );
     }
 }

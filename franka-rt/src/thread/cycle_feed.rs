@@ -90,17 +90,20 @@ impl Shared {
 #[non_exhaustive]
 pub enum AttachError {
     /// The number of readers is at its maximum. Drop one first.
-    #[error("{READERS_MAX} readers are attached to the control thread, and no more can be")]
+    #[error("got one reader of cycles too many, expected {READERS_MAX} at most: drop one first")]
     TooMany,
     /// The ring cannot have this length.
-    #[error("a ring of {got} cycles was asked for; possible are 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
+    #[error("the ring of the reader has {got} cycles, expected 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
     Capacity {
         /// Capacity that was asked for.
         got: usize,
     },
     /// The thread has not taken the readers attached before: another thread has borrowed its cycle
     /// and does not run it.
-    #[error("the control thread has not taken the readers that were attached before this one")]
+    #[error(
+        "the control thread has not accepted the previous readers yet: another thread has \
+         borrowed its cycle"
+    )]
     Busy,
     /// The thread has ended.
     #[error("the control thread has ended")]

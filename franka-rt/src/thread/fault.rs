@@ -16,7 +16,9 @@ pub enum LinkFault {
     Datagram(#[from] DecodeError),
     /// A state was dropped: its number exceeds the newest by more than any robot's can (see
     /// [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
-    #[error("a robot state numbered {got} after one numbered {newest} was dropped")]
+    #[error(
+        "dropped the robot state number {got}, expected a number close to {newest}, the newest"
+    )]
     Leap {
         /// `message_id` of the state, `[ms]`.
         got: u64,

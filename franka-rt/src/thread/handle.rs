@@ -264,7 +264,7 @@ mod tests {
         for (payload, message) in [
             (Box::new("static") as Box<dyn Any + Send>, "static"),
             (Box::new(String::from("formatted")), "formatted"),
-            (Box::new(5), "no text came with it"),
+            (Box::new(5), "no message"),
         ] {
             let message = message.to_owned();
             assert_eq!(Lost::panicked(&*payload), Lost::Panicked { message });

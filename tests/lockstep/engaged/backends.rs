@@ -72,17 +72,17 @@ fn what_no_controller_does_is_refused_with_what_would() {
             }))
         };
         let guide = lockstep.within(engaged, Target::Guide(Free::ALL), OnArrival::Hold);
-        assert_eq!(guide, refused("a guiding hand", "Backend::Torques"));
+        assert_eq!(guide, refused("hand guiding", "Backend::Torques"));
         let joints = lockstep.within(engaged, turned(0.0), OnArrival::ReportAndHold);
-        let expected = "a pose, setpoints of joints or Backend::Torques";
+        let expected = "a pose, joint setpoints or Backend::Torques";
         match backend.is_cartesian() {
             true => {
-                assert_eq!(joints, refused("a target of joint positions", expected));
+                assert_eq!(joints, refused("joint positions as target", expected));
                 let text = joints.unwrap_err().to_string();
                 assert!(text.contains(&backend.to_string()), "{text}");
                 let chunk = lockstep.chunk(engaged, super::chunk(0.0, 0.1));
                 let chunk = chunk.map(|()| engaged);
-                assert_eq!(chunk, refused("a target of joint positions", expected));
+                assert_eq!(chunk, refused("joint positions as target", expected));
             }
             false => assert!(joints.is_ok()),
         }
@@ -136,7 +136,7 @@ fn a_force_cap_that_the_robot_controller_cannot_keep_is_refused() {
             let refused = MotionError::Goal(GoalError::Backend {
                 backend,
                 got: "a force cap",
-                expected: "an impedance that is set on the robot, or Backend::Torques",
+                expected: "the robot's own impedance settings, or Backend::Torques",
             });
             let capped = Goal {
                 force_cap: ForceCap::Newtons(20.0),
@@ -243,8 +243,8 @@ fn setpoints_of_the_end_effector_are_refused_to_a_stretched_arm() {
             }
             let refused = MotionError::Goal(GoalError::Backend {
                 backend,
-                got: "a stretched arm, with joint 4 above -0.467 rad",
-                expected: "setpoints of joints or Backend::Torques",
+                got: "a start from a stretched arm, with joint 4 above -0.467 rad",
+                expected: "joint setpoints or Backend::Torques",
             });
             assert_eq!(begun, Err(refused));
         }

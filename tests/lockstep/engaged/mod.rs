@@ -324,7 +324,8 @@ fn a_chunk_of_another_clock_or_from_before_the_newest_is_refused() {
                  expected 60000 ms at most, by the robot's clock";
     assert_eq!(refused(now + 60_001, 0.3).as_deref(), Some(ahead));
     assert_eq!(refused(now, 0.2), None);
-    let outdated = "the chunk was observed 250 ms before the one that is followed";
+    let outdated = "the chunk's observation is 250 ms older than the observation of the active \
+        chunk, expected a newer observation";
     assert_eq!(refused(now - 250, 0.3).as_deref(), Some(outdated));
     assert_eq!(refused(now, 0.1), None, "the same observation");
     lockstep.run(4000);
@@ -351,18 +352,18 @@ fn velocities_that_no_robot_allows_are_refused() {
         let error = lockstep.chunk(engaged, joints.unwrap()).unwrap_err();
         let text = error.to_string();
         assert!(
-            text.starts_with("speed of a joint is 50 rad/s, expected between 0 and 2."),
+            text.starts_with("joint speed of the target is 50 rad/s, expected between 0 and 2."),
             "{text}"
         );
         let pose = lockstep.arm_pose();
         for (twist, expected) in [
             (
                 [0.0, -50.0, 0.0, 0.0, 0.0, 0.0],
-                "speed is 50 m/s, expected between 0 and ",
+                "speed of the target is 50 m/s, expected between 0 and ",
             ),
             (
                 [0.0, 0.0, 0.0, 0.0, 0.0, 50.0],
-                "angular speed is 50 rad/s, expected between 0 and ",
+                "angular speed of the target is 50 rad/s, expected between 0 and ",
             ),
         ] {
             let poses = Chunk::poses_with_twists((1..9).map(|k| (at(k), pose, twist)));

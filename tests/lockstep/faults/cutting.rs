@@ -158,7 +158,7 @@ fn a_move_that_never_arrives_times_out() {
             assert_eq!(so_far(&trial), None);
             trial.lockstep.jump(1);
             let outcome = trial.outcome();
-            protocol("the robot never showed the modes of the motion").check(&trial, &outcome);
+            protocol("the robot's states never showed the motion's modes").check(&trial, &outcome);
             trial.works_again();
         });
     }
@@ -182,7 +182,7 @@ fn a_motion_whose_replies_are_lost_times_out_once_it_has_ended() {
             trial.lockstep.jump(1);
             trial.lockstep.link.replies = true;
             let outcome = trial.outcome();
-            protocol("the robot never said how the motion ended").check(&trial, &outcome);
+            protocol("the robot did not report how the motion ended").check(&trial, &outcome);
             trial.works_again();
         });
     }
@@ -247,7 +247,7 @@ fn commands_that_never_arrive_end_the_motion_where_it_has_begun() {
             assert_eq!(so_far(&trial), None);
             trial.lockstep.jump(32);
             let outcome = trial.outcome();
-            protocol("the robot did not end a motion that was finished").check(&trial, &outcome);
+            protocol("the robot did not end the finished motion").check(&trial, &outcome);
             trial.works_again();
         });
     }

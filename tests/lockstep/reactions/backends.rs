@@ -104,8 +104,8 @@ fn a_controller_that_takes_poses_only_goes_on_to_poses_only() {
         );
         let refused = MotionError::Goal(GoalError::Backend {
             backend,
-            got: "a target of joint positions",
-            expected: "a pose, setpoints of joints or Backend::Torques",
+            got: "joint positions as target",
+            expected: "a pose, joint setpoints or Backend::Torques",
         });
         assert_eq!(lockstep.submit_within(engaged, goal), Err(refused));
         let rest = elapsed(10 * MS).then(Target::Rest);

@@ -254,7 +254,7 @@ fn options_out_of_range_are_refused_whether_enforced_or_not() {
     let text = asked.probe().expect_err("too much").to_string();
     assert_eq!(
         text,
-        "a stack of 67108865 bytes is out of range: expected at most 67108864 bytes"
+        "the stack to prefault has 67108865 bytes, expected at most 67108864 bytes"
     );
     let most = Scheduling {
         prefault_stack: PREFAULT_MAX,
@@ -278,7 +278,7 @@ fn the_texts_are_those_of_libfranka() {
             SchedError::KernelNotRealtime(Box::default()),
             "libfranka: Running kernel does not have realtime capabilities. (uname: ``, expected \
              PREEMPT_RT in it; /sys/kernel/realtime: cannot be read; /boot/config- and \
-             /lib/modules//config: cannot be read; /proc/config.gz: not read, since compressed)",
+             /lib/modules//config: cannot be read; /proc/config.gz: not read, because it is compressed)",
         ),
     ] {
         assert_eq!(error.to_string(), text);

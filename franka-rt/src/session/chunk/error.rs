@@ -7,19 +7,19 @@ use std::time::Duration;
 #[non_exhaustive]
 pub enum ChunkError {
     /// There are no points.
-    #[error("a chunk needs at least one point")]
+    #[error("the chunk has no points, expected at least one")]
     Empty,
     /// There are more points than a chunk may have.
     #[error(
-        "more than {most} points: send the rest as the next chunk, with times from the same \
-         origin"
+        "the chunk has too many points, expected {most} at most: send the rest as the next chunk, \
+         with times from the same origin"
     )]
     TooMany {
         /// Maximum number of points, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,
     },
     /// A number of a point is not finite, or larger than 1e6.
-    #[error("point {point} has the number {got}, expected finite ones up to 1e6")]
+    #[error("point {point} has the number {got}, expected finite numbers from -1e6 to 1e6")]
     Number {
         /// The point, from 1.
         point: usize,
@@ -36,7 +36,8 @@ pub enum ChunkError {
     },
     /// The time of a point is earlier than the time of the previous point plus a millisecond.
     #[error(
-        "point {point} is due at {time:?}, expected 1 ms or more after the one before, at {before:?}"
+        "point {point} is due at {time:?}, expected at least 1 ms after the previous point, which \
+         is due at {before:?}"
     )]
     TooClose {
         /// The point, from 1.
@@ -60,7 +61,8 @@ pub enum ChunkError {
     },
     /// Between two points the end effector turns so far that the direction of the turn is
     /// ambiguous.
-    #[error("{degrees} degrees from point {} to point {point}: expected less than 170", point - 1)]
+    #[error("the orientation turns by {degrees} degrees from point {} to point {point}, expected \
+        less than 170 degrees", point - 1)]
     Turn {
         /// The later point, from 1.
         point: usize,

@@ -63,7 +63,7 @@ pub struct Returned {
 /// chunks.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "{} chunks are under way already, send fewer at once",
+    "got more chunks at once than the control thread accepts, expected {} at most: send fewer",
     Chunk::UNDER_WAY_MAX
 )]
 pub struct Full(

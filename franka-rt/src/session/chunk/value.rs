@@ -439,18 +439,20 @@ mod tests {
     fn points_that_make_no_chunk_are_refused_by_number() {
         let refused = |points: Vec<_>| Chunk::joints(points).unwrap_err().to_string();
         for (points, expected) in [
-            (vec![], "a chunk needs at least one point"),
+            (vec![], "the chunk has no points, expected at least one"),
             (
                 vec![at(0, 0.0), at(10, 0.0), at(10, 0.1)],
-                "point 3 is due at 10ms, expected 1 ms or more after the one before, at 10ms",
+                "point 3 is due at 10ms, expected at least 1 ms after the previous point, which \
+                 is due at 10ms",
             ),
             (
                 vec![at(10, 0.0), at(5, 0.0)],
-                "point 2 is due at 5ms, expected 1 ms or more after the one before, at 10ms",
+                "point 2 is due at 5ms, expected at least 1 ms after the previous point, which is \
+                 due at 10ms",
             ),
             (
                 vec![at(0, 0.0), at(1, f64::NAN)],
-                "point 2 has the number NaN, expected finite ones up to 1e6",
+                "point 2 has the number NaN, expected finite numbers from -1e6 to 1e6",
             ),
             (
                 vec![at(0, 0.0), at(60_001, 0.0)],
@@ -458,8 +460,9 @@ mod tests {
             ),
             (
                 (0..1025).map(|k| at(k, 0.0)).collect(),
-                "more than 1024 points: send the rest as the next chunk, with times from the same \
-                 origin",
+                "the chunk has too many points, expected 1024 at most: send the rest as the next \
+                 chunk, \
+                 with times from the same origin",
             ),
         ] {
             assert_eq!(refused(points), expected);
@@ -478,7 +481,8 @@ mod tests {
         let far = Chunk::poses([(MS, pose(0.0)), (MS * 2, pose(3.0))]).unwrap_err();
         assert_eq!(
             far.to_string(),
-            "172 degrees from point 1 to point 2: expected less than 170"
+            "the orientation turns by 172 degrees from point 1 to point 2, expected less than 170 \
+             degrees"
         );
         let mut long = pose(0.0);
         long.rotation =

@@ -127,7 +127,10 @@ pub enum ConditionError {
         got: usize,
     },
     /// A threshold is not finite, or the threshold of a magnitude is not above zero.
-    #[error("threshold {got} for {quantity:?}, expected a finite number, above 0 for a magnitude")]
+    #[error(
+        "the threshold for {quantity:?} is {got}, expected a finite number, and above 0 for a \
+         magnitude"
+    )]
     Threshold {
         /// Quantity of the comparison.
         quantity: Quantity,
@@ -135,16 +138,21 @@ pub enum ConditionError {
         got: f64,
     },
     /// The arm has no such joint.
-    #[error("joint {got}, expected 1 to 7")]
+    #[error("the condition names joint {got}, expected 1 to 7")]
     Joint {
         /// The number given.
         got: u8,
     },
     /// The tare is not finite, or the condition has two different ones.
-    #[error("expected one tare of finite numbers for all comparisons of a condition")]
+    #[error(
+        "the condition has several tares, or a tare that is not finite; expected one finite tare \
+         for all its comparisons"
+    )]
     Tare,
     /// The target after the reaction cannot be hand guiding.
-    #[error("a reaction goes on to joint positions, a pose or rest, not to hand guiding")]
+    #[error(
+        "got hand guiding as the target of a reaction, expected joint positions, a pose or rest"
+    )]
     Guided,
 }
 

@@ -36,7 +36,7 @@ impl Pulse {
 /// The control thread watches the token by the robot's clock, independent of the rest of the
 /// program.
 #[derive(Debug)]
-#[must_use = "the arm is braked when it is dropped"]
+#[must_use = "dropping the deadman brakes the arm"]
 pub struct Deadman {
     pulse: Arc<Pulse>,
     silence: Duration,

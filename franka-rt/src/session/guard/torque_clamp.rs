@@ -44,7 +44,8 @@ impl core::fmt::Display for LimitedTorque {
         } = self;
         write!(
             f,
-            "the torque limit of joint {joint} leaves {limit:.1} N m of the {asked:.1} N m that its springs and compensation ask for"
+            "the torque limit of joint {joint} is {limit:.1} N m, but its springs and \
+             compensation need {asked:.1} N m: raise the limit"
         )
     }
 }

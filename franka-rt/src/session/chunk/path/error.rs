@@ -9,25 +9,27 @@ use crate::session::GoalError;
 #[non_exhaustive]
 pub enum PathError {
     /// There are no waypoints.
-    #[error("a path needs at least one waypoint")]
+    #[error("the path has no waypoints, expected at least one")]
     Empty,
     /// There are more waypoints than a path may have.
     #[error(
-        "more than {} waypoints: move through the rest as the next path",
+        "the path has too many waypoints, expected {} at most: move through the rest as the next \
+         path",
         Waypoint::COUNT_MAX
     )]
     TooMany,
     /// A waypoint is neither a pose nor joint positions, or it is not of the same kind as the first
     /// one.
     #[error(
-        "waypoint {waypoint} is not of the kind of the first: expected all poses, or all joint positions"
+        "waypoint {waypoint} is of another kind than the first waypoint, expected all poses or \
+         all joint positions"
     )]
     Kind {
         /// The waypoint.
         waypoint: usize,
     },
     /// The blend distance of a waypoint is not a number, or below zero.
-    #[error("waypoint {waypoint} is to be rounded within {got}, expected 0 or more")]
+    #[error("the blend of waypoint {waypoint} is {got}, expected 0 or more")]
     Blend {
         /// The waypoint.
         waypoint: usize,
@@ -45,7 +47,10 @@ pub enum PathError {
     },
     /// On the way to a waypoint the end effector turns so far that the direction of the turn is
     /// ambiguous.
-    #[error("{degrees} degrees on the way to waypoint {waypoint}: expected less than 170")]
+    #[error(
+        "the orientation turns by {degrees} degrees on the way to waypoint {waypoint}, expected \
+         less than 170 degrees"
+    )]
     Turn {
         /// The waypoint.
         waypoint: usize,
@@ -54,8 +59,9 @@ pub enum PathError {
     },
     /// The arm cannot follow the path between two waypoints.
     #[error(
-        "on the way from {} to waypoint {to}, at ({x:.3}, {y:.3}, {z:.3}) m, the end effector stays \
-         {:.1} mm and {:.1} mrad off the way{}: expected at most {:.0} mm and {:.0} mrad",
+        "between {} and waypoint {to}, at ({x:.3}, {y:.3}, {z:.3}) m, the end effector would leave \
+         the path by {:.1} mm and {:.1} mrad{}, expected at most {:.0} mm and {:.0} mrad: add a waypoint, \
+         or choose another elbow (`posture`)",
         begin_of(*from),
         translation * 1e3,
         rotation * 1e3,
