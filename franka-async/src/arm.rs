@@ -106,7 +106,7 @@ impl Engage {
 /// While a session has the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
 #[derive(Clone)]
-#[must_use = "its session ends, and the arm is braked, when the last handle is dropped"]
+#[must_use = "dropping the last handle ends the session and brakes the arm"]
 pub struct Arm {
     session: Arc<Session>,
 }

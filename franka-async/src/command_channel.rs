@@ -213,7 +213,7 @@ impl Channel {
             .send(QueuedRequest { request, reply_to })
             .is_err()
         {
-            tracing::debug!("a motion's request was not sent");
+            tracing::debug!("request of a motion not sent: the command channel has ended");
         }
     }
 
@@ -328,7 +328,8 @@ impl CommandTask {
                         let _ = answer.send(Err(error.into()));
                     }
                     ReplyTo::Motion(_) | ReplyTo::Discarded => {
-                        tracing::error!(%error, "a motion's request was not sent");
+                        tracing::error!(%error, "request of a motion not sent: the command \
+                            channel has ended");
                     }
                 }
                 return Ok(());
@@ -372,8 +373,8 @@ impl CommandTask {
     fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation> {
         match self.session.on_message(frame.message()) {
             Ok(Event::Reply { id, command, reply }) => self.on_reply(id, command, &reply),
-            Ok(Event::Unmatched { id }) => tracing::debug!(%id, "a reply without a request"),
-            Ok(other) => tracing::warn!(?other, "a message out of place"),
+            Ok(Event::Unmatched { id }) => tracing::debug!(%id, "reply without a request"),
+            Ok(other) => tracing::warn!(?other, "unexpected message"),
             Err(violation) if violation.is_fatal() => return Err(violation),
             Err(violation) => self.on_violation(violation),
         }
@@ -420,7 +421,7 @@ impl CommandTask {
     fn on_violation(&mut self, violation: Violation) {
         let id = match &violation {
             Violation::Reply { id, .. } | Violation::SecondMotionStarted { id } => *id,
-            other => return tracing::warn!(%other, "the robot left the protocol"),
+            other => return tracing::warn!(%other, "the robot violated the protocol"),
         };
         match self.pending.remove(&id).map(|waiting| waiting.reply_to) {
             Some(ReplyTo::Motion(motion)) => {
@@ -432,7 +433,7 @@ impl CommandTask {
                 let _ = answer.send(Err(violation.into()));
             }
             Some(ReplyTo::Discarded) | None => {
-                tracing::warn!(%violation, "the robot left the protocol")
+                tracing::warn!(%violation, "the robot violated the protocol")
             }
         }
     }

@@ -169,7 +169,7 @@ impl Control {
         let (robot, canceller) = (self.robot.clone(), self.canceller.clone());
         match self.begin() {
             Ok(motion) => drop(canceller.begin(&robot, motion.into())),
-            Err(error) => tracing::warn!(%error, "the motion does not begin"),
+            Err(error) => tracing::warn!(%error, "the motion did not begin"),
         }
     }
 

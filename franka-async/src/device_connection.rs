@@ -80,14 +80,17 @@ impl Device for gripper::Version {
         let most = state.max_width;
         if !(0.0..=most).contains(&width) {
             return Some(if most > 0.0 {
-                format!("width {width} m, expected 0 to {most}")
+                format!("width {width} m, expected 0 to {most} m")
             } else {
-                format!("width {width} m, before a homing has found how wide the fingers open")
+                format!(
+                    "width {width} m, but the gripper does not know its greatest width yet: home \
+                     it first"
+                )
             });
         }
         let above_zero = |name: &str, got: f64, unit: &str| {
             let fits = got.is_finite() && got > 0.0;
-            (!fits).then(|| format!("{name} {got} {unit}, expected above 0"))
+            (!fits).then(|| format!("{name} {got} {unit}, expected more than 0"))
         };
         let tolerance = |name: &str, got: f64| {
             let fits = got.is_finite() && got >= 0.0;
@@ -398,7 +401,8 @@ impl<D: Device> DeviceTask<D> {
             }
             // Without the connection, the device stops on its own.
             Err(error) => {
-                tracing::warn!(%error, "no room for a stop; closing the connection instead");
+                tracing::warn!(%error, "too many pending requests to send a stop; closing the \
+                    connection instead");
                 Err(CloseReason::ClosedByUs)
             }
         }
@@ -418,7 +422,7 @@ impl<D: Device> DeviceTask<D> {
                     self.journal.write(|| Some(D::seen(state)));
                 }
             }
-            Err(error) => tracing::debug!(%error, "an invalid state datagram"),
+            Err(error) => tracing::debug!(%error, "invalid state datagram"),
         }
     }
 
@@ -438,11 +442,11 @@ impl<D: Device> DeviceTask<D> {
                 Reply::Connect { .. } => unreachable!("the session answers its handshake itself"),
             },
             Ok(Event::Unmatched { id }) => {
-                tracing::debug!(%id, "a reply without a request");
+                tracing::debug!(%id, "reply without a request");
                 return Ok(());
             }
             Ok(other) => {
-                tracing::warn!(?other, "a message out of place");
+                tracing::warn!(?other, "unexpected message");
                 return Ok(());
             }
             Err(violation) => match violation.id().filter(|_| !violation.is_fatal()) {

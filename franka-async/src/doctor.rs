@@ -52,7 +52,7 @@ impl fmt::Display for HostDiagnosis {
             writeln!(f, "{diagnosis}")?;
         }
         if self.causes.is_empty() {
-            return write!(f, "on this computer: nothing was found that explains it");
+            return write!(f, "on this computer: no likely cause found");
         }
         for (index, cause) in self.causes.iter().enumerate() {
             let lead = match index {
@@ -61,11 +61,11 @@ impl fmt::Display for HostDiagnosis {
             };
             write!(
                 f,
-                "{lead} {}: {}; wanted: {}",
+                "{lead} {}: {}; expected: {}",
                 cause.id, cause.read, cause.wanted
             )?;
             if let Some(fix) = &cause.fix {
-                write!(f, "; change: {}", fix.command)?;
+                write!(f, "; to change it: {}", fix.command)?;
             }
         }
         Ok(())
@@ -108,7 +108,10 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
             diagnosis: None,
             causes: causes(&System::default(), robot, evidence),
         };
-        span.in_scope(|| tracing::warn!(causes = %found, "the motion ended for want of packets"));
+        span.in_scope(|| {
+            tracing::warn!(causes = %found, "the motion ended because packets were \
+            missing or late")
+        });
     };
     // Outside of a runtime there are no threads for it.
     if world::has_runtime() {
@@ -204,7 +207,7 @@ mod tests {
             causes: Vec::new(),
             ..found
         };
-        let expected = "on this computer: nothing was found that explains it";
+        let expected = "on this computer: no likely cause found";
         assert_eq!(nothing.to_string(), expected);
     }
 

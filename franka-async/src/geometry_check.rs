@@ -70,7 +70,7 @@ impl fmt::Display for GeometryCheck {
         let Some(residual) = self.residual else {
             f.write_str("the robot reports no pose: its geometry was not checked")?;
             if used != described {
-                write!(f, ", and the model keeps {}", Told(used))?;
+                write!(f, "; the model keeps {}", Told(used))?;
             }
             return Ok(());
         };
@@ -79,17 +79,17 @@ impl fmt::Display for GeometryCheck {
         if !self.agrees() {
             return write!(
                 f,
-                "the robot reports a pose {um:.1} µm from that of its model, more than {most:.0} µm: this was accepted"
+                "the robot's pose is {um:.1} µm from the pose of its model, expected {most:.0} µm at most; accepted, as requested by accept_geometry_error"
             );
         }
         write!(
             f,
-            "the robot reports a pose within {most:.0} µm of its model"
+            "the robot's pose is within {most:.0} µm of the pose of its model"
         )?;
         if used != described {
             write!(
                 f,
-                " with {}, which the model now has: described are {} m and {} m",
+                "; the model now has {}, while the robot's description has {} m and {} m",
                 Told(used),
                 described.upper_arm,
                 described.forearm
@@ -227,7 +227,8 @@ mod tests {
                 );
                 assert!(found.agrees() && found.residual.is_some());
                 assert_eq!(found.is_as_described(), described == robots);
-                let lengths = "0.3162 m and a forearm of 0.3842 m, which the model now has";
+                let lengths = "the model now has an upper arm of 0.3162 m and a forearm of 0.3842 \
+                    m";
                 let is_told = found.to_string().contains(lengths);
                 assert_eq!(is_told, described != robots && robots == &all[1], "{found}");
             }

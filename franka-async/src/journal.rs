@@ -218,20 +218,25 @@ impl Journal {
                 destination: None,
             })),
             Input::Pause { goal, paused } => {
-                let what = if *paused { "paused" } else { "let go on" };
+                let what = if *paused { "paused" } else { "resumed" };
                 Some(What::Remark(format!("goal {} is {what}", goal.0)))
             }
             Input::Cancel { goal, refused } => Some(What::Remark(match refused {
-                Some(error) => format!("goal {} stops, a target is refused: {error}", goal.0),
-                None => format!("goal {} is taken back", goal.0),
+                Some(error) => format!(
+                    "goal {} stops, because a target was refused: {error}",
+                    goal.0
+                ),
+                None => format!("goal {} is cancelled", goal.0),
             })),
-            Input::Disengage { id } => Some(What::Remark(format!("session {} is to end", id.0))),
+            Input::Disengage { id } => {
+                Some(What::Remark(format!("end of session {} requested", id.0)))
+            }
             Input::Stop { goal, latches, .. } => {
                 let what = if *latches { "latched stop" } else { "stop" };
-                let text = format!("a {what} is asked for: goal {}", goal.0);
+                let text = format!("{what} requested, as goal {}", goal.0);
                 Some(What::Remark(text))
             }
-            Input::Shutdown { .. } => Some(What::Remark("a shutdown is asked for".into())),
+            Input::Shutdown { .. } => Some(What::Remark("shutdown requested".into())),
             Input::Update { .. }
             | Input::Tune { .. }
             | Input::Await { .. }

@@ -19,7 +19,7 @@ pub struct Lease {
 /// and frees the lease. Drop the [`Arm`](crate::Arm) first: the next holder's session begins when
 /// the arm has been released.
 #[derive(Debug)]
-#[must_use = "the arm is braked, and the lease is free, when it is dropped"]
+#[must_use = "dropping the holder brakes the arm and frees the lease"]
 pub struct Holder {
     lease: Lease,
     number: u64,
@@ -30,7 +30,10 @@ pub struct Holder {
 
 /// Another client holds the lease.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name:?} holds the lease; expected it to be released, or its holder to be silent")]
+#[error(
+    "{name:?} holds the lease (the right to command this arm), expected a free lease: ask \
+     {name:?} to release it, or wait until that client is silent"
+)]
 pub struct Taken {
     /// Name of the holder.
     pub name: String,
@@ -38,7 +41,10 @@ pub struct Taken {
 
 /// The holder was silent for too long, and the lease was free since.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the lease was lost: its holder was silent for more than {silence:?}; take it again")]
+#[error(
+    "the lease (the right to command this arm) was lost after more than {silence:?} without a \
+     heartbeat: take the lease again"
+)]
 pub struct Lost {
     /// The silence that the lease allowed.
     pub silence: Duration,

@@ -231,7 +231,7 @@ impl Robot {
             supervisor,
             id,
             answer: Answer::Unknown {
-                text: String::from("its answer was not awaited"),
+                text: String::from("the program did not await the answer"),
             },
         };
         let answer = link.channel.call_in_turn(request, ANSWER, turn);
@@ -308,7 +308,8 @@ impl Again {
                 Err(error) => answer_of(&explained(error, &request)),
             };
             if answer != Answer::Taken {
-                tracing::warn!(command = %request.command(), ?answer, "set again");
+                tracing::warn!(command = %request.command(), ?answer, "setting not restored after \
+                    a reconnect");
             }
             self.supervisor.on_set_again(id, answer);
         }
@@ -426,8 +427,8 @@ fn impossible(load: &Load) -> Option<String> {
     let [least, middle, greatest] = moments;
     (least < -rounding || greatest > least + middle + rounding).then(|| {
         format!(
-            "I_load has the principal moments {}, {} and {} kg m^2, expected none below 0 and none \
-             above the sum of the others",
+            "I_load has the principal moments {}, {} and {} kg m^2, expected no moment below 0 \
+             and no moment above the sum of the other two",
             short(least),
             short(middle),
             short(greatest)
@@ -458,12 +459,17 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
                     let number = number + 1;
                     format!("number {number} of {what} is {got}, expected 0 or more")
                 }
-                None => "all thresholds are 0 or more; the vendor documents no range".to_owned(),
+                None => "all thresholds are 0 or more, as expected; the vendor documents no upper \
+                    limits"
+                    .to_owned(),
             }
         }
-        Request::SetJointImpedance(got) => format!("got {got:?}, expected 0 to 14250 N m/rad each"),
+        Request::SetJointImpedance(got) => {
+            format!("got {got:?} N m/rad, expected 0 to 14250 N m/rad for each joint")
+        }
         Request::SetCartesianImpedance(got) => format!(
-            "got {got:?}, expected 10 to 3000 N/m for x y z and 1 to 300 N m/rad for roll pitch yaw"
+            "got {got:?}, expected 10 to 3000 N/m for x, y, z and 1 to 300 N m/rad for roll, \
+             pitch, yaw"
         ),
         Request::SetEEToK(got) | Request::SetNEToEE(got) => {
             let [x, y, z] = [got[12], got[13], got[14]];
@@ -473,9 +479,8 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
             let [x, y, z] = got.F_x_Cload;
             let trace = got.I_load[0] + got.I_load[4] + got.I_load[8];
             format!(
-                "m_load is {} kg, expected at most {PAYLOAD} kg; F_x_Cload is [{x}, {y}, {z}] m from \
-                 the flange; the moments of I_load add up to {} kg m^2; the vendor documents no \
-                 ranges",
+                "m_load is {} kg, expected {PAYLOAD} kg at most; F_x_Cload is [{x}, {y}, {z}] m \
+                 from the flange; the trace of I_load is {} kg m^2; the vendor documents no ranges",
                 got.m_load,
                 short(trace)
             )
@@ -488,7 +493,7 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
                 got.cartesian_velocity_filter_frequency,
                 got.controller_filter_frequency,
             ];
-            format!("got {got:?} Hz, expected 1 to 1000 Hz each")
+            format!("got {got:?} Hz, expected 1 to 1000 Hz for each filter")
         }
         _ => return CommandError::Refused(refusal),
     };
@@ -499,7 +504,7 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
 /// state shows.
 fn difference(request: &Request, state: &RobotState) -> Option<String> {
     let text = |got: &dyn Debug, set: &dyn Debug| {
-        format!("the robot has taken it, and its states show {got:?}, expected {set:?}")
+        format!("the robot accepted the setting, but its states show {got:?}, expected {set:?}")
     };
     match request {
         Request::SetEEToK(frame) if !is_near(&state.EE_T_K, frame) => {

@@ -49,15 +49,16 @@ pub enum NotRigid {
     },
     /// The transpose is a pose: the numbers are row by row.
     #[error(
-        "the last column is 0 0 0 1, which belongs in the last row: got the numbers row by row, expected column by column"
+        "got the pose row by row (its last column is 0 0 0 1), expected it column by column (last \
+         row 0 0 0 1)"
     )]
     RowMajor,
     /// The last row is another.
-    #[error("the last row is not 0 0 0 1")]
+    #[error("the last row is not 0 0 0 1, as expected of a pose")]
     LastRow,
     /// The upper left block is scaled, sheared or mirrored.
     #[error(
-        "the upper left block is further than {} from every rotation",
+        "the upper left 3x3 block is no rotation, expected one within {} of it",
         transform::DISTORTION_MAX
     )]
     Rotation,

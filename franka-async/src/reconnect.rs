@@ -141,7 +141,7 @@ impl Reconnector {
         let opening = async move {
             let opened = open(&builder, &states, &supervisor).await;
             if let Err(error) = &opened {
-                tracing::warn!(%error, "not connected");
+                tracing::warn!(%error, "connection attempt failed");
             }
             opened
         };
@@ -186,7 +186,7 @@ impl Reconnector {
             let answer = parameters::recover(&channel).await;
             match &answer {
                 Ok(()) => tracing::info!("recovered"),
-                Err(error) => tracing::warn!(%error, "not recovered"),
+                Err(error) => tracing::warn!(%error, "recovery failed"),
             }
             (reflex, answer)
         };
@@ -215,7 +215,9 @@ impl Reconnector {
         world::spawn_blocking(move || {
             let agreed = catch_unwind(AssertUnwindSafe(|| (ask.0)(&reflex)));
             let agreed = agreed.unwrap_or_else(|_| {
-                tracing::error!("the function that was asked to agree to a recovery panicked");
+                tracing::error!(
+                    "the function of ask_before_recovery panicked; the recovery is declined"
+                );
                 false
             });
             supervisor.agree(reflex.number, agreed);
@@ -262,11 +264,11 @@ fn difference(expected: &Model, got: &Model) -> String {
         return format!("got {:?}, expected {:?}", got.kind(), expected.kind());
     }
     if expected.lengths() != got.lengths() {
-        return "its description or its poses have other lengths than before".into();
+        return "the link lengths in its description or its poses differ from before".into();
     }
     let what = match expected.joint_limits() == got.joint_limits() {
         true => "masses",
         false => "limits",
     };
-    format!("its description has other {what} than before")
+    format!("the {what} in its description differ from before")
 }

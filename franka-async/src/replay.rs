@@ -46,7 +46,7 @@ pub enum ReplayFailure {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The arm did not move as it did in the recording: something holds it, or a guard has braked.
-    #[error("{after:.3?} after the begin {distance}, expected {most} at most")]
+    #[error("{distance} {after:.3?} after the begin of the replay, expected {most} at most")]
     Off {
         /// The time in the replay.
         after: Duration,
@@ -211,7 +211,7 @@ impl Drop for BrakeOnDrop<'_> {
             && goes_on
             && let Err(error) = self.arm.try_set(Target::Rest)
         {
-            tracing::debug!(%error, "the session of a replay has ended");
+            tracing::debug!(%error, "cannot stop the replay: its session has ended");
         }
     }
 }

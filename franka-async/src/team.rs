@@ -63,7 +63,7 @@ type Outcome = Result<MotionReport, MotionError>;
 /// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of
 /// the arms are left.
 #[derive(Debug)]
-#[must_use = "the arms are braked when it is dropped"]
+#[must_use = "dropping the team brakes its arms"]
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,
@@ -166,7 +166,7 @@ impl<const N: usize> Team<N> {
             let motion = motion(member, arm).into();
             assert!(
                 motion.is_of(arm),
-                "the motion of member {member} is one of its arm"
+                "the motion of member {member} must be made by the arm of that member"
             );
             motion
         });

@@ -71,8 +71,7 @@ impl Telemetry {
             turnaround_us = micros(cycle.turnaround),
             %phase,
             phase_us = micros(longest),
-            "commands left after the next state was due, and this is the newest; \
-             `franka doctor` tells what this computer lacks"
+            "commands left after the next state was due; the newest late cycle is shown. `franka doctor` finds causes on this computer"
         );
         self.told = overruns;
     }
@@ -106,7 +105,7 @@ pub(crate) fn sum_up(ended: &Ended) {
         worst_us = worst.map(|worst| micros(worst.total())),
         worst_phase = phase.map(tracing::field::display),
         worst_phase_us = longest.map(micros),
-        "motion over for the control thread"
+        "control thread finished the motion"
     );
 }
 

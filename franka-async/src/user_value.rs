@@ -24,7 +24,7 @@ impl<T> UserValue<T> {
     }
 }
 
-const PRESENT: &str = "it is taken where it is dropped, and nowhere else";
+const PRESENT: &str = "the value is present until the drop";
 
 impl<T> Deref for UserValue<T> {
     type Target = T;
@@ -44,7 +44,7 @@ impl<T> Drop for UserValue<T> {
     fn drop(&mut self) {
         if let Err(message) = panic::free(self.value.take()) {
             let what = self.what;
-            tracing::warn!(panic = %message, "what {what} has captured panicked when it was freed");
+            tracing::warn!(panic = %message, "a value that {what} captured panicked in its drop");
         }
     }
 }

@@ -34,7 +34,7 @@ impl<T: AsyncRead + AsyncWrite + Unpin + Send + fmt::Debug> ByteStream for T {}
 pub(crate) async fn connect(address: SocketAddr) -> io::Result<Stream> {
     let stream = tokio::net::TcpStream::connect(address).await?;
     if let Err(error) = stream.set_nodelay(true) {
-        tracing::debug!(%error, "small requests may be delayed");
+        tracing::debug!(%error, "cannot set TCP_NODELAY: small requests may be delayed");
     }
     let (idle, interval, count) = KEEPALIVE;
     let keepalive = TcpKeepalive::new()
@@ -42,7 +42,7 @@ pub(crate) async fn connect(address: SocketAddr) -> io::Result<Stream> {
         .with_interval(interval)
         .with_retries(count);
     if let Err(error) = SockRef::from(&stream).set_tcp_keepalive(&keepalive) {
-        tracing::debug!(%error, "no keepalive on the command connection");
+        tracing::debug!(%error, "cannot set TCP keepalive on the command connection");
     }
     Ok(Box::new(stream))
 }

@@ -66,7 +66,7 @@ pub(crate) fn plan(
     let place = |q| robot.pose_at(q).translation.vector;
     if let Some(blocked) = blocked.map_err(|error| error.to_string())? {
         let what = match blocked.region {
-            Some(region) => format!("region {region} to keep out of"),
+            Some(region) => format!("keep-out region {region}"),
             None => "itself".to_owned(),
         };
         let (after, at) = (blocked.time.as_secs_f64(), millimetres(place(blocked.q)));

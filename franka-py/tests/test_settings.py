@@ -77,7 +77,7 @@ def test_a_wall_is_read(fer: Robot) -> None:
 
 
 def test_a_refusal_of_the_robot_is_raised(fr3: Robot) -> None:
-    with pytest.raises(CommandError, match=r"\(got \[1000000.0, .*, expected 0 to 14250 N m/rad each\)") as raised:
+    with pytest.raises(CommandError, match=r"\(got \[1000000.0, .*\] N m/rad, expected 0 to 14250 N m/rad for each joint\)") as raised:
         fr3.set_joint_impedance([1e6] * 7).wait()
     assert (raised.value.kind, raised.value.party) == ("invalid_argument", "caller")
     with pytest.raises(CommandError, match=r"\(I_load has the principal moments 0.0001, 0.0001 and 0.005 kg m\^2, expected") as raised:

@@ -256,7 +256,7 @@ impl fmt::Display for EventKind {
             }
             Self::LinkLost { silence } => write!(f, "no state for {silence:.1?}"),
             Self::LinkRestored { silence } => {
-                write!(f, "states come again after {silence:.1?}")
+                write!(f, "states arrive again after {silence:.1?}")
             }
             Self::Mode { from, to } => write!(f, "robot mode {from} -> {to}"),
             Self::Errors {

@@ -178,8 +178,9 @@ async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
     .await;
     assert_eq!(
         refused(closing).await.to_string(),
-        "libfranka: server closed connection (before it answered: another client may be connected, or \
-         another device be there)"
+        "libfranka: server closed connection (before the first answer: another client may be \
+         connected, or \
+         the address belongs to another device)"
     );
     let stateless = server(|stream| async move {
         let stream = handshake(stream, Version::V10).await;

@@ -357,32 +357,32 @@ async fn the_robot_itself_goes_from_target_to_target() {
         (
             -1.0,
             0.5,
-            "goal tolerance is -1 rad, expected between 0.000001 and 20",
+            "goal tolerance is -1 rad, expected between 0.000001 and 20 rad",
         ),
         (
             f64::NAN,
             0.5,
-            "goal tolerance is NaN rad, expected between 0.000001 and 20",
+            "goal tolerance is NaN rad, expected between 0.000001 and 20 rad",
         ),
         (
             f64::INFINITY,
             0.5,
-            "goal tolerance is inf rad, expected between 0.000001 and 20",
+            "goal tolerance is inf rad, expected between 0.000001 and 20 rad",
         ),
         (
             1e-3,
             -1.0,
-            "maximum velocity of joint 3 is -1 rad/s, expected between 0.000001 and 2.62",
+            "maximum velocity of joint 3 is -1 rad/s, expected between 0.000001 and 2.62 rad/s",
         ),
         (
             1e-3,
             100.0,
-            "maximum velocity of joint 3 is 100 rad/s, expected between 0.000001 and 2.62",
+            "maximum velocity of joint 3 is 100 rad/s, expected between 0.000001 and 2.62 rad/s",
         ),
         (
             1e-3,
             f64::NAN,
-            "maximum velocity of joint 3 is NaN rad/s, expected between 0.000001 and 2.62",
+            "maximum velocity of joint 3 is NaN rad/s, expected between 0.000001 and 2.62 rad/s",
         ),
     ] {
         let mut maximum_joint_velocities = usual.maximum_joint_velocities;

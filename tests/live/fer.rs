@@ -89,7 +89,7 @@ async fn what_only_protocol_5_has_is_there_and_what_it_lacks_is_refused_here() {
     assert_eq!(
         refused.to_string(),
         "libfranka: Set Filters command rejected: invalid argument! (got [0.5, 0.5, 0.5, 0.5, 0.5] Hz, \
-         expected 1 to 1000 Hz each)"
+         expected 1 to 1000 Hz for each filter)"
     );
     let wall = robot.virtual_wall(0).await.unwrap();
     assert!(!wall.object_activation);

@@ -25,7 +25,8 @@ async fn with_hand() -> (Gripper, Running) {
     let gripper = hand_of(&sim).await.expect("a hand takes a client");
     assert_eq!(gripper.state().max_width, 0.0);
     let early = gripper.move_to(0.05, 0.1).await.expect_err("no homing");
-    let unhomed = "(width 0.05 m, before a homing has found how wide the fingers open)";
+    let unhomed =
+        "(width 0.05 m, but the gripper does not know its greatest width yet: home it first)";
     assert!(early.to_string().ends_with(unhomed), "{early}");
     assert!(gripper.homing().await.expect("a homing"));
     assert_eq!(gripper.state().max_width, 0.08);
@@ -87,17 +88,20 @@ async fn a_hand_moves_grasps_and_lets_go_while_the_arm_moves() {
     };
     let caller = |why: &str| (Party::Caller, Some(format!("{why})")));
     for (width, speed, why) in [
-        (0.09, 0.1, "width 0.09 m, expected 0 to 0.08"),
-        (-0.01, 0.1, "width -0.01 m, expected 0 to 0.08"),
-        (f64::NAN, 0.1, "width NaN m, expected 0 to 0.08"),
-        (0.05, 0.0, "speed 0 m/s, expected above 0"),
-        (0.05, f64::INFINITY, "speed inf m/s, expected above 0"),
+        (0.09, 0.1, "width 0.09 m, expected 0 to 0.08 m"),
+        (-0.01, 0.1, "width -0.01 m, expected 0 to 0.08 m"),
+        (f64::NAN, 0.1, "width NaN m, expected 0 to 0.08 m"),
+        (0.05, 0.0, "speed 0 m/s, expected more than 0"),
+        (0.05, f64::INFINITY, "speed inf m/s, expected more than 0"),
     ] {
         let error = gripper.move_to(width, speed).await.unwrap_err();
         assert_eq!(refused(error), caller(why));
     }
     for (grasp, why) in [
-        (Grasp::new(0.03, 0.1, -1.0), "force -1 N, expected above 0"),
+        (
+            Grasp::new(0.03, 0.1, -1.0),
+            "force -1 N, expected more than 0",
+        ),
         (
             Grasp {
                 epsilon_outer: -0.01,

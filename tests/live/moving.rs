@@ -110,7 +110,7 @@ async fn a_speed_that_no_motion_can_have_is_refused_as_a_speed() {
     let text = robot.move_to(start).speed(7.0).await.unwrap_err();
     assert!(
         text.to_string()
-            .contains("speed 7, expected between 0.0001 and 1.709"),
+            .contains("speed is 7, expected between 0.0001 and 1.709"),
         "{text}"
     );
     robot.move_to(start).speed(1.5).await.unwrap();
@@ -211,7 +211,7 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
     assert_eq!(
         invalid.to_string(),
         "libfranka: Set Joint Impedance command rejected: invalid argument! (got [-1.0, -1.0, -1.0, \
-         -1.0, -1.0, -1.0, -1.0], expected 0 to 14250 N m/rad each)"
+         -1.0, -1.0, -1.0, -1.0] N m/rad, expected 0 to 14250 N m/rad for each joint)"
     );
     let load = Load {
         m_load: -1.0,
@@ -239,14 +239,13 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
     assert_eq!(
         refused(0.2, [1e-4, 1e-4, 5e-3]).await,
         "libfranka: Set Load command rejected: invalid argument! (I_load has the principal moments \
-         0.0001, 0.0001 and 0.005 kg m^2, expected none below 0 and none above the sum of the \
-         others)"
+         0.0001, 0.0001 and 0.005 kg m^2, expected no moment below 0 and no moment above the \
+         sum of the other two)"
     );
     assert_eq!(
         refused(30.0, [1e-3, 1e-3, 2e-3]).await,
-        "libfranka: Set Load command rejected: invalid argument! (m_load is 30 kg, expected at most \
-         3 kg; F_x_Cload is [0, 0, 0.1] m from the flange; the moments of I_load add up to 0.004 \
-         kg m^2; the vendor documents no ranges)"
+        "libfranka: Set Load command rejected: invalid argument! (m_load is 30 kg, expected 3 kg \
+         at most; F_x_Cload is [0, 0, 0.1] m from the flange; the trace of I_load is 0.004 kg m^2; the vendor documents no ranges)"
     );
     let mut thresholds = CollisionBehavior::careful();
     thresholds.upper_force_thresholds_nominal[2] = -1.0;

@@ -82,7 +82,9 @@ impl Bridge {
         }
         if !self.ends().await {
             // It continues without this connection: a thread cannot be ended from outside.
-            tracing::error!("the control thread does not end: its function has not returned");
+            tracing::error!(
+                "the control thread did not end, because its control function did not return"
+            );
         } else if let Some(thread) = self.thread.take() {
             match world::spawn_blocking(move || thread.join()).await {
                 Ok(Ok(_)) => {}
@@ -114,7 +116,9 @@ impl Bridge {
             match world::timeout_at(deadline, self.wake.woken()).await {
                 Ok(Ok(())) => self.on_wakeup(),
                 Ok(Err(_)) | Err(_) => {
-                    tracing::warn!("the arm was not seen to rest; the control thread ends");
+                    tracing::warn!(
+                        "no state showed the arm at rest in time; ending the control thread"
+                    );
                     break;
                 }
             }

@@ -91,7 +91,7 @@ impl Bridge {
             Input::Cancel { goal, .. } if self.cancel_plan(goal) => {}
             Input::Cancel { goal, refused } => {
                 if let Some(error) = refused {
-                    tracing::info!(goal = goal.0, %error, "a target is refused: the motion stops");
+                    tracing::info!(goal = goal.0, %error, "target refused; the motion stops");
                     if let Some(caller) = self.callers.get_mut(&goal) {
                         caller.refused = Some(error);
                     }

@@ -218,7 +218,8 @@ impl Bridge {
                 }
                 () = sleep_until(deadline) => {
                     if closing.is_some_and(|closing| closing <= world::now()) {
-                        tracing::error!("the motion did not end; closing all the same");
+                        tracing::error!("the motion did not end in time; closing the connection \
+                            anyway");
                         break;
                     }
                     self.publisher.refresh();
@@ -326,7 +327,7 @@ impl Bridge {
 /// Notes the end of a goal or program, which may have been detached.
 fn log(goal: GoalId, outcome: &Outcome) {
     match outcome {
-        Ok(_) if goal == closing::CLOSING => tracing::info!("the arm rests, and is let go"),
+        Ok(_) if goal == closing::CLOSING => tracing::info!("the arm rests; releasing it"),
         Ok(report) => tracing::info!(goal = goal.0, duration = ?report.duration, "motion ended"),
         Err(error) => tracing::info!(goal = goal.0, %error, "motion ended"),
     }

@@ -60,7 +60,7 @@ impl Bridge {
         if stalled.is_some() != self.stalled {
             self.stalled = stalled.is_some();
             if let Some(silence) = stalled {
-                tracing::error!(?silence, "active control does not read states");
+                tracing::error!(?silence, "active control stopped reading states");
                 self.publisher.tell_silence(silence);
             }
             self.lifecycle.on_stall(stalled, self.now());

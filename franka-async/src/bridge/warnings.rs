@@ -16,7 +16,8 @@ impl Bridge {
                 damping,
                 stiffness,
                 wanted = Margin::WANTED,
-                "gains are near an oscillation: dampers and springs may grow by these factors"
+                "the arm may oscillate with these gains: they leave less than the expected \
+                 factors to instability, for damping and stiffness"
             );
         }
     }
@@ -28,7 +29,8 @@ impl Bridge {
                 goal = goal.0,
                 threshold_newtons = least,
                 push_newtons = most,
-                "the robot stops itself by a reflex before the arm gives way to a push"
+                "the collision threshold is below the force cap: a push triggers a reflex before \
+                 the arm yields"
             );
         }
     }

@@ -191,7 +191,8 @@ mod tests {
                 got: 0.1,
                 expected: -0.5,
             },
-            "joint 2 is no longer where the motions were planned from: got 0.100 rad, expected -0.500 rad",
+            "joint 2 is at 0.100 rad, expected -0.500 rad, the start of the planned motions: move \
+             the arm back, or plan again",
             Party::Caller,
         );
         let reason = CloseReason::ClosedByPeer;

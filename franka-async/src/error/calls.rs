@@ -47,7 +47,8 @@ pub enum CommandError {
         deadline: Duration,
     },
     /// Link: no robot state comes, so it is unknown whether the command was carried out.
-    #[error("the command may or may not have taken effect: no robot state for {} ms", .silence.as_millis())]
+    #[error("no robot state for {} ms: the command may have taken effect, read the state when the \
+        robot is back", .silence.as_millis())]
     LinkLost {
         /// The silence so far, at least.
         silence: Duration,
@@ -191,7 +192,7 @@ pub enum ActiveError {
     #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
     Ended(MotionError),
     /// The motion has ended as asked: its last command was written earlier.
-    #[error("the motion has finished, and takes neither reads nor commands: begin a new one")]
+    #[error("the motion has finished and accepts no more reads or commands: begin a new motion")]
     Finished,
     /// The command was not sent; the motion continues.
     #[error(transparent)]
@@ -228,7 +229,7 @@ fn needs_recovery(error: &MotionError) -> bool {
     error.control().is_some_and(|error| error.is_reflex())
 }
 
-const RECOVER: &str = ", `recover` before the next";
+const RECOVER: &str = " (call `recover` before the next motion)";
 
 /// Reason why an arm was not identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -236,8 +237,8 @@ const RECOVER: &str = ", `recover` before the next";
 pub enum IdentifyError {
     /// Caller: the arm has moved since its motions were planned. Nothing has moved it since.
     #[error(
-        "joint {joint} is no longer where the motions were planned from: got {got:.3} rad, \
-         expected {expected:.3} rad"
+        "joint {joint} is at {got:.3} rad, expected {expected:.3} rad, the start of the planned \
+         motions: move the arm back, or plan again"
     )]
     Moved {
         /// The joint, 1 to 7.

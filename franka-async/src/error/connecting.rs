@@ -40,7 +40,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Caller: the requested log of a motion has more cycles than there is memory for, see
     /// [`Builder::log_size`](crate::connection::Builder::log_size). Nothing was sent.
     #[error(
-        "a log of {got} cycles is too long: expected {} at most",
+        "the log has {got} cycles, expected {} at most",
         ControlLog::CAPACITY_MAX
     )]
     LogSize {
@@ -50,14 +50,17 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Caller: a function would be asked before recoveries, and no policy supervises the robot, see
     /// [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery). Nothing
     /// was sent.
-    #[error("ask_before_recovery without supervise: expected a policy that recovers")]
+    #[error(
+        "got ask_before_recovery without supervise, expected both: add supervise with a policy \
+         that recovers"
+    )]
     Unsupervised,
     /// Caller: the known values of the arm belong to another kind of robot, or have numbers that no
     /// arm has, see [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
     /// Host: no thread, socket or descriptor.
-    #[error("the connection cannot be set up: {0}")]
+    #[error("cannot set up the connection: {0}")]
     System(#[from] io::Error),
     /// Robot: it takes no connection. FCI is off, or it is another machine.
     #[error(
@@ -132,7 +135,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// than the constants of its kind. That geometry is not a known one. See
     /// [`Builder::accept_geometry_error`](crate::connection::Builder::accept_geometry_error).
     #[error(
-        "the robot reports a pose {:.1} µm from that of its model at the same joint positions: expected {:.0} µm at most (accept_geometry_error connects all the same)",
+        "the robot's pose is {:.1} µm from the pose of its model at the same joint positions, expected {:.0} µm at most: check the address and the robot's description, or connect with accept_geometry_error",
         .residual * 1e6,
         RESIDUAL_MAX * 1e6
     )]
@@ -228,7 +231,10 @@ fn likely(reason: &CloseReason) -> &'static str {
         | CloseReason::Io {
             kind: io::ErrorKind::ConnectionReset,
             ..
-        } => " (before it answered: another client may be connected, or another device be there)",
+        } => {
+            " (before the first answer: another client may be connected, or the address belongs \
+             to another device)"
+        }
         _ => "",
     }
 }

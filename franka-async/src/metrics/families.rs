@@ -69,32 +69,32 @@ impl<'a, 'e> Families<'a, 'e> {
 
     /// Health of the robot.
     fn robot(&mut self) -> fmt::Result {
-        let help = "Whether there is a connection.";
+        let help = "1 while the robot is connected, otherwise 0.";
         self.gauges("franka_connected", help, None, |scrape| {
             let without = [Condition::Closed, Condition::Unready(Unready::Disconnected)];
             let connected = !without.contains(&scrape.health.condition);
             [(ALONE, i64::from(connected))]
         })?;
-        let help = "Whether the robot takes motions.";
+        let help = "1 while the robot accepts motions, otherwise 0.";
         self.gauges("franka_ready", help, None, |scrape| {
             let ready = scrape.health.condition == Condition::Ready;
             [(ALONE, i64::from(ready))]
         })?;
-        let help = "The mode of the robot.";
+        let help = "1 for the current mode of the robot, 0 for the other modes.";
         self.gauges("franka_robot_mode", help, None, |scrape| {
             RobotMode::ALL.map(|mode| {
                 let name = mode.to_string().to_lowercase().replace(' ', "_");
                 ([("mode", name)], i64::from(mode == scrape.state.robot_mode))
             })
         })?;
-        let help = "Errors that hold.";
+        let help = "1 for each active error of the robot, otherwise 0.";
         self.gauges("franka_error_active", help, None, |scrape| {
             RobotError::ALL.map(|error| {
                 let holds = scrape.state.errors.contains(error);
                 ([("error", error.name())], i64::from(holds))
             })
         })?;
-        let help = "Commands that the robot received in time, of the last hundred.";
+        let help = "Share of the last 100 commands that the robot received in time, 0 to 1.";
         self.gauges("franka_success_ratio", help, None, |scrape| {
             [(ALONE, scrape.state.control_command_success_rate)]
         })
@@ -120,12 +120,12 @@ impl<'a, 'e> Families<'a, 'e> {
         self.counters("franka_reconnects", help, |scrape| {
             [(ALONE, scrape.health.reconnects)]
         })?;
-        let help = "How long the newest recovery by the supervisor took.";
+        let help = "Duration of the newest recovery by the supervisor.";
         self.gauges("franka_recovery", help, SECONDS, |scrape| {
             let took = scrape.health.last_recovery;
             took.map(|took| (ALONE, took.as_secs_f64()))
         })?;
-        let help = "How long the newest reconnect took.";
+        let help = "Duration of the newest reconnect.";
         self.gauges("franka_reconnect", help, SECONDS, |scrape| {
             let took = scrape.health.last_reconnect;
             took.map(|took| (ALONE, took.as_secs_f64()))
@@ -134,7 +134,8 @@ impl<'a, 'e> Families<'a, 'e> {
 
     /// Punctuality of control.
     fn thread(&mut self) -> fmt::Result {
-        let help = "What the operating system granted the control thread.";
+        let help = "1 for each real-time request of the control thread that the operating system \
+            granted, otherwise 0.";
         self.gauges("franka_rt_granted", help, None, |scrape| {
             let granted = scrape.robot.granted();
             let (fifo, polled) = (granted.priority.is_some(), granted.busy_poll.is_some());
@@ -146,26 +147,26 @@ impl<'a, 'e> Families<'a, 'e> {
         for (name, help, count) in COUNTERS {
             self.counters(name, help, |scrape| [(ALONE, count(&scrape.stats))])?;
         }
-        let help = "Datagrams that were no states of the robot.";
+        let help = "Datagrams that were not states of the robot.";
         self.counters("franka_datagrams_refused", help, |scrape| {
             [
                 ([("reason", "foreign")], scrape.stats.foreign.get()),
                 ([("reason", "malformed")], scrape.stats.malformed.get()),
             ]
         })?;
-        let help = "Failed calls of the socket.";
+        let help = "Failed socket calls.";
         self.counters("franka_socket_errors", help, |scrape| {
             [
                 ([("call", "receive")], scrape.stats.receive_errors.get()),
                 ([("call", "send")], scrape.stats.send_errors.get()),
             ]
         })?;
-        let help = "Times between two states in a row.";
+        let help = "Time between consecutive states.";
         self.histogram("franka_state_interval", help, |stats| &stats.interval)?;
-        let help = "Times from the receipt of a state to the departure of its command.";
+        let help = "Time from the receipt of a state to the departure of its command.";
         self.histogram("franka_cycle_turnaround", help, |stats| &stats.turnaround)?;
         let help =
-            "The least time that was left until the next state was due when a command departed.";
+            "Least time between the departure of a command and the due time of the next state.";
         self.gauges("franka_cycle_slack", help, SECONDS, |scrape| {
             let (slack, overrun) = (scrape.stats.slack.min(), scrape.stats.overrun.max());
             let overrun = overrun.map(|overrun| -overrun.as_secs_f64());
@@ -267,7 +268,7 @@ type CounterOf = (&'static str, &'static str, fn(&Stats) -> u64);
 const COUNTERS: [CounterOf; 6] = [
     (
         "franka_cycles",
-        "States that the control thread took up.",
+        "States that the control thread processed.",
         |stats| stats.states.get(),
     ),
     ("franka_commands", "Commands sent.", |stats| {
@@ -285,12 +286,12 @@ const COUNTERS: [CounterOf; 6] = [
     ),
     (
         "franka_states_skipped",
-        "States that a newer one had overtaken when the thread looked.",
+        "States skipped, because a newer state had already arrived.",
         |stats| stats.skipped.get(),
     ),
     (
         "franka_states_stale",
-        "States that came after a newer one, or twice.",
+        "States that arrived after a newer state, or twice.",
         |stats| stats.stale.get(),
     ),
 ];

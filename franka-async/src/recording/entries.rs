@@ -108,7 +108,7 @@ impl EntryQueue {
         if let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {
-            tracing::error!("the thread that records events has panicked");
+            tracing::error!("the thread that records events panicked");
         }
         self.lost()
     }
@@ -159,7 +159,7 @@ impl Recorded {
             },
             What::Connected(Ok(cycles)) => return self.handle.resume(cycles),
             What::Connected(Err(error)) => {
-                let text = format!("cycles of the new connection are not recorded: {error}");
+                let text = format!("cannot record the cycles of the new connection: {error}");
                 words::note(Level::Error, "recorder", text)
             }
             What::Answered { request, error } => words::request(&request, error),

@@ -111,13 +111,13 @@ pub enum TrackError {
     #[error(transparent)]
     Record(#[from] RecordError),
     /// An end effector belongs to a robot that is not attached.
-    #[error("no robot called {name:?} is attached to the recorder")]
+    #[error("no robot named {name:?} is attached to the recorder: attach the robot first")]
     Unknown {
         /// The name that was given.
         name: String,
     },
     /// An end effector is recorded with this robot already.
-    #[error("this end effector is recorded with the robot called {name:?} already")]
+    #[error("this end effector is already recorded with the robot {name:?}")]
     Attached {
         /// The robot's name.
         name: String,
@@ -211,7 +211,7 @@ impl Recorder {
             let cycles = robot.cycles(track.capacity)?;
             let handle = self.inner.attach(described, cycles)?;
             if let Some(refused) = refused {
-                let text = format!("without a description of the robot: {refused}");
+                let text = format!("recording without a description of the robot: {refused}");
                 handle.event(words::note(Level::Warning, "recorder", text));
             }
             tracks.insert(id, Recorded { handle, track });

@@ -79,7 +79,7 @@ pub(super) fn outcome(goal: GoalId, outcome: &Outcome) -> EventKind {
         Ok(report) => {
             let text = report.reacted.map(|reacted| {
                 let after = reacted.after.as_millis();
-                format!("its condition was true at {after} ms")
+                format!("the condition was true at {after} ms")
             });
             let text = text.unwrap_or_default();
             (Ending::Arrived, text, Some(report.duration))
@@ -220,7 +220,7 @@ pub(super) fn vacuum(request: &vacuum::Request, ended: ActionEnd) -> EventKind {
 fn failure(ended: ActionEnd) -> Option<String> {
     match ended {
         Ok(true) => None,
-        Ok(false) => Some("it ended without success".to_owned()),
+        Ok(false) => Some("the action ended without success".to_owned()),
         Err(error) => Some(error),
     }
 }

@@ -314,7 +314,7 @@ impl Supervisor {
             error,
         } in refused
         {
-            tracing::info!(goal = motion.motion.id().0, %error, "motion does not begin");
+            tracing::info!(goal = motion.motion.id().0, %error, "the motion did not begin");
             replies.ended.send(Err(error));
         }
         result
@@ -359,7 +359,7 @@ impl Inner {
                     Admission::Wait => {
                         tracing::info!(
                             goal = motion.motion.id().0,
-                            "motion waits until the robot is ready"
+                            "the motion waits until the robot is ready"
                         );
                         let waiting = Waiting {
                             motion,
@@ -473,7 +473,7 @@ impl Inner {
 
     /// Notes a goal that its session does not get.
     fn note_refused(&self, goal: GoalId, error: &MotionError) {
-        tracing::info!(goal = goal.0, %error, "a goal is refused");
+        tracing::info!(goal = goal.0, %error, "goal refused");
         #[cfg(feature = "record")]
         self.journal.ended(goal, &Err(error.clone()));
     }

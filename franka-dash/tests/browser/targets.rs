@@ -80,7 +80,7 @@ pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
     said(page, "no joint positions")?;
     let below = served.region_top() * 1e3 - 30.0;
     aim(page, &[("z", below)])?;
-    said(page, "region 1 to keep out of")?;
+    said(page, "keep-out region 1")?;
     let start = served.robot.state().q;
     wait("the refusal", || {
         take(page)?;

@@ -95,7 +95,7 @@ fn what_must_not_be_done_is_refused_before_and_when_it_is_asked_for() {
     let away = Pose::translation(1.0, 0.0, 0.0) * start;
     let turned = pose::rotated(&start, UnitQuaternion::from_euler_angles(3.1, 0.0, 0.0));
     for (target, why) in [
-        (down, "region 2 to keep out of"),
+        (down, "keep-out region 2"),
         (away, "no joint positions"),
         (turned, "turn less than 170 degrees"),
     ] {

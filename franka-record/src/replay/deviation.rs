@@ -94,7 +94,7 @@ impl ReplayPlan {
         };
         let is_far = got > most;
         is_far.then(|| {
-            let got = format!("{what} is {got:.3} {unit} from where it was recorded");
+            let got = format!("{what} is {got:.3} {unit} off the recording");
             (got, format!("{most} {unit}"))
         })
     }

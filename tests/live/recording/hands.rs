@@ -119,7 +119,7 @@ async fn actions_and_states_of_a_vacuum_gripper_are_recorded() {
     let expected = [
         ("vacuum.vacuum", None),
         ("vacuum.drop_off", None),
-        ("vacuum.vacuum", Some("it ended without success")),
+        ("vacuum.vacuum", Some("the action ended without success")),
         ("vacuum.vacuum", Some(refused.as_str())),
     ];
     assert_eq!(told.collect::<Vec<_>>(), expected);

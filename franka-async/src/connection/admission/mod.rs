@@ -59,27 +59,30 @@ pub struct Admission {
 #[non_exhaustive]
 pub enum Refused {
     /// It names no host, several hosts, or something that is no host.
-    #[error("expected one valid Host, got none, several or an invalid one")]
+    #[error("the Host header is missing, repeated or invalid, expected exactly one")]
     NoHost,
     /// The name is not one of the service's. A page of another site may have rebound it.
     #[error(
-        "the Host {got:?} is unknown, expected localhost, an IP address or a name of the service"
+        "the Host header is {got:?}, expected localhost, an IP address or a name of the service"
     )]
     Host {
         /// The name.
         got: String,
     },
     /// A page of another origin makes the request.
-    #[error("the request is from a page of another origin")]
+    #[error("the request comes from a web page of another origin, expected a page of this service")]
     Origin,
     /// Only requests from this computer are answered without a token.
-    #[error("other computers need a token, and this service has none: {why}")]
+    #[error(
+        "got a request from another computer ({why}), expected one from this computer: start the \
+         service with a token to admit others"
+    )]
     NeedsToken {
         /// Sign that the request is from elsewhere.
         why: Elsewhere,
     },
     /// The token is missing or wrong.
-    #[error("the token is missing or wrong")]
+    #[error("the token is missing or wrong: send `Authorization: Bearer TOKEN`")]
     Token,
 }
 
@@ -92,14 +95,15 @@ pub enum Elsewhere {
     Peer,
     /// The address of the peer is not known.
     #[error(
-        "the address of the peer is not known (axum: into_make_service_with_connect_info::<SocketAddr>())"
+        "the address of the peer is unknown: serve with axum's \
+         into_make_service_with_connect_info::<SocketAddr>()"
     )]
     UnknownPeer,
     /// `Host`, `:authority` and `Origin` name something other than this computer.
-    #[error("the Host is not a loopback address")]
+    #[error("the Host header is not a loopback address")]
     Host,
     /// A proxy has passed it on.
-    #[error("a proxy has forwarded the request")]
+    #[error("a proxy forwarded the request")]
     Forwarded,
 }
 

@@ -39,7 +39,7 @@ pub enum TokenError {
         source: io::Error,
     },
     /// The environment variable is not UTF-8.
-    #[error("the variable {TOKEN_VARIABLE} is not UTF-8 text")]
+    #[error("the environment variable {TOKEN_VARIABLE} is not UTF-8 text")]
     Variable,
     /// The operating system has no random numbers.
     #[error("cannot get random numbers for a token")]
