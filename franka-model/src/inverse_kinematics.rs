@@ -38,7 +38,7 @@ impl core::fmt::Display for IkError {
                 orientation,
             } => write!(
                 f,
-                "the pose is out of reach: {:.1} mm and {:.1} mrad remain",
+                "the pose is out of reach: the nearest pose found is {:.1} mm and {:.1} mrad away",
                 position * 1e3,
                 orientation * 1e3
             ),

@@ -15,7 +15,7 @@ pub enum PlanError {
         axis: usize,
     },
     /// A limit that is not positive and finite.
-    #[error("{quantity} limit {value} of axis {axis} is not a positive finite number")]
+    #[error("{quantity} limit of axis {axis} is {value}, expected a positive finite number")]
     Limit {
         /// The limited quantity.
         quantity: Quantity,
@@ -28,7 +28,8 @@ pub enum PlanError {
     /// acceleration exceeds its limit, or the velocity would exceed its limit just before or after
     /// the target.
     #[error(
-        "the target of axis {axis} moves faster than its limits allow: |velocity| + acceleration^2 / (2 jerk limit) and |acceleration| must not exceed the limits"
+        "the target of axis {axis} moves faster than the limits allow, expected |acceleration| \
+         and |velocity| + acceleration^2 / (2 jerk limit) within the limits"
     )]
     TargetMotion {
         /// Axis, from 1; 1 for a straight line, which is planned as one.
@@ -36,7 +37,10 @@ pub enum PlanError {
     },
     /// Distance or velocity and the limits are so far apart that `f64` cannot hold the powers in
     /// the solution: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
-    #[error("state, target and limits of axis {axis} lie too many orders of magnitude apart")]
+    #[error(
+        "state, target and limits of axis {axis} differ by too many orders of magnitude to \
+        plan with, expected comparable magnitudes"
+    )]
     OutOfRange {
         /// Axis, from 1; 1 for a straight line, which is planned as one.
         axis: usize,

@@ -102,7 +102,7 @@ pub enum FrameError {
         got: u32,
     },
     /// The size is larger than any message needs.
-    #[error("a message of {got} bytes is announced, and the longest allowed has {limit}")]
+    #[error("the header announces a message of {got} bytes, expected {limit} at most")]
     TooLong {
         /// The size that the header claims, in bytes.
         got: u32,

@@ -19,7 +19,7 @@ pub enum SessionError<C: ServiceCommand = Command> {
     #[error("{0}")]
     Violation(Violation<C>),
     /// The client announced another version, and was notified.
-    #[error("it speaks protocol {announced}, which is not understood here")]
+    #[error("got protocol {announced}, which this server does not support")]
     Incompatible {
         /// The announced version.
         announced: u16,

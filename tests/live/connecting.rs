@@ -120,8 +120,9 @@ async fn another_version_is_named() {
     let error = refused(address).await;
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 9, library version: 10): version 9 is that of a \
-         Franka Research 3 with system image 5.7.2: update the robot's system to 5.9.0 or later (Desk, Settings, \
+        "libfranka: Incompatible library version (server version: 9, library version: 10): a \
+         Franka Research 3 \
+         with system image 5.7.2 speaks version 9: update the robot's system to 5.9.0 or later (Desk, Settings, \
          System)"
     );
     // The robot keeps to its protocol, so there is nothing to report.

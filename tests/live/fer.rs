@@ -143,9 +143,10 @@ async fn a_pinned_version_is_the_only_one_that_connects() {
     assert_eq!(incompatible.server_version, 5);
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 5, library version: 10): version 5 is that of a \
-         Franka Emika Robot (Panda) with system image 4.2.1 or later: connect with version 5, which is understood \
-         here as well"
+        "libfranka: Incompatible library version (server version: 5, library version: 10): a \
+         Franka Emika Robot \
+         (Panda) with system image 4.2.1 or later speaks version 5: connect with version 5, which this driver also \
+         supports"
     );
     assert_eq!(error.party(), Party::Caller);
     let robot = pinned(Version::V5).await.expect("its own version");
@@ -164,8 +165,9 @@ async fn a_pinned_version_is_the_only_one_that_connects() {
         .expect_err("refused");
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 10, library version: 5): version 10 is that of a \
-         Franka Research 3 with system image 5.9.0 or later: connect with version 10, which is understood here as \
-         well"
+        "libfranka: Incompatible library version (server version: 10, library version: 5): a \
+         Franka Research 3 \
+         with system image 5.9.0 or later speaks version 10: connect with version 10, which this driver also \
+         supports"
     );
 }

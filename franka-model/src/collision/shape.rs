@@ -169,12 +169,15 @@ impl core::fmt::Display for ToolError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::TooMany { got } => {
-                write!(f, "a tool of {got} capsules, expected at most {TOOL_MAX}")
+                write!(
+                    f,
+                    "the tool has {got} capsules, expected {TOOL_MAX} at most"
+                )
             }
             Self::NotACapsule { index, got } => write!(
                 f,
-                "capsule {index} of the tool is from {:?} to {:?} with radius {}, expected finite numbers and no \
-                 negative radius",
+                "capsule {index} of the tool extends from {:?} m to {:?} m with a radius of {} m, \
+                 expected finite numbers and a radius of 0 or more",
                 got.start.as_slice(),
                 got.end.as_slice(),
                 got.radius

@@ -31,12 +31,9 @@ pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
     }
     for moved in tree.moved_links() {
         let inertia = &bodies[moved.place.moved_by].inertia;
-        check_moments(
-            moved.name,
-            inertia,
-            "all of them to be positive",
-            |least, _| least > 0.0,
-        )?;
+        check_moments(moved.name, inertia, "positive moments", |least, _| {
+            least > 0.0
+        })?;
     }
     Ok(bodies)
 }
@@ -59,7 +56,7 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
     let mass = inertial.inner("mass")?;
     let mass = match weight {
         Weight::Needed => mass.number_where("value", "a number above 0", |x| x > 0.0),
-        Weight::Optional => mass.number_where("value", "a number not below 0", |x| x >= 0.0),
+        Weight::Optional => mass.number_where("value", "a number of 0 or more", |x| x >= 0.0),
     }?;
     let tensor = inertial.inner("inertia")?;
     let inertia = Symmetric3 {
@@ -73,7 +70,7 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
     check_moments(
         link.name,
         &inertia,
-        "none of them to be negative",
+        "moments of 0 or more",
         |least, largest| {
             // The least moment of a rod is zero up to rounding.
             least >= -1e-12 * largest

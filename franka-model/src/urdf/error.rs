@@ -54,7 +54,8 @@ pub enum UrdfError {
     },
     /// A movable joint exists besides the seven of the arm, such as the joint of a finger.
     #[error(
-        "joint {joint} of type '{got}' is one too many, expected seven movable joints, joint1 to joint7"
+        "got the additional joint {joint} of type '{got}', expected seven movable joints, joint1 \
+         to joint7"
     )]
     ExtraJoint {
         /// Name of the joint.
@@ -103,7 +104,10 @@ pub enum UrdfError {
         expected: &'static str,
     },
     /// The lower position limit is not below the upper limit.
-    #[error("the limits of joint {joint} are {lower} to {upper} rad, expected the lower one first")]
+    #[error(
+        "joint {joint} has the lower limit {lower} rad and the upper limit {upper} rad, \
+        expected the lower limit below the upper limit"
+    )]
     LimitsCrossed {
         /// Name of the joint.
         joint: String,
@@ -114,8 +118,8 @@ pub enum UrdfError {
     },
     /// The margins at both ends of a joint's range leave no room to move.
     #[error(
-        "the limits of joint {joint} are {lower} to {upper} rad, a range of {:.4} rad; \
-         expected {least:.4} rad or more, since margins are kept at both ends", .upper - .lower
+        "the limits of joint {joint}, {lower} to {upper} rad, span {:.4} rad, expected {least:.4} \
+         rad or more: the driver keeps a margin at both ends", .upper - .lower
     )]
     RangeTooNarrow {
         /// Name of the joint.
@@ -151,7 +155,7 @@ pub enum UrdfError {
         got: String,
     },
     /// A link is the child of two joints.
-    #[error("link {link} is the child of the joints {first} and {second}, expected one of them")]
+    #[error("link {link} is the child of two joints, {first} and {second}, expected one")]
     TwoParents {
         /// Name of the link.
         link: String,
@@ -161,13 +165,16 @@ pub enum UrdfError {
         second: String,
     },
     /// The text does not have exactly one root link.
-    #[error("the links without a joint above are: {}; expected one", .got.join(" "))]
+    #[error("got several links without a parent joint ({}), expected exactly one", .got.join(" "))]
     Roots {
         /// Names of the root links: none, or several.
         got: Vec<String>,
     },
     /// The joints form a circle.
-    #[error("link {link} does not hang on {root}, expected every link to")]
+    #[error(
+        "no chain of joints connects link {link} to the root {root}, expected one for every \
+        link"
+    )]
     Circle {
         /// Name of a link in the circle, or after it.
         link: String,
@@ -191,7 +198,8 @@ pub enum UrdfError {
         expected: usize,
     },
     /// A joint frame is not in its expected place.
-    #[error("the frame of {owner} is {:?} m with rpy {:?} rad off its place, expected less than {} and {}",
+    #[error("the frame of {owner} is off by {:?} m and {:?} rad (roll, pitch, yaw), expected less \
+        than {} m and {} rad",
         .translation, .rotation, super::TRANSLATION_OFF, super::ROTATION_OFF)]
     Origin {
         /// Name of the joint, or the flange.
@@ -210,7 +218,7 @@ pub enum UrdfError {
         got: [f64; 3],
     },
     /// The text has no flange.
-    #[error("there is no link 'link8', expected one fixed to link 7; the links are: {}", .got.join(" "))]
+    #[error("got no link 'link8', expected one fixed to link 7; the links are: {}", .got.join(" "))]
     NoFlange {
         /// Names of the links.
         got: Vec<String>,

@@ -132,7 +132,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         let limit = Element::child(joint.node, "limit", &joint.owner)?;
         limits.velocity[i] = limit.number_where("velocity", POSITIVE, |x| x > 0.0)?;
         envelope.offset[i] =
-            braking.number_where("velocity_offset", "a number not below 0", |x| x >= 0.0)?;
+            braking.number_where("velocity_offset", "a number of 0 or more", |x| x >= 0.0)?;
         envelope.deceleration[i] =
             braking.number_where("deceleration_limit", BRAKING, |x| x >= BRAKING_LEAST)?;
         let (upper, lower) = (limit.number("upper")?, limit.number("lower")?);

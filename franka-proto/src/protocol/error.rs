@@ -93,7 +93,7 @@ impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
 #[non_exhaustive]
 pub enum EncodeError {
     /// The caller's buffer is too short.
-    #[error("the buffer has {got} bytes, and the datagram needs {needed}")]
+    #[error("the buffer has {got} bytes, expected {needed} or more for the datagram")]
     Buffer {
         /// Length of the buffer in bytes.
         got: usize,
@@ -124,10 +124,13 @@ pub enum RequestError {
     #[error("the session is not connected")]
     NotConnected,
     /// `Connect` is sent by [`client::Session::connect`](crate::client::Session::connect).
-    #[error("a handshake is not a request of a session")]
+    #[error("got a handshake, expected a request of an open session")]
     Handshake,
     /// The session cannot track any more requests that wait for replies.
-    #[error("{limit} requests wait for replies already")]
+    #[error(
+        "got a request while {limit} wait for replies, expected {limit} at most: await a \
+        reply first"
+    )]
     TooManyPending {
         /// Largest number of waiting requests.
         limit: usize,
@@ -145,7 +148,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
         id: CommandId,
     },
     /// The request requires another kind of reply.
-    #[error("request {id} is {command}, which has another kind of reply")]
+    #[error("the reply does not fit request {id}: {command} has another kind of reply")]
     Mismatch {
         /// The id.
         id: CommandId,
@@ -153,7 +156,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
         command: C,
     },
     /// A `Move` has already received its first answer.
-    #[error("the motion of request {id} has been reported as started")]
+    #[error("the motion of request {id} is already reported as started")]
     AlreadyStarted {
         /// The id.
         id: CommandId,
@@ -168,7 +171,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     /// [`server::Session::model_header`](crate::server::Session::model_header) or
     /// [`server::Session::library_header`](crate::server::Session::library_header), which also
     /// limit their length.
-    #[error("a model of {len} bytes does not fit")]
+    #[error("the model has {len} bytes, which does not fit into a reply")]
     TextLength {
         /// Length of the model in bytes.
         len: usize,
@@ -186,7 +189,7 @@ pub enum Violation<C: ServiceCommand = Command> {
         status: u16,
     },
     /// The device agreed to our version and reports another version as its own.
-    #[error("the device accepts protocol {announced} and reports {reported} as its own")]
+    #[error("the device accepted protocol {announced}, but reports protocol {reported} as its own")]
     ForeignVersion {
         /// The version that the client announced.
         announced: u16,
@@ -222,16 +225,19 @@ pub enum Violation<C: ServiceCommand = Command> {
         got: C,
     },
     /// A client sends `Connect` in an open session.
-    #[error("a second Connect in one session")]
+    #[error("got a second Connect, expected one for each session")]
     SecondConnect,
     /// A client uses the id of a request that has not been answered yet.
-    #[error("request {id} is not answered yet, and its id is used again")]
+    #[error(
+        "got the request id {id} twice, expected a new id while the first request waits for \
+        its reply"
+    )]
     RepeatedId {
         /// The id.
         id: CommandId,
     },
     /// A client has more open requests than a server can track.
-    #[error("more than {limit} requests wait for replies")]
+    #[error("the client sent more than {limit} requests without awaiting replies")]
     TooManyPending {
         /// Largest number of open requests.
         limit: usize,

@@ -27,8 +27,8 @@ impl<P: Protocol> IncompatibleVersion<P> {
     /// let error = IncompatibleVersion { server_version: 5, library_version: Version::V10 };
     /// assert_eq!(
     ///     error.explanation().to_string(),
-    ///     "version 5 is that of a Franka Emika Robot (Panda) with system image 4.2.1 or later: \
-    ///      connect with version 5, which is understood here as well",
+    ///     "a Franka Emika Robot (Panda) with system image 4.2.1 or later speaks version 5: \
+    ///      connect with version 5, which this driver also supports",
     /// );
     /// ```
     #[must_use]
@@ -64,7 +64,7 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                 let (name, system) = (field.name, field.system);
                 write!(
                     f,
-                    "version {server} is that of a {name} with system image {system}: "
+                    "a {name} with system image {system} speaks version {server}: "
                 )?;
                 match field.update {
                     Some(update) => write!(
@@ -73,7 +73,7 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                     ),
                     None => write!(
                         f,
-                        "connect with version {server}, which is understood here as well"
+                        "connect with version {server}, which this driver also supports"
                     ),
                 }
             }
@@ -81,7 +81,7 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                 let device = self.0.library_version.device();
                 write!(
                     f,
-                    "no {device} with version {server} is known here; understood are"
+                    "this driver knows no {device} with version {server}; it supports"
                 )?;
                 for (position, number) in P::spoken().iter().enumerate() {
                     let before = if position == 0 { "" } else { " and" };
@@ -89,7 +89,7 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                 }
                 match P::spoken().last() {
                     Some(newest) if server > *newest => {
-                        f.write_str("; a newer release of this driver may speak it")
+                        f.write_str("; a newer release of this driver may support it")
                     }
                     _ => Ok(()),
                 }
@@ -144,7 +144,7 @@ mod tests {
             assert_eq!(
                 explanation(number),
                 std::format!(
-                    "version {number} is that of a {robot} with system image {system}: update the \
+                    "a {robot} with system image {system} speaks version {number}: update the \
                      robot's system to {update} or later (Desk, Settings, System)"
                 )
             );
@@ -156,15 +156,15 @@ mod tests {
             assert_eq!(
                 explanation(number),
                 std::format!(
-                    "version {number} is that of a {robot} with system image {system} or later: \
-                     connect with version {number}, which is understood here as well"
+                    "a {robot} with system image {system} or later speaks version {number}: \
+                     connect with version {number}, which this driver also supports"
                 )
             );
         }
         assert_eq!(
             explanation(11),
-            "no robot with version 11 is known here; understood are 5 and 10; a newer release of \
-             this driver may speak it"
+            "this driver knows no robot with version 11; it supports 5 and 10; a newer release of \
+             this driver may support it"
         );
     }
 
@@ -180,7 +180,7 @@ mod tests {
         ));
         assert_eq!(
             error.explanation().to_string(),
-            "no Franka Hand with version 2 is known here; understood are 3"
+            "this driver knows no Franka Hand with version 2; it supports 3"
         );
     }
 }

@@ -234,17 +234,17 @@ impl From<Kind> for RobotKind {
 
 const EXAMPLES: &str = "\
 Examples:
-  franka-sim                                    a Franka Research 3 with a hand's server, on 1337 and 1338
+  franka-sim                                    a Franka Research 3 and the server of a Hand, on ports 1337 and 1338
   franka-sim --robot fer --hand --gripper-object-width 0.04
-                                                a Panda with its hand, and something to grasp
-  franka-sim --payload 0.5 --noise --seed 7     half a kilogram that no client has declared, and sensors
-                                                that are not perfect, the same way every time
-  franka-sim --arm-seed 3                       another arm that sticks, flexes, lags and drifts like a real one
-  franka-sim --arm ideal                        one that is as its model says, for tests that need exactness
-  franka-sim --robot fer --network fer-stalls   a Panda that sends its states as late as a Panda does
-  franka-sim --virtual-time                     seconds of motion in as little time as the client takes
+                                                a Panda with a Hand and an object to grasp
+  franka-sim --payload 0.5 --noise --seed 7     an undeclared load of 0.5 kg and sensor noise,
+                                                repeatable by the seed
+  franka-sim --arm-seed 3                       another arm with the friction, flexibility, lag and drift of a real arm
+  franka-sim --arm ideal                        an arm that matches its model exactly, for exact tests
+  franka-sim --robot fer --network fer-stalls   a Panda with the network delays of a real Panda
+  franka-sim --virtual-time                     virtual time: a motion takes only as long as the client computes
   franka-sim --enforce-comm-constraints=false   for a client in a debugger
-  franka-sim --port 0                           on free ports, which it prints";
+  franka-sim --port 0                           on free ports, printed at the start";
 
 #[cfg(test)]
 mod tests {

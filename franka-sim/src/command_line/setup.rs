@@ -67,7 +67,9 @@ impl Arguments {
     fn arm(&self, kind: RobotKind) -> Result<Arm, String> {
         let family = match self.arm.as_str() {
             "ideal" if self.arm_seed.is_some() => {
-                return Err("--arm-seed needs a family, --arm ideal is one arm".into());
+                return Err(
+                    "--arm-seed needs a family of arms, but --arm ideal is a single arm".into(),
+                );
             }
             "ideal" => return Ok(Arm::ideal(kind)),
             "nominal" => Family::nominal(),
@@ -137,12 +139,16 @@ impl Arguments {
             return Ok(None);
         };
         if let Kind::Fr3 = self.robot {
-            return Err("a model library needs --robot fer: an FR3 serves a description".into());
+            return Err(
+                "a model library needs --robot fer: an FR3 sends a description (URDF) \
+                instead"
+                    .into(),
+            );
         }
         let library = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
         if library.len() > LIBRARY_MAX {
             return Err(format!(
-                "{}: {} bytes are too long for a model library, at most {LIBRARY_MAX} expected",
+                "{}: the model library has {} bytes, expected {LIBRARY_MAX} at most",
                 path.display(),
                 library.len()
             ));
@@ -152,12 +158,15 @@ impl Arguments {
 
     fn with_plant(&self, sim: Sim) -> Result<Sim, String> {
         match self.plant {
-            PlantKind::Rigid if self.scene.is_some() => {
-                Err("a scene needs --plant mujoco: nothing is around a rigid arm".into())
-            }
+            PlantKind::Rigid if self.scene.is_some() => Err(
+                "a scene needs --plant mujoco: the default plant (physics engine) has no \
+                    objects around the arm"
+                    .into(),
+            ),
             PlantKind::Rigid => Ok(sim),
             PlantKind::Mujoco if self.hand && self.gripper_object_width.is_some() => Err(
-                "fingers in MuJoCo grasp what is in the scene: leave out --gripper-object-width"
+                "with --plant mujoco, the fingers grasp objects of the scene: leave out \
+                 --gripper-object-width"
                     .into(),
             ),
             PlantKind::Mujoco => self.with_mujoco(sim),

@@ -14,12 +14,12 @@ pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
         .map(|number| number.trim().parse::<f64>().map_err(|e| e.to_string()))
         .collect::<Result<Vec<_>, _>>()?;
     if !values.iter().all(|value| value.is_finite()) {
-        return Err("every number has to be finite".into());
+        return Err("expected finite numbers only".into());
     }
     let count = values.len();
     values
         .try_into()
-        .map_err(|_| format!("{N} numbers expected, {count} given"))
+        .map_err(|_| format!("got {count} numbers, expected {N}"))
 }
 
 /// The width of an object that fits between the fingers.
@@ -28,7 +28,7 @@ pub(crate) fn object_width(text: &str) -> Result<f64, String> {
     if Fingers::new().place_object(width) {
         Ok(width)
     } else {
-        Err(format!("between 0 and {} m fit", Fingers::STROKE))
+        Err(format!("expected 0 to {} m", Fingers::STROKE))
     }
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn object_width(text: &str) -> Result<f64, String> {
 pub(crate) fn factor(text: &str) -> Result<f64, String> {
     let [factor] = numbers::<1>(text)?;
     if factor <= 0.0 {
-        return Err("a factor is positive".into());
+        return Err("expected a factor above 0".into());
     }
     Ok(factor)
 }
@@ -45,7 +45,7 @@ pub(crate) fn factor(text: &str) -> Result<f64, String> {
 pub(crate) fn mass(text: &str) -> Result<f64, String> {
     let [mass] = numbers::<1>(text)?;
     if mass < 0.0 {
-        return Err("a mass is not negative".into());
+        return Err("expected a mass of 0 kg or more".into());
     }
     Ok(mass)
 }
@@ -55,6 +55,6 @@ pub(crate) fn patience(text: &str) -> Result<Duration, String> {
     let [seconds] = numbers::<1>(text)?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(patience) if patience >= Duration::from_millis(1) => Ok(patience),
-        _ => Err("at least 0.001 s expected".into()),
+        _ => Err("expected 0.001 s or more".into()),
     }
 }

@@ -80,7 +80,7 @@ impl Fingers {
     pub fn with_object(mut self, width: f64) -> Self {
         assert!(
             self.place_object(width),
-            "an object of {width} m does not fit"
+            "got an object of {width} m, which does not fit between the fingers"
         );
         self
     }

@@ -327,7 +327,7 @@ impl Sim {
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
         if self.virtual_time && self.patience.is_zero() {
-            let what = "virtual time with a patience of 0 s, expected more";
+            let what = "the patience of virtual time is 0 s, expected more than 0 s";
             return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         }
         let stalls = self.config.arm.as_ref().and_then(|arm| arm.stalls);

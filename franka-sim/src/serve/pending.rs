@@ -83,7 +83,10 @@ impl PendingConnections {
         if self.handles.len() >= MAX_PENDING
             && let Some(oldest) = self.handles.pop_front()
         {
-            tracing::warn!("{MAX_PENDING} connections to the {} say nothing", self.name);
+            tracing::warn!(
+                "{MAX_PENDING} connections to the {} have sent no message",
+                self.name
+            );
             oldest.abort();
         }
         // Without these options replies are slower, and a client that has lost its network stays
@@ -118,7 +121,7 @@ async fn handshake(
         }),
         Err(StreamEnd::Closed) => None,
         Err(StreamEnd::TooSlow) => {
-            tracing::warn!(%peer, "connection to the {name} closed: no message came");
+            tracing::warn!(%peer, "connection to the {name} closed: no message arrived");
             None
         }
     }

@@ -71,7 +71,7 @@ pub(super) async fn serve(
 /// After an orderly end, libfranka 0.21 waits indefinitely for its first answer.
 fn refuse(second: Handshake, name: &str) {
     let peer = second.peer;
-    tracing::warn!(%peer, "refused: the {name} has a client");
+    tracing::warn!(%peer, "refused: the {name} already has a client");
     if let Err(error) = second.stream.set_zero_linger() {
         tracing::debug!(%peer, %error, "an option of the connection");
     }
@@ -98,7 +98,7 @@ async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, 
         // If the thread has ended, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
-    tracing::info!(%peer, "client of the {name} gone");
+    tracing::info!(%peer, "client of the {name} disconnected");
 }
 
 /// Moves messages in both directions until either side is done.
@@ -126,7 +126,8 @@ async fn transfer(
                 }
                 Err(StreamEnd::Closed) => return,
                 Err(StreamEnd::TooSlow) => {
-                    tracing::warn!(%peer, "client of the {name} disconnected: half a message");
+                    tracing::warn!(%peer, "client of the {name} disconnected in the middle of a \
+                        message");
                     return;
                 }
             }

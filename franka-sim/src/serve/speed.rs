@@ -23,12 +23,13 @@ const BEHIND_MAX: Duration = Duration::from_millis(20);
 pub enum SpeedError {
     /// Robot time follows the wall clock.
     #[error(
-        "the simulated robot keeps to the clock on the wall: it was not started in virtual time"
+        "the simulated robot runs in wall-clock time, expected virtual time: start it with \
+         virtual time to change its speed"
     )]
     WallClock,
     /// The speed is not possible.
     #[error(
-        "a speed of {got} was asked for; possible are 0, a pause, and {} to {}",
+        "the speed is {got}, expected 0 (a pause) or {} to {}",
         Running::SPEED_MIN,
         Running::SPEED_MAX
     )]

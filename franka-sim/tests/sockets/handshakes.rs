@@ -74,8 +74,8 @@ fn silent_connections_keep_no_client_out_and_are_closed() {
             }
             assert!(begun.elapsed() < SOON, "it stays open");
         }
-        binary.assert_logged("connections to the robot say nothing");
-        binary.assert_logged("connection to the vacuum gripper closed: no message came");
+        binary.assert_logged("connections to the robot have sent no message");
+        binary.assert_logged("connection to the vacuum gripper closed: no message arrived");
     });
 }
 

@@ -40,7 +40,7 @@ fn a_second_client_is_refused_and_the_first_not_disturbed() {
             assert_eq!(garbage.read_to_end(), b"");
             drop(silent);
             assert_undisturbed(port, &mut first, &udp, 101);
-            binary.assert_logged(&format!("refused: the {} has a client", port.name));
+            binary.assert_logged(&format!("refused: the {} already has a client", port.name));
             drop(first);
             assert_served(binary);
         }

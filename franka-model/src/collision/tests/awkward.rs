@@ -109,7 +109,7 @@ fn a_tool_beyond_the_room_for_it_or_with_odd_numbers_is_refused() {
     let error = shape.with_tool(&[good; 9]).expect_err("one too many");
     assert_eq!(
         std::format!("{error}"),
-        "a tool of 9 capsules, expected at most 8"
+        "the tool has 9 capsules, expected 8 at most"
     );
     for bad in [
         Capsule {

@@ -58,7 +58,8 @@ fn faults_of_joints_are_told_with_what_was_found_and_expected() {
                 "name=\"joint8\" type=\"fixed\"",
                 "name=\"finger_joint1\" type=\"prismatic\"",
             ),
-            "joint finger_joint1 of type 'prismatic' is one too many, expected seven movable joints, joint1 to \
+            "got the additional joint finger_joint1 of type 'prismatic', expected seven movable \
+             joints, joint1 to \
              joint7",
         ),
         (
@@ -87,14 +88,14 @@ fn faults_of_joints_are_told_with_what_was_found_and_expected() {
         ),
         (
             with("<child link=\"link3\"/>", "<child link=\"link2\"/>"),
-            "link link2 is the child of the joints joint2 and joint3, expected one of them",
+            "link link2 is the child of two joints, joint2 and joint3, expected one",
         ),
         (
             with(
                 "<link name=\"base\"/>",
                 "<link name=\"base\"/><link name=\"stray\"/>",
             ),
-            "the links without a joint above are: base stray; expected one",
+            "got several links without a parent joint (base stray), expected exactly one",
         ),
         (
             with(
@@ -105,7 +106,7 @@ fn faults_of_joints_are_told_with_what_was_found_and_expected() {
                     fixed("y", "b", "a", "0 0 0", "0 0 0")
                 ),
             ),
-            "link a does not hang on base, expected every link to",
+            "no chain of joints connects link a to the root base, expected one for every link",
         ),
         (
             with("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/>"),
@@ -184,7 +185,9 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
                 "lower=\"-2.7501\" upper=\"2.7501\"",
                 "lower=\"2.7501\" upper=\"-2.7501\"",
             ),
-            "the limits of joint joint1 are 2.7501 to -2.7501 rad, expected the lower one first",
+            "joint joint1 has the lower limit 2.7501 rad and the upper limit -2.7501 rad, \
+             expected the lower limit below \
+             the upper limit",
         ),
         (
             with("upper=\"2.7501\"", "upper=\"nan\""),
@@ -200,8 +203,8 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
         ),
         (
             with("velocity_offset=\"0.3\"", "velocity_offset=\"-0.3\""),
-            "'velocity_offset' in <position_based_velocity_limits> for joint: joint1 is '-0.3', expected a number not \
-             below 0",
+            "'velocity_offset' in <position_based_velocity_limits> for joint: joint1 is '-0.3', \
+             expected a number of 0 or more",
         ),
         (
             with("deceleration_limit=\"6\"", "deceleration_limit=\"0.3\""),
@@ -213,13 +216,15 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
                 "lower=\"-2.7501\" upper=\"2.7501\"",
                 "lower=\"1.5\" upper=\"1.51\"",
             ),
-            "the limits of joint joint1 are 1.5 to 1.51 rad, a range of 0.0100 rad; expected 0.2150 rad or more, \
-             since margins are kept at both ends",
+            "the limits of joint joint1, 1.5 to 1.51 rad, span 0.0100 rad, expected 0.2150 rad or \
+             more: the driver keeps a \
+             margin at both ends",
         ),
         (
             with("velocity_offset=\"0.3\"", "velocity_offset=\"6\""),
-            "the limits of joint joint1 are -2.7501 to 2.7501 rad, a range of 5.5002 rad; expected 6.2000 rad or \
-             more, since margins are kept at both ends",
+            "the limits of joint joint1, -2.7501 to 2.7501 rad, span 5.5002 rad, expected 6.2000 \
+             rad or more: the driver \
+             keeps a margin at both ends",
         ),
     ] {
         assert_eq!(refused(&text).to_string(), message);

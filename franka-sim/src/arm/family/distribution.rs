@@ -99,10 +99,18 @@ impl Distribution {
                 }
                 Self::Normal { .. } if matches!(bounds, Bounds::Any) => {}
                 Self::Normal { .. } => {
-                    return invalid("normal, which has no bounds".into(), &"constant or uniform");
+                    return invalid(
+                        "a normal distribution, which has no bounds".into(),
+                        &"a \
+                        constant or uniform distribution",
+                    );
                 }
                 Self::Uniform { .. } if first > second => {
-                    return invalid(format!("low {first}, high {second}"), &"low up to high");
+                    return invalid(
+                        format!("low {first}, high {second}"),
+                        &"low at most as large \
+                        as high",
+                    );
                 }
                 Self::Constant(_) | Self::Uniform { .. } => {}
             }
@@ -122,7 +130,7 @@ impl Distribution {
             true => Err(FamilyError::Invalid {
                 field,
                 got: "seven numbers".into(),
-                expected: "one number: it is drawn once for an arm".into(),
+                expected: "one number for the whole arm".into(),
             }),
         }
     }

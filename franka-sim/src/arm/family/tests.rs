@@ -126,7 +126,7 @@ fn a_text_that_is_no_family_says_which_field_and_what_was_expected() {
         (
             "torque_lag",
             r#"{"constant": [0, 0, 0, 0, 0, 0, 0]}"#,
-            "torque_lag: seven numbers, expected one number",
+            "torque_lag: seven numbers, expected one number for the whole arm",
         ),
         (
             "stribeck_speed",
@@ -141,12 +141,13 @@ fn a_text_that_is_no_family_says_which_field_and_what_was_expected() {
         (
             "link_share",
             r#"{"uniform": {"low": 0.5, "high": 0.4}}"#,
-            "link_share: low 0.5, high 0.4, expected low up to high",
+            "link_share: low 0.5, high 0.4, expected low at most as large as high",
         ),
         (
             "static_friction",
             r#"{"normal": {"mean": 1, "rms": 0.1}}"#,
-            "static_friction: normal, which has no bounds, expected constant or uniform",
+            "static_friction: a normal distribution, which has no bounds, expected a constant or \
+             uniform distribution",
         ),
         (
             "torque_offset",

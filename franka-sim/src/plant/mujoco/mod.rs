@@ -128,7 +128,12 @@ impl MujocoArm {
         self.data = MjData::new(Box::new(model));
         self.data
             .set_state(&state, everything)
-            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
+            .unwrap_or_else(|error| {
+                panic!(
+                    "cannot read the scene again, perhaps its file has \
+                changed: {error}"
+                )
+            });
         self.data.forward();
     }
 

@@ -56,7 +56,7 @@ pub fn shared_world<const N: usize>(
     mounts: [Mount; N],
 ) -> Result<[SharedArm; N], SceneError> {
     if scene.has_hand() {
-        let text = "arms that share a world have no hands";
+        let text = "got an arm with a Hand in a shared world, expected arms without Hands";
         return Err(SceneError::Impossible(text.into()));
     }
     let arms: Vec<_> = mounts.into_iter().map(Standing::ideal).collect();
@@ -291,9 +291,12 @@ impl World {
             .unwrap_or_else(|error| panic!("the world with other arms: {error}"));
         let state = self.data.state(STATE);
         self.data = data;
-        self.data
-            .set_state(&state, STATE)
-            .unwrap_or_else(|error| panic!("the file of the scene has changed: {error}"));
+        self.data.set_state(&state, STATE).unwrap_or_else(|error| {
+            panic!(
+                "cannot read the scene again, perhaps its file has \
+                changed: {error}"
+            )
+        });
         self.data.forward();
         self.ahead = copy(&self.data);
         self.ahead_is_of = None;
