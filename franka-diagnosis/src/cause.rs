@@ -130,7 +130,7 @@ impl fmt::Display for Cause {
                 cycle,
             } => write!(
                 f,
-                "a first command {} away from the robot's own, {subject}, in cycle {cycle}",
+                "a first command {} away from the robot's own value, {subject}, in cycle {cycle}",
                 quantity.of(subject, offset),
             ),
             Self::FinishedMoving {
@@ -183,7 +183,7 @@ impl fmt::Display for Cause {
                     true => write!(f, "the answer to a state took up to {longest} ms"),
                     false => write!(
                         f,
-                        "it had states late, and answered each within {longest} ms"
+                        "states arrived late, and each was answered within {longest} ms"
                     ),
                 }
             }

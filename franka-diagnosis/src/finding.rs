@@ -351,7 +351,7 @@ impl fmt::Display for Finding {
                 let excess = self.excess().unwrap_or_default();
                 match self.times() {
                     _ if excess <= 0.0 && quantity == Quantity::LostCycles => {
-                        write!(f, ", as far as the log goes; limit {limit}")
+                        write!(f, ", within the log; limit {limit}")
                     }
                     _ if excess <= 0.0 => write!(f, ", at the limit of {limit}"),
                     Some(times) if times > 1.1 => {

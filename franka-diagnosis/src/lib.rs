@@ -248,29 +248,29 @@ impl fmt::Display for Diagnosis {
                 match before {
                     // The thread may have detected the stop much later.
                     _ if finding.quantity == Quantity::LostCycles => {}
-                    0 => write!(f, ", the last one")?,
-                    1 => write!(f, ", the one before the stop")?,
+                    0 => write!(f, ", the last cycle")?,
+                    1 => write!(f, ", the cycle before the stop")?,
                     cycles => write!(f, ", {cycles} cycles before the stop")?,
                 }
                 write!(f, " ({error})")?;
             }
             _ if self.cycles == 0 => write!(
                 f,
-                "{error}: no cycle of the motion is in the log, which would show why"
+                "{error}: the log has no cycle of the motion to explain it"
             )?,
             _ => write!(
                 f,
-                "{error}: not visible in the log of {} cycles",
+                "{error}: its cause is not visible in the log of {} cycles",
                 self.cycles
             )?,
         }
         for (i, cause) in self.causes.iter().take(CAUSES_SHOWN).enumerate() {
-            let lead = if i == 0 { "led up to by" } else { "and by" };
+            let lead = if i == 0 { "preceded by" } else { "and by" };
             write!(f, "\n{lead}: {cause}")?;
         }
         let others = self.others();
         if !others.is_empty() {
-            write!(f, "\nwith it:")?;
+            write!(f, "\nother errors:")?;
             for (i, other) in others.iter().enumerate() {
                 write!(f, "{} {other}", if i == 0 { "" } else { "," })?;
             }

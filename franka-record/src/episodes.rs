@@ -38,7 +38,7 @@ pub enum EpisodeError {
         got: String,
     },
     /// The task is empty.
-    #[error("episode {name:?} has an empty task, expected what is to be done, in words")]
+    #[error("episode {name:?} has an empty task, expected a description of the task in words")]
     Task {
         /// Its name.
         name: String,

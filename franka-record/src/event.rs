@@ -262,7 +262,10 @@ impl fmt::Display for EventKind {
             Self::Errors {
                 errors,
                 reflex_reason,
-            } => write!(f, "errors {errors}, of the last motion {reflex_reason}"),
+            } => write!(
+                f,
+                "errors: {errors}; errors of the last motion: {reflex_reason}"
+            ),
             Self::Request(request) => {
                 write!(f, "{}({})", request.name, request.arguments)?;
                 match &request.error {
@@ -278,10 +281,14 @@ impl fmt::Display for EventKind {
                 None => f.write_str("episode ends"),
             },
             Self::Note(note) => f.write_str(&note.text),
-            Self::Dropped { cycles } => write!(f, "{cycles} cycles not recorded: no room"),
+            Self::Dropped { cycles } => write!(
+                f,
+                "{cycles} cycles not recorded: the buffer was \
+                full"
+            ),
             Self::ClockStep { by } => write!(
                 f,
-                "the clock of this host was set: it is {:.3} s from recorded time",
+                "the clock of this computer was set: it differs from recorded time by {:.3} s",
                 *by as f64 * 1e-9
             ),
         }

@@ -144,7 +144,8 @@ async fn another_request_is_named_beside_the_recorded_one() {
     let error = report.expect_err("another request").to_string();
     assert_eq!(
         error,
-        "the client of the robot left the recording: got Automatic Error Recovery, expected Set Load"
+        "the client of the robot differs from the recording: got Automatic Error Recovery, \
+         expected Set Load"
     );
 }
 

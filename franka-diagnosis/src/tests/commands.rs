@@ -250,7 +250,7 @@ fn a_rotation_that_leaps_is_named_by_its_axis() {
             if (size - 0.3).abs() < 1e-9
     ));
     let text = diagnosis.to_string();
-    let with = "with it: cartesian_motion_generator_joint_acceleration_discontinuity";
+    let with = "other errors: cartesian_motion_generator_joint_acceleration_discontinuity";
     assert!(text.lines().any(|line| line == with), "{text}");
 }
 

@@ -76,7 +76,10 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
     let slow = told(1800, "the answer to a state took up to 1.8 ms");
     assert_eq!(slow, (Some(0), Advice::Host));
     // The states may have been delayed by the network.
-    let quick = told(45, "it had states late, and answered each within 0.045 ms");
+    let quick = told(
+        45,
+        "states arrived late, and each was answered within 0.045 ms",
+    );
     assert_eq!(quick, (Some(1), Advice::Network));
 }
 

@@ -12,7 +12,9 @@ use super::{Connection, Device, Payload, Side};
 #[non_exhaustive]
 pub enum Unplayable {
     /// Pieces of a stream were not recorded.
-    #[error("{missing} pieces of the {device}'s TCP streams were not recorded")]
+    #[error(
+        "{missing} pieces of the {device}'s TCP streams are missing, expected complete streams"
+    )]
     Missing {
         /// The device of the connection.
         device: Device,
@@ -20,7 +22,7 @@ pub enum Unplayable {
         missing: u64,
     },
     /// The client's stream cannot be cut into messages.
-    #[error("the client's stream to the {device} holds no messages: {error}")]
+    #[error("the client's stream to the {device} has no readable messages: {error}")]
     Framing {
         /// The device of the connection.
         device: Device,

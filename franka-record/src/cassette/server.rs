@@ -42,7 +42,10 @@ pub enum PlayError {
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
     /// A client opened a connection that the recording does not have.
-    #[error("a client opened connection {got} to the {device}, the recording has {recorded}")]
+    #[error(
+        "the client opened connection {got} to the {device}, expected {recorded} at most, as \
+        recorded"
+    )]
     Connection {
         /// The device.
         device: Device,
@@ -56,7 +59,8 @@ pub enum PlayError {
     Unplayable(#[from] Unplayable),
     /// No client connected, or it did not complete the recording.
     #[error(
-        "after {patience:?}, {played} of {recorded} connections have been played; next is {awaited}"
+        "{played} of {recorded} connections were played within {patience:?}, expected all; the \
+         next is {awaited}"
     )]
     Unfinished {
         /// The waiting time.
@@ -69,7 +73,7 @@ pub enum PlayError {
         awaited: String,
     },
     /// A socket failed.
-    #[error("cannot play: {0}")]
+    #[error("cannot play the cassette: {0}")]
     Io(#[from] io::Error),
 }
 

@@ -48,7 +48,8 @@ pub enum ControlLogError {
     },
     /// A table lacks a column.
     #[error(
-        "line {line}: got {got} columns without {missing:?}, expected those of franka::logToCSV"
+        "line {line}: got {got} columns without {missing:?}, expected the columns of \
+         franka::logToCSV"
     )]
     Column {
         /// The line of the file, from 1.
@@ -59,7 +60,7 @@ pub enum ControlLogError {
         missing: String,
     },
     /// A row has more or fewer cells than the table has columns.
-    #[error("line {line}, column {column}: got a row of {got} cells, expected {expected}{}", if *last { ": the file is cut there" } else { "" })]
+    #[error("line {line}, column {column}: got a row of {got} cells, expected {expected}{}", if *last { ": the file ends too early" } else { "" })]
     Row {
         /// The line of the file, from 1.
         line: u64,

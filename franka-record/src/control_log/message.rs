@@ -72,7 +72,7 @@ impl Reader<'_> {
 
     /// Reads `["joint_reflex", "cartesian_reflex"]`, possibly broken into lines by an e-mail.
     fn errors(&mut self) -> Result<Errors, ControlLogError> {
-        self.expect("[", "the list of errors, as [\"joint_reflex\"]")?;
+        self.expect("[", "a list of errors, such as [\"joint_reflex\"]")?;
         let mut errors = Errors::NONE;
         if self.takes("]") {
             return Ok(errors);
@@ -108,7 +108,7 @@ impl Reader<'_> {
         let rate = self.number("a success rate, 0 to 1")?;
         let mut lost = 0;
         if self.takes(LOST) {
-            lost = self.number("how many packets were lost")?;
+            lost = self.number("the number of lost packets")?;
         }
         Ok(Some(SuccessRate { rate, lost }))
     }

@@ -153,9 +153,9 @@ fn the_message_is_found_between_other_lines() {
 fn a_message_alone_is_explained() {
     let file = ControlLogFile::parse(MESSAGE).unwrap();
     let text = Explanation::of_control_log(&file, Model::fr3()).to_string();
-    let first = "no cycle of the motion is known\njoint_motion_generator_acceleration_disc";
+    let first = "the log has no cycle of the motion\njoint_motion_generator_acceleration_disc";
     assert!(text.starts_with(first), "{text}");
-    assert!(text.contains("with it: joint_reflex"), "{text}");
+    assert!(text.contains("other errors: joint_reflex"), "{text}");
     assert!(text.contains("success_rate: 0.98 packets lost"), "{text}");
     // The text of a user stop, not of a reflex.
     let stop = "terminate: libfranka: Move command aborted: User Stop pressed!";
@@ -209,11 +209,11 @@ fn what_is_wrong_with_a_file_has_its_line_and_column() {
         ),
         (
             cut(&table(), "\n1004,0.98,0.1"),
-            "line 6, column 4: got a row of 3 cells, expected 87: the file is cut there",
+            "line 6, column 4: got a row of 3 cells, expected 87: the file ends too early",
         ),
         (
             cut(&table(), "\n10"),
-            "line 2, column 2: got a row of 1 cells, expected 87: the file is cut there",
+            "line 2, column 2: got a row of 1 cells, expected 87: the file ends too early",
         ),
         (
             row("1002,0.98,", "1002,0.98,0,"),
@@ -221,7 +221,8 @@ fn what_is_wrong_with_a_file_has_its_line_and_column() {
         ),
         (
             row("state.dq[3]", "speed"),
-            "line 1: got 87 columns without \"state.dq[3]\", expected those of franka::logToCSV",
+            "line 1: got 87 columns without \"state.dq[3]\", expected the columns of \
+             franka::logToCSV",
         ),
         (
             format!("a note\n\n{}\n", lines[0]),

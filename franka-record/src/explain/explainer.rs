@@ -114,7 +114,7 @@ impl<'a> Explainer<'a> {
     fn take(&mut self, received: Option<HostTime>, state: &RobotState, record: Option<&Record>) {
         let time = state.message_id;
         if self.run.first.is_some() && time < self.run.last {
-            let text = format!("the robot was started again: its clock goes back to {time} ms");
+            let text = format!("the robot was restarted: its clock continues at {time} ms");
             self.run.note(text);
             let run = mem::take(&mut self.run);
             if run.ended.is_some() {
@@ -181,7 +181,7 @@ impl Run {
                     text = outcome.ending.to_string();
                 }
                 if outcome.ending == Ending::LinkLost {
-                    text += "\nlook at the cable, the switch, and whether the robot has power";
+                    text += "\ncheck the cable, the switch and the power of the robot";
                 }
                 self.end(Errors::NONE, text);
                 true

@@ -47,7 +47,11 @@ pub(super) fn draw(explanation: &Explanation) -> String {
     let speed = rounded(joints(|t| &t.speed).max(0.05));
     let torque = rounded(joints(|t| &t.torque).max(0.05));
     let panels = [
-        ("external torque, less the tare [N·m]", -external, external),
+        (
+            "external torque minus its value at rest [N·m]",
+            -external,
+            external,
+        ),
         (
             "external force at the end effector [N]",
             0.0,

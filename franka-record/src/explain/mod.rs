@@ -283,8 +283,8 @@ impl Explanation {
 }
 
 /// The cause for a table without the text of its exception.
-const UNNAMED: &str = "the file does not name the errors: they are in the text of the exception, \
-                       which may be pasted into it";
+const UNNAMED: &str = "the file does not name the errors: paste the text of the exception, which \
+    names them, into the file";
 
 /// Largest number of moments in a timeline.
 pub const MOMENTS_MAX: usize = 500;

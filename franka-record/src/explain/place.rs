@@ -125,20 +125,20 @@ fn said(unknown: Unknown) -> (Option<Placed>, String) {
     match unknown {
         Unknown::Weak { .. } => (
             None,
-            "no external torque beyond what an arm reads that nothing touches".to_owned(),
+            "the external torques are no larger than on an untouched arm".to_owned(),
         ),
         Unknown::Base { body, .. } => (
             None,
             format!(
-                "something touches {} or a link beside it: one or two joints show it, which tells \
-                 neither place nor force",
+                "something touches {} or a neighbouring link: only one or two joints show it, so \
+                 place and force are unknown",
                 name(body)
             ),
         ),
         Unknown::Tie { likeliest } => {
             let next = likeliest.next.map_or(String::new(), |(body, _)| name(body));
             let text = format!(
-                "{} and {next} explain the torques about as well",
+                "contacts at {} and at {next} explain the torques about equally well",
                 name(likeliest.body)
             );
             (Some(likeliest.into()), text)

@@ -10,8 +10,11 @@ impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.cycles == 0 {
             return match &self.cause {
-                Some(cause) => write!(f, "no cycle of the motion is known\n{}", cause.text),
-                None => write!(f, "no cycle: there is nothing to explain"),
+                Some(cause) => write!(f, "the log has no cycle of the motion\n{}", cause.text),
+                None => write!(
+                    f,
+                    "the recording has no cycles, so there is nothing to explain"
+                ),
             };
         }
         let seconds = (self.last - self.first) as f64 * 1e-3;
@@ -42,27 +45,24 @@ impl fmt::Display for Explanation {
             writeln!(f, "The last goal failed: {failed}")?;
         }
         if let Some(goal) = self.under_way {
-            writeln!(
-                f,
-                "Goal {goal} was under way: how it ended is not recorded."
-            )?;
+            writeln!(f, "Goal {goal} was running; its end is not recorded.")?;
         }
         match self.earlier {
             0 => {}
-            1 => writeln!(f, "(one motion was ended before)")?,
-            earlier => writeln!(f, "({earlier} motions were ended before)")?,
+            1 => writeln!(f, "(one motion ended earlier)")?,
+            earlier => writeln!(f, "({earlier} motions ended earlier)")?,
         }
         if let Some(place) = &self.contact
             && place.noticed
         {
-            writeln!(f, "\nWhat touched the arm")?;
+            writeln!(f, "\nContact with the arm")?;
             write!(f, "{place}")?;
         }
-        writeln!(f, "\nWhat happened, ms before the end")?;
+        writeln!(f, "\nTimeline, ms before the end")?;
         let shown = self.timeline.len().saturating_sub(SHOWN);
         let left_out = self.moments_left_out + shown as u64;
         if left_out > 0 {
-            writeln!(f, "  ({left_out} more are left out)")?;
+            writeln!(f, "  ({left_out} earlier entries are not shown)")?;
         }
         for moment in &self.timeline[shown..] {
             let before = self.end as i128 - i128::from(moment.time);
@@ -70,7 +70,7 @@ impl fmt::Display for Explanation {
             let text = moment.text.replace('\n', " ");
             writeln!(f, "  {:>8}  {text}", -before)?;
         }
-        writeln!(f, "\nNearest to a limit")?;
+        writeln!(f, "\nClosest approach to each limit")?;
         for (what, approach, unit) in [
             ("position", &self.margins.position, "rad"),
             ("velocity", &self.margins.velocity, "rad/s"),
@@ -99,7 +99,7 @@ impl fmt::Display for Explanation {
         } else {
             writeln!(
                 f,
-                "\n{} states lost, {} in the last second; most in a row {}, {}",
+                "\n{} states lost, {} in the last second; at most {} in a row, {}",
                 lost.states,
                 lost.in_last_second,
                 lost.most_in_a_row,
@@ -113,8 +113,8 @@ impl fmt::Display for Explanation {
         let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         writeln!(
             f,
-            "{} commands left after the next state was due, by {:.1} ms at most,\n  \
-             {} (its state was answered in {:.3} ms)",
+            "{} commands left after the next state was due, {:.1} ms late at most,\n  {} (the \
+             answer to that state took {:.3} ms)",
             late.commands,
             milliseconds(late.most),
             self.before(late.at),
@@ -138,7 +138,7 @@ impl Explanation {
             margin,
             time,
         } = *approach;
-        let passed = if margin < 0.0 { ", beyond it" } else { "" };
+        let passed = if margin < 0.0 { ", exceeded" } else { "" };
         let at = self.before(time);
         writeln!(
             f,
@@ -166,7 +166,7 @@ impl fmt::Display for Place {
             let [x, y, z] = contact.point;
             let [fx, fy, fz] = contact.force;
             let lead = if self.unknown.is_some() {
-                "likeliest: "
+                "most likely: "
             } else {
                 ""
             };
@@ -179,8 +179,8 @@ impl fmt::Display for Place {
             )?;
             writeln!(
                 f,
-                "  pushed by {:.1} N: {fx:.1}, {fy:.1}, {fz:.1} N\n  \
-                 (the robot's own estimates are what the arm exerts: opposite signs)",
+                "  force on the arm: {:.1} N ({fx:.1}, {fy:.1}, {fz:.1} N)\n  (the robot's own \
+                 estimates have opposite signs: the force that the arm exerts)",
                 contact.size()
             )?;
             if let Some((body, probability)) = contact.next
@@ -193,7 +193,7 @@ impl fmt::Display for Place {
             let tared = 1e3 * self.tared;
             writeln!(
                 f,
-                "  (this is rough: the arm was seen untouched for {tared:.0} ms only)"
+                "  (rough: the recording shows the arm untouched for only {tared:.0} ms)"
             )?;
         }
         Ok(())

@@ -118,7 +118,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
             100.0 * contact.probability,
             contact.size()
         ),
-        _ => "place of a contact not known".to_owned(),
+        _ => "place of the contact unknown".to_owned(),
     };
     group.append(text(left, below, &caption));
     group

@@ -164,7 +164,7 @@ fn a_contact_that_was_over_before_the_end_is_not_said_to_touch() {
     assert!(over.contains("contact of joint 2"), "{over}");
     assert!(!over.contains("touche"), "{over}");
     let lasting = text(500, 2001);
-    assert!(lasting.contains("What touched the arm"), "{lasting}");
+    assert!(lasting.contains("Contact with the arm"), "{lasting}");
     // A stop because of missing commands, without a contact.
     let silent = hit().into_iter().map(|mut state| {
         (state.joint_contact, state.joint_collision) = ([0.0; 7], [0.0; 7]);
@@ -185,7 +185,7 @@ fn a_stop_before_the_first_cycle_is_none_of_these() {
     assert_eq!((&explanation.cause, explanation.end), (&None, 3000));
     let text = explanation.to_string();
     assert!(
-        text.contains("has ended a motion before: [\"joint_reflex"),
+        text.contains("ended an earlier motion: [\"joint_reflex"),
         "{text}"
     );
 }
@@ -216,7 +216,7 @@ fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
         let earlier = explanation.earlier;
         (explanation.end, explanation.cycles, earlier, notes)
     };
-    let again = "the robot was started again: its clock goes back to 5 ms";
+    let again = "the robot was restarted: its clock continues at 5 ms";
     let notes = vec!["before".to_owned(), again.to_owned()];
     assert_eq!(explained(explainer.clone()), (2500, 3000, 0, notes));
     // The robot stops again.
@@ -331,8 +331,9 @@ fn events_tell_goals_and_the_diagnosis() {
     assert_eq!(error.joint, Some(3));
     assert!((error.value - 0.02).abs() < 1e-12);
     assert!(explanation.to_string().contains("a remark"));
-    let late = "8 commands left after the next state was due, by 29.5 ms at most,\n  2000 ms before the end \
-                (its state was answered in 30.250 ms)";
+    let late = "8 commands left after the next state was due, 29.5 ms late at most,\n  2000 ms \
+        before the end \
+                (the answer to that state took 30.250 ms)";
     assert!(explanation.to_string().contains(late), "{explanation}");
     // Without events, the goal is detected in the records.
     let explanation = Explanation::of(cycles, [], Model::fr3());

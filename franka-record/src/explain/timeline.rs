@@ -71,7 +71,7 @@ impl Timeline {
     pub(super) fn cycle(&mut self, state: &RobotState, record: Option<&Record>, lost: u64) {
         let time = state.message_id;
         if lost > 0 && appears(&mut self.last_loss, time) {
-            let text = format!("{lost} states lost before this one");
+            let text = format!("{lost} states lost before this state");
             self.add(time, MomentKind::Loss, text);
         }
         let is_first = self.mode.is_none();
@@ -93,7 +93,7 @@ impl Timeline {
             self.reflex_reason = state.reflex_reason;
             if !state.reflex_reason.is_empty() {
                 let what = if is_first {
-                    "the robot has ended a motion before"
+                    "the robot ended an earlier motion"
                 } else {
                     "the robot ends the motion"
                 };
@@ -104,7 +104,7 @@ impl Timeline {
         if self.errors != state.errors {
             self.errors = state.errors;
             let text = if state.errors.is_empty() {
-                "no error any more".to_owned()
+                "no errors left".to_owned()
             } else {
                 format!("errors {}", state.errors)
             };

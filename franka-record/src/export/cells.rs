@@ -10,7 +10,7 @@ pub struct Columns(pub(super) Vec<&'static Column>);
 
 /// No column has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("got the column {got:?}, expected some of {}", expected.join(", "))]
+#[error("got the column {got:?}, expected columns from {}", expected.join(", "))]
 pub struct UnknownColumn {
     /// The given name.
     pub got: String,
@@ -160,7 +160,7 @@ mod tests {
         let error = Columns::named(["q", "theta"]).unwrap_err();
         let text = error.to_string();
         assert!(
-            text.starts_with("got the column \"theta\", expected some of q, q_d,"),
+            text.starts_with("got the column \"theta\", expected columns from q, q_d,"),
             "{text}"
         );
     }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub enum ExportError {
     /// A file with this name exists. An export never replaces a file: choose another name, or
     /// delete the file first.
-    #[error("{} exists, and an export never replaces a file; choose another name", path.display())]
+    #[error("{} exists, and an export never replaces a file: choose another name", path.display())]
     Exists {
         /// The file.
         path: PathBuf,

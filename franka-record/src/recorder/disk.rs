@@ -131,7 +131,10 @@ impl Disk {
     pub(super) fn black_box(&self, directory: PathBuf, dump: black_box::Dump, keep: usize) {
         let length = dump.bytes.len();
         if mem::replace(&mut lock(&self.status).black_box_waits, true) {
-            let source = io::Error::other("the disk has not taken the one before");
+            let source = io::Error::other(
+                "the previous block is not written yet: the disk is too \
+                slow",
+            );
             return self.fail_black_box(RecordError::BlackBox {
                 path: directory.join(dump.name),
                 source: source.into(),
@@ -159,13 +162,13 @@ fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
     if status.error.is_none() {
         status.error = Some(error.clone());
         drop(status);
-        tracing::error!(%error, "the recording ends here; robots go on");
+        tracing::error!(%error, "the recording ends here; the robots continue");
     }
 }
 
 /// Records and logs why a black box could not be written; the newest reason is kept.
 fn fail_black_box(status: &Mutex<DiskStatus>, error: RecordError) {
-    tracing::error!(%error, "no black box of the incident");
+    tracing::error!(%error, "no black-box file was written for this incident");
     lock(status).black_box_error = Some(error);
 }
 

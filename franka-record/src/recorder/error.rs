@@ -10,13 +10,13 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum RecordError {
     /// A file with this name exists. A recording never overwrites a file: choose another name.
-    #[error("{} exists; a recording never overwrites a file", path.display())]
+    #[error("{} exists, and a recording never overwrites a file: choose another name", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
     },
     /// A file cannot be created.
-    #[error("cannot make {}: {source}", path.display())]
+    #[error("cannot create {}: {source}", path.display())]
     Create {
         /// The file.
         path: PathBuf,
@@ -44,13 +44,13 @@ pub enum RecordError {
     },
     /// The disk did not store everything within the time limit. The remaining data is written in
     /// the background.
-    #[error("the recording was not complete on the disk within {limit:?}")]
+    #[error("the recording is not completely written after {limit:?}: the disk is too slow")]
     Unfinished {
         /// The time limit.
         limit: Duration,
     },
     /// An option is out of its range.
-    #[error("{what} is {got}; expected {expected}")]
+    #[error("{what} is {got}, expected {expected}")]
     Option {
         /// Name of the option.
         what: &'static str,
@@ -60,7 +60,7 @@ pub enum RecordError {
         expected: &'static str,
     },
     /// A robot with this name is already recorded.
-    #[error("a robot called {name:?} is recorded already; give each a name of its own")]
+    #[error("a robot named {name:?} is already recorded, expected a different name for each robot")]
     SameName {
         /// The name.
         name: String,

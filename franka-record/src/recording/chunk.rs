@@ -26,10 +26,10 @@ impl Chunk {
             })
         };
         let Some(record) = bytes.read(offset, entry.length)? else {
-            return damaged("it goes beyond the end of the file");
+            return damaged("it extends beyond the end of the file");
         };
         let Some((op::CHUNK, body, _)) = wire::split(&record) else {
-            return damaged("it is no chunk");
+            return damaged("it is not a chunk");
         };
         let mut fields = Fields(body);
         let Some(header) = ChunkHeader::read(&mut fields) else {
@@ -55,7 +55,7 @@ impl Chunk {
             other => return damaged(&format!("its compression is called {other:?}")),
         };
         if records.len() as u64 != header.size {
-            return damaged("its data has another length than it says");
+            return damaged("the length of its data differs from its header");
         }
         if header.crc != 0 && crc32fast::hash(&records) != header.crc {
             return damaged("its checksum is wrong");

@@ -17,7 +17,7 @@ pub enum RecordingError {
         source: Arc<io::Error>,
     },
     /// The file is not an MCAP file.
-    #[error("not an MCAP file: it begins with {got:02x?}")]
+    #[error("not an MCAP file: got {got:02x?} at the begin, expected the magic bytes of MCAP")]
     NotMcap {
         /// The bytes at its beginning.
         got: Vec<u8>,
@@ -66,7 +66,9 @@ pub enum RecordingError {
         reason: String,
     },
     /// The recording contains no robot with this name.
-    #[error("no robot is called {name:?} in this recording; there are {robots:?}")]
+    #[error(
+        "got the robot name {name:?}, expected one of {robots:?}, the robots of this recording"
+    )]
     NoRobot {
         /// The requested name.
         name: String,

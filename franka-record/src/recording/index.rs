@@ -66,7 +66,7 @@ impl Index {
             return missing("it is too short");
         };
         let Some(footer) = bytes.read(start, FOOTER_LENGTH)? else {
-            return missing("it is cut while it is read");
+            return missing("the file became shorter during reading");
         };
         let Some((op::FOOTER, body, magic)) = wire::split(&footer) else {
             return missing("no footer");

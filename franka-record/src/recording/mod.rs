@@ -137,7 +137,7 @@ impl Recording {
         let is_whole = self.damage.is_none();
         Ok(match written {
             Some((_, library)) if library.starts_with(env!("CARGO_PKG_NAME")) => {
-                is_whole.then(|| "it describes no robot".to_owned())
+                is_whole.then(|| "it has no description of a robot".to_owned())
             }
             Some(("", library)) if !library.is_empty() => {
                 Some(format!("the file was written by {library:?}"))
@@ -145,7 +145,7 @@ impl Recording {
             Some((profile, library)) if !library.is_empty() => Some(format!(
                 "the file was written by {library:?} with the profile {profile:?}"
             )),
-            _ => is_whole.then(|| "the file does not say what wrote it".to_owned()),
+            _ => is_whole.then(|| "the file does not name the program that wrote it".to_owned()),
         })
     }
 

@@ -15,7 +15,7 @@ pub(super) const GAP_MAX: u64 = 50;
 #[non_exhaustive]
 pub enum ReplayError {
     /// The recording is of another kind of robot.
-    #[error("the recording is of {got:?}, expected {expected:?}")]
+    #[error("the recording is of a robot {got:?}, expected {expected:?}")]
     Kind {
         /// The recorded robot.
         got: RobotKind,
@@ -23,20 +23,24 @@ pub enum ReplayError {
         expected: RobotKind,
     },
     /// The speed is out of bounds.
-    #[error("speed {got}, expected {} to 1", ReplayOptions::SPEED_MIN)]
+    #[error(
+        "the speed factor is {got}, expected {} to 1",
+        ReplayOptions::SPEED_MIN
+    )]
     Speed {
         /// The given speed.
         got: f64,
     },
     /// The recording has fewer than two cycles.
-    #[error("{got} cycles, expected 2 or more")]
+    #[error("the recording has {got} cycles, expected 2 or more")]
     Short {
         /// Number of cycles.
         got: usize,
     },
     /// Cycles are missing, or not in order.
     #[error(
-        "cycle {to} ms follows {from} ms of the robot's clock, expected at most {GAP_MAX} ms between them"
+        "the recording has a gap from {from} to {to} ms of the robot's clock, expected {GAP_MAX} \
+         ms at most"
     )]
     Gap {
         /// `message_id` of the cycle before the gap.
@@ -52,8 +56,8 @@ pub enum ReplayError {
     },
     /// The joints were not under control.
     #[error(
-        "no commanded position at {time} ms (robot clock): engage the arm for the whole \
-         motion, or follow measured positions (the source `measured`)"
+        "the recording has no commanded position at {time} ms of the robot's clock: engage the \
+         arm for the whole motion, or replay measured positions (source `measured`)"
     )]
     Uncontrolled {
         /// `message_id` of the cycle.
@@ -61,7 +65,8 @@ pub enum ReplayError {
     },
     /// A joint would exceed its velocity limit.
     #[error(
-        "joint {joint} at {got:.3} rad/s, expected {most:.3} at most: replay at speed {speed:.2} or less"
+        "joint {joint} would move at {got:.3} rad/s, expected {most:.3} rad/s at most: replay at \
+         speed {speed:.2} or less"
     )]
     Fast {
         /// The joint, from 1.
@@ -74,7 +79,7 @@ pub enum ReplayError {
         speed: f64,
     },
     /// A target is outside the limits or out of reach.
-    #[error("{after:.3?} after the begin: {error}")]
+    #[error("{after:.3?} after the begin of the replay: {error}")]
     Target {
         /// The time in the replay.
         after: Duration,
@@ -82,7 +87,7 @@ pub enum ReplayError {
         error: GoalError,
     },
     /// Targets do not form a motion.
-    #[error("{after:.3?} after the begin: {error}")]
+    #[error("{after:.3?} after the begin of the replay: {error}")]
     Chunk {
         /// The time in the replay.
         after: Duration,

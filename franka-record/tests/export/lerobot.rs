@@ -239,7 +239,7 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     let mut add = |samples: Vec<Sample>| refused(dataset.add_episode("pick", None, samples));
     assert_eq!(
         add(vec![]),
-        "episode 0 of the dataset, with the task \"pick\": there is no cycle in it"
+        "episode 0 of the dataset, with the task \"pick\": it has no cycles"
     );
     let gap = (0..10).chain(100..200).map(sample).collect();
     assert!(add(gap).contains("no cycle for 91 ms after 5009 ms"));
@@ -289,7 +289,7 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     fs::copy(data.join("file-000.parquet"), data.join("file-001.parquet")).unwrap();
     let error = Dataset::open(&root, measured).unwrap_err().to_string();
     assert!(
-        error.contains("the files in data have 4 rows, but meta/info.json says 2"),
+        error.contains("the files in data have 4 rows, expected 2 as in meta/info.json"),
         "{error}"
     );
 }

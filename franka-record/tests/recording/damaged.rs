@@ -300,9 +300,12 @@ fn mcap_files_of_other_programs_are_no_recordings() {
     let recovered = scratch.path("recovered.mcap");
     Recording::recover(&path, &recovered).unwrap();
     let text = refused(&recovered);
-    assert!(text.contains("describes no robot"), "{text}");
+    assert!(text.contains("no description of a robot"), "{text}");
     let text = refused(&bag("", ""));
-    assert!(text.contains("does not say what wrote it"), "{text}");
+    assert!(
+        text.contains("does not name the program that wrote it"),
+        "{text}"
+    );
     // A very long name is not shown.
     let text = refused(&bag(&"long ".repeat(1000), ""));
     assert!(text.len() < 200, "{text}");

@@ -22,17 +22,21 @@ pub enum CassetteError {
     #[error("cannot write the MCAP file: {0}")]
     Mcap(#[from] mcap::McapError),
     /// The file is MCAP, but not a cassette.
-    #[error("not a cassette: no metadata record `{START}` before the first message")]
+    #[error(
+        "not a cassette (recorded session): expected the metadata record `{START}` before the \
+        first message"
+    )]
     NotACassette,
     /// The file has a later version of the format.
-    #[error("the cassette has version {got:?} of the format, and this program reads {VERSION}")]
+    #[error("the cassette has version {got:?} of the format, expected {VERSION}")]
     Version {
         /// The version in the file.
         got: String,
     },
     /// A channel that cassettes do not have.
     #[error(
-        "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or /udp/.."
+        "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or the \
+         same below /udp"
     )]
     Channel {
         /// The name of the channel.

@@ -28,7 +28,7 @@ pub enum CaptureError {
     },
     /// The capture contains no connection of a client.
     #[error(
-        "none of {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339{}",
+        "got {packets} packets, expected some of a connection to TCP port 1337, 1338 or 1339{}",
         captured_in_part(*truncated)
     )]
     NoConnection {
@@ -76,7 +76,7 @@ pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
 fn captured_in_part(packets: u64) -> String {
     match packets {
         0 => String::new(),
-        packets => format!("; {packets} of them were captured in part only (a snap length)"),
+        packets => format!("; {packets} packets were captured only in part (snap length)"),
     }
 }
 

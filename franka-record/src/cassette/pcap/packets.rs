@@ -67,7 +67,7 @@ impl<'a> Packets<'a> {
         let reader = create_reader(capacity, Cursor::new(file));
         let reader = reader.map_err(|error| CaptureError::Format {
             what: match compression(file) {
-                Some(name) => format!("it is compressed by {name}, decompress it first"),
+                Some(name) => format!("the file is compressed by {name}: decompress it first"),
                 None => describe(&error),
             },
         })?;
@@ -271,9 +271,9 @@ fn body(link: Linktype, data: &[u8], fragments: &mut IpDefragPool<(), ()>) -> Op
 fn describe(error: &PcapError<&[u8]>) -> String {
     match error {
         PcapError::Incomplete(_) | PcapError::UnexpectedEof | PcapError::Eof => {
-            "it ends in the middle of a record".to_owned()
+            "the file ends in the middle of a record".to_owned()
         }
-        PcapError::HeaderNotRecognized => "it begins like neither".to_owned(),
+        PcapError::HeaderNotRecognized => "the file begins like neither format".to_owned(),
         error => format!("{error:?}").chars().take(ERROR_LENGTH).collect(),
     }
 }

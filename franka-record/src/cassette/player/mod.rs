@@ -25,7 +25,7 @@ pub enum Output {
 
 /// A client deviated from the recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the client of the {device} left the recording: got {got}, expected {expected}")]
+#[error("the client of the {device} differs from the recording: got {got}, expected {expected}")]
 pub struct Mismatch {
     /// The device of the connection.
     pub device: Device,
@@ -303,7 +303,7 @@ impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} requests and {} commands came, {} states sent, {} of them held",
+            "received {} requests and {} commands, sent {} states, held back {} of them",
             self.requests, self.commands, self.states, self.held
         )
     }

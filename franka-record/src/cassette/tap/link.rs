@@ -60,7 +60,7 @@ pub(super) fn serve(
     let mut refused = lane(Side::Robot, true);
     if let Err(error) = forward(&client, route, &lane, stop) {
         let Route { device, robot, .. } = route;
-        tracing::warn!("a client was turned away: no {device} at {robot}: {error}");
+        tracing::warn!("refused a client: no {device} at {robot}: {error}");
         refused.note(refused.now(), Payload::End);
     }
     // The socket may be closed already.

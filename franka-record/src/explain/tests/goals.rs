@@ -69,12 +69,12 @@ fn a_guard_and_a_lost_link_end_a_motion_as_the_robot_does() {
         text.contains("Why the motion ended at 4000 ms (1970-01-01T00:00:04.000Z)"),
         "{text}"
     );
-    assert!(text.contains("one motion was ended before"), "{text}");
+    assert!(text.contains("one motion ended earlier"), "{text}");
     assert!(
         text.contains("   -1500  the robot ends the motion"),
         "{text}"
     );
-    let lost = "link-lost\nlook at the cable, the switch, and whether the robot has power";
+    let lost = "link-lost\ncheck the cable, the switch and the power of the robot";
     assert_eq!(told(&of(6400)), (6000, 2, true, lost.to_owned()));
 }
 

@@ -91,7 +91,7 @@ fn resampled(
     fps: u16,
 ) -> Result<(Vec<Sample>, Sample), String> {
     let mut samples = samples.into_iter();
-    let first = samples.next().ok_or("there is no cycle in it")?;
+    let first = samples.next().ok_or("it has no cycles")?;
     let period = 1000.0 / f64::from(fps);
     let due = |frame: usize| period * frame as f64;
     let (mut frames, mut before) = (vec![first], first);
@@ -102,13 +102,16 @@ fn resampled(
             .filter(|step| *step > 0);
         let step = step.ok_or_else(|| {
             let (from, to) = (before.time, sample.time);
-            format!("its time goes from {from} ms back to {to} ms of the robot's clock")
+            format!(
+                "the robot's clock goes back from {from} ms to {to} ms, expected increasing \
+                times"
+            )
         })?;
         if step as f64 > period.max(GAP_MIN) {
             let at = before.time;
             return Err(format!(
-                "there is no cycle for {step} ms after {at} ms of the robot's clock, \
-                 expected gaps of {:.0} ms at most",
+                "got no cycle for {step} ms after {at} ms of the robot's clock, expected gaps of \
+                 {:.0} ms at most",
                 period.max(GAP_MIN)
             ));
         }
@@ -124,8 +127,7 @@ fn resampled(
 }
 
 /// Text for an episode without widths in a dataset with a gripper.
-const NO_WIDTH: &str =
-    "it has cycles before the first state of a Hand, whose width the dataset has";
+const NO_WIDTH: &str = "its first cycles have no state of the Hand, expected one for each cycle, since the dataset has the width of a gripper";
 
 /// Longest gap between cycles that is filled at any rate, `[ms]`: the robot itself tolerates this
 /// number of lost states.

@@ -188,7 +188,7 @@ fn difference(got: &Value, gripper: bool) -> Option<String> {
     }
     // The remainder may contain other keys, as in the features of videos.
     if differences.is_empty() {
-        differences.push("their features have further properties".into());
+        differences.push("the features have other properties".into());
     }
     Some(format!(
         "its features differ: {}; export to a folder of its own",

@@ -126,7 +126,7 @@ impl Dataset {
             let entry = entry.map_err(ExportError::at(&root))?;
             return Err(ExportError::Dataset {
                 why: format!(
-                    "there is {:?} in it already, expected an empty folder, or none",
+                    "the folder contains {:?}, expected an empty or new folder",
                     entry.file_name()
                 ),
                 path: root,
@@ -161,8 +161,8 @@ impl Dataset {
             let (rows, next) = episodes::files_in(&root.join(folder))?;
             if rows != expected {
                 let why = format!(
-                    "the files in {folder} have {rows} rows, but meta/info.json says {expected}: \
-                     another program was interrupted, or is writing to it"
+                    "the files in {folder} have {rows} rows, expected {expected} as in \
+                     meta/info.json: another export was interrupted, or is running"
                 );
                 return Err(ExportError::Dataset { path: root, why });
             }
@@ -220,7 +220,7 @@ impl Dataset {
             why,
         };
         if task.trim().is_empty() {
-            return Err(refused("a task needs a text".into()));
+            return Err(refused("the task is empty, expected a text".into()));
         }
         let DatasetOptions {
             fps,
@@ -279,7 +279,7 @@ impl Dataset {
     /// [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`].
     pub fn finish(mut self) -> Result<(), ExportError> {
         if self.contents.episodes == 0 {
-            let why = "no episode was added, and a dataset needs one".to_owned();
+            let why = "got no episodes, expected at least one".to_owned();
             let path = self.root.clone();
             return Err(ExportError::Dataset { path, why });
         }

@@ -36,7 +36,7 @@ impl Staging {
         let lock = match lock.try_lock() {
             Ok(()) => Some(lock),
             Err(TryLockError::WouldBlock) => {
-                let why = "another export to it is under way".to_owned();
+                let why = "another export to this folder is running".to_owned();
                 let path = root.to_owned();
                 return Err(ExportError::Dataset { path, why });
             }
