@@ -12,19 +12,20 @@ pub fn at_rest(state: &RobotState, has_hand: bool, purpose: Purpose) -> Vec<Find
     let mode_wanted = About::robot(
         "robot.mode",
         "idle",
-        "A robot takes a motion while it rests, with open brakes and the user stop released.",
+        "A robot accepts motions only at rest, with open brakes and the user stop released.",
         "vendor: FCI documentation, robot modes",
     );
     let errors_wanted = About::robot(
         "robot.errors",
         "none",
-        "A robot that has stopped itself takes no motion before it is recovered.",
+        "A robot that has stopped itself refuses motions until it is recovered.",
         "vendor: FCI documentation, errors",
     );
     let load_wanted = About::robot(
         "robot.load",
-        "what is mounted is declared: 0.73 kg for a Franka Hand",
-        "The robot compensates the weight that was declared; a wrong one pulls the arm, and is felt as a force.",
+        "the declared mass matches the mounted end effector: 0.73 kg for a Franka Hand",
+        "The robot compensates the declared weight. A wrong weight pulls the arm and appears as \
+         an external force.",
         "vendor: FCI documentation, end effector; 0.73 kg: Desk's own value for the Hand",
     );
     vec![
@@ -37,7 +38,7 @@ pub fn at_rest(state: &RobotState, has_hand: bool, purpose: Purpose) -> Vec<Find
 fn mode(state: &RobotState) -> Judged {
     match state.robot_mode {
         RobotMode::Idle => Judged::good("idle"),
-        RobotMode::Move => Judged::info("in motion, and not by this program"),
+        RobotMode::Move => Judged::info("in motion, started by another program"),
         RobotMode::Guiding => Judged::info("guided by hand"),
         RobotMode::AutomaticErrorRecovery => Judged::info("being recovered"),
         RobotMode::Reflex => {
@@ -46,7 +47,10 @@ fn mode(state: &RobotState) -> Judged {
         RobotMode::UserStopped => {
             Judged::warning("the user stop is pressed, or a safety function is active")
         }
-        RobotMode::Other => Judged::warning("not ready: the brakes are closed, or it is starting"),
+        RobotMode::Other => Judged::warning(
+            "not ready: the brakes are closed, or the robot is \
+            starting",
+        ),
     }
 }
 

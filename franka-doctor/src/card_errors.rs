@@ -55,7 +55,7 @@ pub(crate) fn meanwhile(
         group: Group::NetworkCard,
         matters: Matters::Reading,
         wanted: "none while wake-ups and round trips are measured",
-        why: "Old errors may be those of another cable; these are not.",
+        why: "Earlier errors may come from another cable; errors during the measurement do not.",
         source: "general knowledge of network cards",
     };
     about.finding(judged, purpose)

@@ -57,8 +57,9 @@ pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
         id: "timing.dry_run",
         group: Group::Timing,
         matters: Matters::Moving,
-        wanted: "every answer within 1 ms, 99 % of them within 0.8 ms; 1 % late or an early end a failure",
-        why: "The driver's own loop with its sockets; only the network card and the robot are missing.",
+        wanted: "every answer within 1 ms, 99 % within 0.8 ms; a failure if 1 % are late or the \
+            run ends early",
+        why: "This runs the driver's own loop and sockets, without the network card and the robot.",
         source: "thresholds: this project's, from the millisecond of a cycle",
     };
     about.finding(Ok(judge(run)), purpose)
@@ -82,7 +83,7 @@ fn judge(run: &DryRun) -> Judged {
     );
     if run.pauses > 0 {
         read += &format!(
-            "; the simulated robot was held up {}, which does not count",
+            "; the simulated robot was late {}, which does not count",
             counted(run.pauses, "time")
         );
     }
@@ -96,10 +97,10 @@ fn judge(run: &DryRun) -> Judged {
         Judged::info(read)
     } else if run.priority.is_none() {
         Judged::info(format!(
-            "{read}; says little, as any other program may delay the loop"
+            "{read}; not conclusive, since other programs may delay the loop"
         ))
     } else if count < ANSWERS_MIN {
-        Judged::info(format!("{read}; too few to call it good"))
+        Judged::info(format!("{read}; too few for a verdict"))
     } else {
         Judged::good(read)
     }
@@ -203,7 +204,8 @@ mod tests {
         assert_eq!(finding.verdict, Warning);
         assert_eq!(
             finding.read,
-            "10000 states answered under SCHED_FIFO 99: p50 100, p99 100, max 1001 us; 100 later than 1 ms; the simulated robot was held up 2 times, which does not count"
+            "10000 states answered under SCHED_FIFO 99: p50 100, p99 100, max 1001 us; 100 later \
+             than 1 ms; the simulated robot was late 2 times, which does not count"
         );
     }
 }

@@ -48,7 +48,7 @@ pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     let speaks = About::robot(
         "robot.version",
         "version 10 (Franka Research 3, system 5.9.0 or later) or 5 (Franka Emika Robot, system 4.2.1 or later)",
-        "The robot's system decides which version of the protocol it speaks; others are refused.",
+        "The robot's system determines its protocol version; the robot refuses other versions.",
         "vendor: table of compatible versions, libfranka 0.21",
     );
     let is_free = About::robot(
@@ -75,11 +75,11 @@ fn version(answers: &[Answer]) -> Judged {
     };
     let Some(device) = Version::field(number) else {
         return Judged::failure(format!(
-            "version {number}, which no robot has that is known here"
+            "version {number}, which this driver does not support"
         ));
     };
     let read = format!(
-        "version {number}, that of a {} with system {}",
+        "version {number}, for a {} with system {}",
         device.name, device.system
     );
     match device.update {
@@ -237,7 +237,7 @@ mod tests {
         let (verdicts, [version, _]) = judged(&[refusal(11)], Purpose::Read);
         assert_eq!(verdicts[0], Verdict::Failure);
         assert!(
-            version.starts_with("version 11, which no robot"),
+            version.starts_with("version 11, which this driver does not support"),
             "{version}"
         );
         for version in Version::ALL {

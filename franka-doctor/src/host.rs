@@ -138,7 +138,7 @@ impl Unread {
 impl fmt::Display for Unread {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Absent(what) => write!(f, "{what} is not there"),
+            Self::Absent(what) => write!(f, "{what} does not exist"),
             Self::Denied(what) => write!(f, "{what} needs root"),
             Self::Failed(what, why) => write!(f, "{what}: {why}"),
         }

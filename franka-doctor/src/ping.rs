@@ -11,8 +11,9 @@ use crate::timing::quantile;
 pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.ping",
-        "p50 below 0.3 ms, p99 below 0.4, max below 0.6, none lost; p50 above 0.4 ms a warning, p50 above 0.8 or any lost a failure",
-        "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+        "p50 below 0.3 ms, p99 below 0.4 ms, max below 0.6 ms, none lost; a warning if p50 is \
+         above 0.4 ms, a failure if p50 is above 0.8 ms or any is lost",
+        "The round trip, the work of this computer and the robot's own step must fit into 1 ms.",
         "vendor: FCI documentation, network test with 1200 bytes each millisecond; libfranka issue 174: 0.3 to 0.4 ms at most",
     );
     about.finding(measured.map(judge), purpose)
@@ -22,7 +23,8 @@ fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
     times.sort_unstable();
     let Some(&max) = times.last() else {
         return Judged::unknown(format!(
-            "unknown: none of {sent} echo requests was answered: no such computer, or they are blocked"
+            "unknown: none of {sent} echo requests was answered: the computer does not exist, or \
+             a firewall blocks them"
         ));
     };
     let (p50, p99) = (quantile(&times, 0.5), quantile(&times, 0.99));
@@ -42,7 +44,7 @@ fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
     } else if p50 >= us(300) || p99 >= us(400) || max >= us(600) {
         Judged::info(read)
     } else if sent < SENT_MIN {
-        Judged::info(format!("{read}; too few to call it good"))
+        Judged::info(format!("{read}; too few for a verdict"))
     } else {
         Judged::good(read)
     }

@@ -58,11 +58,14 @@ impl Port {
             Ok(()) => Judged::good(format!("{what} answers on port {number}")),
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused && self.always => {
                 Judged::failure(format!(
-                    "port {number} is refused: FCI is not active or not installed (Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.)"
+                    "port {number} refuses connections: FCI is not active or not installed \
+                     (Connection to FCI refused. Please install FCI feature or enable FCI mode in \
+                     Desk.)"
                 ))
             }
             Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {
-                Judged::info(format!("port {number} is refused: not {what}, or not active"))
+                Judged::info(format!("port {number} refuses connections: {what} is missing or not \
+                    active"))
             }
             Err(error) if self.always => Judged::failure(format!(
                 "port {number}: {error}: wrong address, cable unplugged, or a firewall (Connection timeout. Please check your network connection or settings.)"
@@ -74,9 +77,9 @@ impl Port {
             self.id,
             match self.always {
                 true => "open within 1 s",
-                false => "open within 1 s, if there is such an end effector",
+                false => "open within 1 s, if this end effector is mounted",
             },
-            "Commands go over this connection; it is open while FCI is active.",
+            "Commands use this connection, which is open while FCI is active.",
             "vendor: FCI documentation and the texts of libfranka",
         );
         about.finding(Ok(judged), purpose)

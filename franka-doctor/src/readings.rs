@@ -167,7 +167,7 @@ impl<'a> Readings<'a> {
             return Ok(Route::own_host(own));
         }
         Route::find(&self.text("/proc/net/route")?, robot, own)
-            .ok_or_else(|| Unread::Absent(format!("a way to {robot} in /proc/net/route")))
+            .ok_or_else(|| Unread::Absent(format!("a route to {robot} in /proc/net/route")))
     }
 
     /// Returns the network interface on the route to the robot.

@@ -91,7 +91,7 @@ impl Report {
                     };
                     match named.iter().find(|(command, _)| *command == fix.command) {
                         Some((_, id)) => {
-                            let _ = writeln!(text, "        fix{then}: that of {id}");
+                            let _ = writeln!(text, "        fix{then}: as for {id}");
                         }
                         // On one line, for copying.
                         None => {
@@ -104,7 +104,7 @@ impl Report {
         }
         let _ = writeln!(
             text,
-            "{} good, {} to know, {}, {}, {} unknown, for {}",
+            "{} good, {} for information, {}, {}, {} unknown, for {}",
             self.count(Verdict::Good),
             self.count(Verdict::Info),
             counted(self.count(Verdict::Warning), "warning"),

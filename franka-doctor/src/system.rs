@@ -85,7 +85,7 @@ impl Host for System {
     }
 
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread> {
-        let what = || format!("the way to {robot}");
+        let what = || format!("the route to {robot}");
         // Connecting a UDP socket determines the route and sends nothing. The port does not matter.
         let local = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
             .and_then(|socket| socket.connect((robot, 1337)).map(|()| socket))

@@ -12,9 +12,11 @@ pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> 
         id: "timing.wake_up",
         group: Group::Timing,
         matters: Matters::Moving,
-        wanted: "every wake-up within 100 us; 300 us is usable, more a warning, 500 us a failure",
-        why: "The control thread is late by that much, of the millisecond that a cycle has.",
-        source: "below 100 us: RMP asks for 125 us at 1 kHz; the rest: this project's, from the millisecond of a cycle",
+        wanted: "every wake-up within 100 us; usable up to 300 us, a warning above, a failure \
+            above 500 us",
+        why: "The control thread starts late by this time, out of the 1 ms of a cycle.",
+        source: "100 us: RMP requires 125 us at 1 kHz; the others: this project's, from the 1 ms \
+            of a cycle",
     };
     let judge = |latencies| judge(&latencies, "wake-ups", [100, 300, 500]);
     about.finding(measured.map(judge), purpose)
@@ -27,9 +29,11 @@ pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) ->
         id: "timing.loopback",
         group: Group::Timing,
         matters: Matters::Moving,
-        wanted: "every echo within 200 us; 500 us is usable, more a warning, 1 ms a failure",
-        why: "What sockets and the waking of a thread take here, a cycle has not for its own work.",
-        source: "200 us: two wake-ups of 100 us; 500 us: vendor: FCI documentation, from a state to its command; 1 ms: that of a cycle",
+        wanted: "every echo within 200 us; usable up to 500 us, a warning above, a failure above \
+            1 ms",
+        why: "Time for sockets and thread wake-up is missing for the work of a cycle.",
+        source: "200 us: two wake-ups of 100 us; 500 us: vendor: FCI documentation, from a state \
+            to its command; 1 ms: the time of a cycle",
     };
     let judge = |latencies| judge(&latencies, "echoes of datagrams", [200, 500, 1000]);
     about.finding(measured.map(judge), purpose)
@@ -68,10 +72,10 @@ fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
         Judged::info(read)
     } else if latencies.priority.is_none() {
         Judged::info(format!(
-            "{read}; says little, as any other program may delay the thread"
+            "{read}; not conclusive, since other programs may delay the thread"
         ))
     } else if latencies.count() < LATENCIES_MIN {
-        Judged::info(format!("{read}; too few to call it good"))
+        Judged::info(format!("{read}; too few for a verdict"))
     } else {
         Judged::good(read)
     }
@@ -100,7 +104,7 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     let few = states.len() < STATES_MIN;
     let losses = match (lost, few) {
         _ if states.is_empty() => Judged::unknown("unknown: no states"),
-        (0, true) => Judged::info(format!("0 of {sent} lost; too few to call it good")),
+        (0, true) => Judged::info(format!("0 of {sent} lost; too few for a verdict")),
         (0, false) => Judged::good(format!("0 of {sent} lost")),
         _ => {
             let read = format!("{lost} of {sent} lost, at most {longest} in a row");
@@ -112,12 +116,12 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     };
     let quantile = |part| quantile(&intervals, part).as_secs_f64() * 1e3;
     let punctuality = match intervals.last() {
-        None => Judged::unknown("unknown: no two states in a row"),
+        None => Judged::unknown("unknown: no consecutive states"),
         Some(max) => {
             let (p99, max) = (quantile(0.99), max.as_secs_f64() * 1e3);
             let read = format!("p50 {:.3}, p99 {p99:.3}, max {max:.3} ms", quantile(0.5));
             match p99 < 1.1 && max < 1.5 {
-                true if few => Judged::info(format!("{read}; too few to call it good")),
+                true if few => Judged::info(format!("{read}; too few for a verdict")),
                 true => Judged::good(read),
                 false => Judged::warning(read),
             }
@@ -125,14 +129,14 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     };
     let lost = About::robot(
         "robot.lost",
-        "0 of 10000 lost; failure above 20 in a row, or above 1 %",
-        "After 20 packets missing in a row the robot ends the motion.",
+        "0 of 10000 lost; a failure above 20 in a row, or above 1 %",
+        "The robot ends a motion after 20 missing packets in a row.",
         "vendor: FCI documentation, communication_constraints_violation; 1 %: this project's",
     );
     let interval = About::robot(
         "robot.interval",
         "p99 below 1.1 ms, max below 1.5 ms",
-        "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+        "The round trip, the work of this computer and the robot's own step must fit into 1 ms.",
         "vendor: FCI documentation, network; thresholds: this project's",
     );
     vec![
@@ -149,13 +153,14 @@ pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
         group: Group::NetworkCard,
         matters: Matters::Reading,
         wanted: "states of the robot arrive (UDP)",
-        why: "The robot sends its states to a port that this computer chooses; a firewall lets them in, or not.",
+        why: "The robot sends its states to a port that this computer chooses. A firewall may \
+            block them.",
         source: "vendor: FCI documentation, troubleshooting: `UDP receive: Timeout` means a firewall",
     };
     let judged = match states_arrive {
         Some(true) => Judged::good("states arrive"),
         Some(false) => Judged::failure(
-            "the robot has opened a session, but no state of it arrives: `UDP receive: Timeout`",
+            "the robot opened a session, but its states do not arrive: `UDP receive: Timeout`",
         )
         .fix(Needs::Nothing, "sudo nft list ruleset || sudo iptables -L"),
         None => Judged::unknown("unknown: no session with a robot"),

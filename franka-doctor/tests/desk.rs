@@ -135,7 +135,9 @@ fn what_is_no_desk_is_unknown() {
     let refused = web(&ask_desk(address), Purpose::Move);
     assert_eq!(refused.verdict, Verdict::Unknown, "{refused:?}");
     assert!(
-        refused.read.contains(&format!("no Desk at {address}")),
+        refused
+            .read
+            .contains(&format!("cannot reach Desk at {address}")),
         "{refused:?}"
     );
     let elsewhere = |_: &str| (302, "{}");

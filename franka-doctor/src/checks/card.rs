@@ -11,7 +11,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.driver",
         wanted: "igb, igc, e1000e or ixgbe",
-        why: "Realtek cards are suspected of delays of 3 ms; an Intel i350 of its own is advised.",
+        why: "Realtek cards are suspected of delays of 3 ms; a separate Intel i350 card is \
+            recommended.",
         source: "libfranka issue 205",
         judge: driver,
         ..NETWORK
@@ -26,8 +27,8 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "nic.coalesce",
-        wanted: "not adaptive, at most 10 us; warning above 50 us, failure above 300 us",
-        why: "The card holds each state back that long before it interrupts.",
+        wanted: "not adaptive, at most 10 us; a warning above 50 us, a failure above 300 us",
+        why: "The card delays each state by this time before it interrupts the processor.",
         source: "thresholds: this project's, from the millisecond of a cycle",
         judge: coalesce,
         ..NETWORK
@@ -44,7 +45,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.ring",
         wanted: "any",
-        why: "Places for packets that the kernel has not taken yet; a state takes one or two.",
+        why: "Buffers for packets that the kernel has not read yet; a state needs one or two.",
         source: "general knowledge of network cards",
         judge: rings,
         ..NETWORK
@@ -52,7 +53,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.pause",
         wanted: "pause frames off",
-        why: "With them, the other end may tell the card to hold commands back.",
+        why: "With pause frames, the other end may make the card delay commands.",
         source: "general knowledge of IEEE 802.3",
         judge: pause,
         ..NETWORK
@@ -60,7 +61,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.offload",
         wanted: "large receive offload (LRO) off; generic receive offload (GRO) may be on",
-        why: "LRO gathers packets before it hands them on; GRO gathers those that have come already.",
+        why: "LRO delays packets to merge them; GRO merges only packets that have already arrived.",
         source: "general knowledge of network cards",
         judge: offload,
         ..NETWORK
@@ -68,7 +69,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.errors",
         wanted: "none since the card was set up",
-        why: "A bad cable shows here and not in a ping.",
+        why: "A bad cable causes errors here, but not in a ping.",
         source: "general knowledge of network cards",
         judge: errors,
         ..NETWORK
@@ -141,7 +142,7 @@ fn coalesce(readings: &Readings<'_>) -> Result<Judged, Unread> {
         _ => Verdict::Good,
     };
     let read = if mode {
-        format!("{read}: a mode that goes by the load")
+        format!("{read}: a mode that depends on the load")
     } else {
         read
     };
@@ -189,7 +190,7 @@ fn rings(readings: &Readings<'_>) -> Result<Judged, Unread> {
     // then the current values.
     let [rx_max, tx_max, rx, tx] = [4, 16, 20, 32].map(|offset| answer.word(offset));
     Ok(Judged::info(format!(
-        "receives into {rx} of at most {rx_max} places, sends from {tx} of {tx_max}"
+        "receive buffers: {rx} of {rx_max}; send buffers: {tx} of {tx_max}"
     )))
 }
 
@@ -207,7 +208,7 @@ fn pause(readings: &Readings<'_>) -> Result<Judged, Unread> {
         _ => "sent",
     };
     let read = match by_agreement {
-        true => format!("{read}, where the other end agrees"),
+        true => format!("{read}, if the other end agrees"),
         false => read.into(),
     };
     Ok(Judged::info(read).fix(

@@ -21,7 +21,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "kernel.rt",
         wanted: "a kernel with PREEMPT_RT",
-        why: "Other kernels hold a thread up for milliseconds; Realtime::Enforce refuses them.",
+        why: "Other kernels delay threads by milliseconds; Realtime::Enforce refuses them.",
         source: VENDOR,
         judge: kernel::realtime,
         ..HOST
@@ -37,7 +37,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "virt",
         wanted: "no virtual machine, no WSL; a container is fine",
-        why: "A virtual machine costs 100 us and more at best, as its processors are threads of another kernel.",
+        why: "A virtual machine adds 100 us or more, since its processors are threads of another \
+            kernel.",
         source: "measured by others: servobox, 100 to 120 us in a virtual machine",
         judge: virt,
         ..HOST
@@ -45,7 +46,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "clock",
         wanted: "tsc, or arch_sys_counter",
-        why: "Each reading of hpet or acpi_pm takes a microsecond and more.",
+        why: "Each reading of hpet or acpi_pm takes a microsecond or more.",
         source: "general knowledge of Linux kernels",
         judge: clock,
         ..HOST
@@ -61,7 +62,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "mem.swap",
         wanted: "no swap in use",
-        why: "A page that was swapped out costs milliseconds, unless memory is locked (lock_memory).",
+        why: "A swapped-out page costs milliseconds, unless memory is locked (lock_memory).",
         source: "general knowledge of Linux kernels",
         judge: swap,
         ..HOST
@@ -69,7 +70,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "mem.numa",
         wanted: "numa_balancing 0",
-        why: "Balancing unmaps pages to see who uses them; each then costs a page fault.",
+        why: "Balancing unmaps pages to see which processors use them; the next access costs a \
+            page fault.",
         source: "general knowledge of Linux kernels",
         judge: numa,
         ..HOST
@@ -77,7 +79,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "power",
         wanted: "mains supply, and no program that changes governors",
-        why: "On battery, and by such programs, the governor is set back to one that saves power.",
+        why: "On battery, and under such programs, the governor changes to a power-saving one.",
         source: "general knowledge of Linux distributions",
         judge: power,
         ..HOST
@@ -92,7 +94,7 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "tuned",
-        wanted: "the profile realtime or latency-performance, if tuned is there",
+        wanted: "the profile realtime or latency-performance, if tuned is installed",
         why: "Other profiles of tuned set governors that save power.",
         source: "general knowledge of Linux distributions",
         judge: tuned,
@@ -100,7 +102,8 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "smi",
-        wanted: "no interruption by firmware within 10 s: warning above 10 us, failure above 200 us",
+        wanted: "no interruption by firmware within 10 s; a warning above 10 us, a failure above \
+            200 us",
         why: "System management interrupts stop every processor, unseen by the kernel.",
         source: "general knowledge; measured by `hwlatdetect` of rt-tests as root",
         judge: smi,
@@ -108,8 +111,8 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "secureboot",
-        wanted: "off for a real-time kernel that is not signed",
-        why: "Firmware with Secure Boot does not start a kernel built by oneself.",
+        wanted: "off for an unsigned real-time kernel",
+        why: "Firmware with Secure Boot does not start an unsigned kernel.",
         source: VENDOR,
         judge: secureboot,
         ..HOST
@@ -125,15 +128,15 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "limits.fd",
         wanted: "1024 open files or more",
-        why: "Each robot takes about ten, recordings and dashboards more.",
+        why: "Each robot needs about ten; recordings and dashboards need more.",
         source: "this driver",
         judge: open_files,
         ..HOST
     },
     Check {
         id: "disk",
-        wanted: "2 GB free in the current directory for each hour that is recorded",
-        why: "A recording that finds no room ends there.",
+        wanted: "2 GB free in the current directory for each hour of recording",
+        why: "A recording ends when the disk is full.",
         source: "this driver: 1.94 GB an hour, measured over ten minutes of all cycles",
         judge: disk,
         ..HOST
@@ -254,7 +257,7 @@ fn power(readings: &Readings<'_>) -> Result<Judged, Unread> {
         seen.push(format!("{running} runs"));
     }
     Ok(match seen.is_empty() {
-        true => Judged::good("no battery in use, no such program"),
+        true => Judged::good("no battery in use, no program that changes governors"),
         false => Judged::warning(seen.join(", ")),
     })
 }
@@ -285,7 +288,7 @@ fn tuned(readings: &Readings<'_>) -> Result<Judged, Unread> {
         Ok(profile) => {
             Judged::info(profile).fix(Needs::Nothing, "sudo tuned-adm profile latency-performance")
         }
-        Err(Unread::Absent(_)) => Judged::info("tuned is not there"),
+        Err(Unread::Absent(_)) => Judged::info("tuned is not installed"),
         Err(unread) => return Err(unread),
     })
 }
@@ -318,7 +321,7 @@ fn secureboot(readings: &Readings<'_>) -> Result<Judged, Unread> {
 fn clock_sync(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let running = readings.running(&["chronyd", "ntpd", "systemd-timesyncd"])?;
     Ok(Judged::info(match running.is_empty() {
-        true => "no program seen that sets the clock".into(),
+        true => "no program found that sets the clock".into(),
         false => running.join(", "),
     }))
 }

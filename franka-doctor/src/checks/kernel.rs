@@ -44,10 +44,13 @@ impl Remedy {
     /// Returns the remedy for a computer with this kernel release.
     fn of(readings: &Readings<'_>, release: &str) -> Self {
         if is_wsl(readings).unwrap_or(false) {
-            return Self::words("WSL has a kernel of Windows: run Linux on the computer itself");
+            return Self::words("WSL uses a kernel of Windows: run Linux directly on the computer");
         }
         if container(readings).is_some() {
-            return Self::words("a container has the kernel of its host: install one there");
+            return Self::words(
+                "a container uses the kernel of its host: install a real-time \
+                kernel there",
+            );
         }
         let model = readings.host.read("/proc/device-tree/model");
         let is_model = |name: &str| model.as_ref().is_ok_and(|model| model.contains(name));

@@ -23,7 +23,8 @@ pub(super) const NETWORK: Check = Check {
 pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.route",
-        wanted: "a direct cable to Control's LAN port, own address in the robot's /24",
+        wanted: "a direct cable to the LAN port of Control, and an own address in the robot's /24 \
+            network",
         why: "Routers and switches add delay and lose packets under load.",
         source: "vendor: FCI documentation, network: 172.16.0.1 and 172.16.0.2, not the Arm's port, no switch",
         of_card: false,
@@ -41,7 +42,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.mtu",
         wanted: "1500",
-        why: "With less, more datagrams are split, and one lost fragment loses the state.",
+        why: "With a smaller MTU, more datagrams are split, and one lost fragment loses the state.",
         source: "size of states: FCI protocol; an FER's come in two fragments at 1500",
         judge: mtu,
         ..NETWORK
@@ -49,7 +50,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.nm",
         wanted: "an address set by hand",
-        why: "An address that was lent for a time is taken away again, or changes; a robot gives none.",
+        why: "A temporary address (DHCP) expires or changes; a robot assigns no addresses.",
         source: "vendor: FCI documentation, network: static addresses on both sides",
         judge: lease,
         ..NETWORK
@@ -57,7 +58,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "nic.two_robots",
         wanted: "one interface in the robot's network",
-        why: "With two, answers leave by the wrong cable.",
+        why: "With two interfaces, answers may leave by the wrong cable.",
         source: "general knowledge of routing",
         judge: two_robots,
         ..NETWORK
@@ -65,7 +66,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "net.busy_poll",
         wanted: "any",
-        why: "The option busy_poll of the driver sets it for its own socket.",
+        why: "The driver's option busy_poll sets it for the driver's own socket.",
         source: "general knowledge of Linux kernels",
         matters: Matters::Moving,
         of_card: false,
@@ -82,7 +83,7 @@ fn route(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let route = match readings.route() {
         Ok(route) => route,
         // The system reports an error if it has no route.
-        Err(Unread::Failed(_, why)) => return Ok(Judged::failure(format!("no way: {why}"))),
+        Err(Unread::Failed(_, why)) => return Ok(Judged::failure(format!("no route: {why}"))),
         Err(unread) => return Err(unread),
     };
     let read = format!("by {} from {}", route.interface, route.own);
@@ -127,8 +128,10 @@ fn lease(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let lasting = readings.host.is_lasting(&card, own)?;
     readings.note("the own address is lasting", lasting.to_string());
     Ok(match lasting {
-        true => Judged::good(format!("{card} has {own} for good")),
-        false => Judged::info(format!("{card} has {own} for a time only, as by DHCP")),
+        true => Judged::good(format!("{card} has the static address {own}")),
+        false => Judged::info(format!(
+            "{card} has the temporary address {own}, as from DHCP"
+        )),
     })
 }
 

@@ -21,7 +21,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "cpu.governor",
         wanted: "performance on every processor",
-        why: "Other governors lower the frequency while the thread sleeps, so that it begins slowly each time.",
+        why: "Other governors lower the frequency while the thread sleeps, so each cycle starts \
+            slowly.",
         source: "vendor: FCI documentation, CPU frequency scaling; libfranka issue 123",
         judge: governor,
         ..PROCESSOR
@@ -29,7 +30,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "cpu.epp",
         wanted: "performance on every processor",
-        why: "Processors that choose their frequency themselves go by this preference, whatever the governor.",
+        why: "Processors that choose their own frequency follow this preference, regardless of \
+            the governor.",
         source: "general knowledge of the driver intel_pstate",
         judge: epp,
         ..PROCESSOR
@@ -37,15 +39,15 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "cpu.turbo",
         wanted: "any",
-        why: "Changes of frequency matter below 20 us only.",
+        why: "Frequency changes matter only below 20 us.",
         source: "measured by others: servobox, no gain from turning it off",
         judge: turbo,
         ..PROCESSOR
     },
     Check {
         id: "cpu.cstates",
-        wanted: "no enabled sleep state with more than 10 us to leave it; warning above 50 us",
-        why: "Each wake-up of the thread takes that much longer.",
+        wanted: "no enabled sleep state that takes more than 10 us to leave; a warning above 50 us",
+        why: "Each wake-up of the thread takes longer by this time.",
         source: "general knowledge; cyclictest forbids them while it measures, by /dev/cpu_dma_latency",
         judge: cstates,
         ..PROCESSOR
@@ -53,30 +55,31 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "cpu.pm_qos",
         wanted: "any",
-        why: "A bound for sleep states per processor; 0 is none.",
+        why: "A limit for the sleep states of a processor; 0 means no limit.",
         source: "general knowledge of Linux kernels",
         judge: pm_qos,
         ..PROCESSOR
     },
     Check {
         id: "cpu.count",
-        wanted: "2 or more; with SMT, nothing else on the sibling of the control thread's",
-        why: "On one processor the control thread shares with network interrupts and everything else.",
+        wanted: "2 or more; with SMT, nothing else on the sibling of the control thread's processor",
+        why: "With one processor, the control thread shares it with network interrupts and all \
+            other programs.",
         source: "this driver: a thread of its own beside the program's",
         judge: count,
         ..PROCESSOR
     },
     Check {
         id: "cpu.isolated",
-        wanted: "the processor that the control thread is pinned to, if it is",
-        why: "On an isolated processor nothing runs but what is pinned there.",
+        wanted: "the processor of the control thread, if the thread is pinned",
+        why: "An isolated processor runs only threads that are pinned to it.",
         source: "general knowledge of Linux kernels",
         judge: isolated,
         ..PROCESSOR
     },
     Check {
         id: "cpu.load",
-        wanted: "less than 5 % of the last minute in which something waited for a processor",
+        wanted: "programs waited for a processor for less than 5 % of the last minute",
         why: "Load on the same computer has broken control loops (libfranka issue 60).",
         source: "threshold: this project's; report: libfranka issue 60",
         judge: load,
@@ -85,7 +88,7 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "cpu.freq_now",
         wanted: "within 10 % of the highest, after a second of load",
-        why: "Shows what governor and power settings come to.",
+        why: "Shows the effect of governor and power settings.",
         source: "threshold: this project's",
         reads_only: false,
         judge: frequency,
@@ -94,7 +97,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "irq.balance",
         wanted: "interrupts of the robot's network card off the control thread's processor, unless chosen so",
-        why: "A control thread at priority 99 keeps the card's interrupt thread, at 50, waiting on the same processor.",
+        why: "A control thread at priority 99 delays the card's interrupt thread, at 50, on the \
+            same processor.",
         source: "general knowledge of PREEMPT_RT; threads of interrupts have SCHED_FIFO 50",
         of_card: true,
         judge: interrupts,
@@ -297,7 +301,7 @@ fn load(readings: &Readings<'_>) -> Result<Judged, Unread> {
             format!("`{text}`, expected `some .. avg60=`"),
         ));
     };
-    let read = format!("{waited:.1} % of the last minute");
+    let read = format!("programs waited for {waited:.1} % of the last minute");
     Ok(match waited < 5.0 {
         true => Judged::good(read),
         false => Judged::warning(read),

@@ -29,8 +29,9 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "rt.limits_file",
-        wanted: "limits that allow rtprio 99 at login, and a session in which they count",
-        why: "Limits and groups count from the next login on. Services of systemd ignore these files: they need LimitRTPRIO and LimitMEMLOCK.",
+        wanted: "limits that allow rtprio 99 at login, and a session started after they were set",
+        why: "Limits and groups take effect at the next login. Services of systemd ignore these \
+            files and need LimitRTPRIO and LimitMEMLOCK.",
         source: VENDOR,
         judge: limits_file,
         ..SCHEDULING
@@ -46,23 +47,25 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "rt.memlock",
         wanted: "unlimited; the vendor's 102400 KiB suffice for small processes only",
-        why: "With lock_memory, and a limit that is too small, later allocations fail.",
-        source: "vendor: memlock 102400; that it is small for mlockall was not measured",
+        why: "With lock_memory and a limit that is too small, later allocations fail.",
+        source: "vendor: memlock 102400; its effect on mlockall was not measured",
         judge: memlock,
         ..SCHEDULING
     },
     Check {
         id: "rt.throttle",
         wanted: "-1, or 950000 of 1000000 us",
-        why: "A real-time thread that spins is held up for the rest of each period; the control thread sleeps.",
+        why: "The kernel stops a real-time thread that spins for the rest of each period; the \
+            control thread sleeps instead.",
         source: "defaults of Linux",
         judge: throttle,
         ..SCHEDULING
     },
     Check {
         id: "rt.cgroup",
-        wanted: "real-time runtime for the control group, where groups have one",
-        why: "With a runtime of 0, SCHED_FIFO is refused in the group, as in some containers.",
+        wanted: "real-time runtime for the control group, if groups have their own",
+        why: "With a runtime of 0, as in some containers, the kernel refuses SCHED_FIFO in the \
+            group.",
         source: "general knowledge of Linux kernels",
         judge: cgroup,
         ..SCHEDULING
@@ -70,7 +73,8 @@ pub(super) const CHECKS: &[Check] = &[
     Check {
         id: "timer.slack",
         wanted: "any",
-        why: "Threads under SCHED_FIFO have no slack; threads under the normal scheduler sleep that much longer.",
+        why: "Timer slack: threads under the normal scheduler sleep longer by this time; threads \
+            under SCHED_FIFO do not.",
         source: "general knowledge of Linux kernels",
         judge: timer_slack,
         ..SCHEDULING

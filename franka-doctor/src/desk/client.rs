@@ -31,7 +31,8 @@ pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
 fn ask(agent: &Agent, scheme: &str, address: SocketAddr) -> Result<DeskState, String> {
     read(&mut |path| {
         let answer = agent.get(format!("{scheme}://{address}{path}")).call();
-        let mut answer = answer.map_err(|error| format!("no Desk at {address}: {error}"))?;
+        let mut answer =
+            answer.map_err(|error| format!("cannot reach Desk at {address}: {error}"))?;
         let body = answer
             .body_mut()
             .with_config()

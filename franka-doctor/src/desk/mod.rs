@@ -48,8 +48,8 @@ pub fn web(asked: &Result<DeskState, String>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.web",
         "the system started, mode Execution, all brakes open, FCI active, no self-test due",
-        "Without these the robot refuses FCI connections, or motions.",
-        "vendor: FCI documentation; what Desk says of them: its clients, not seen on an arm",
+        "Otherwise the robot refuses FCI connections or motions.",
+        "vendor: FCI documentation; the pages of Desk: other clients, not verified on an arm",
     );
     let judged = match asked {
         Ok(state) => judge(state),
@@ -81,9 +81,9 @@ fn judge(state: &DeskState) -> Judged {
     .collect();
     let read = match missing.as_slice() {
         [] => "started, mode Execution, brakes open, FCI active".to_owned(),
-        [_, _, _, _] => return Judged::unknown("unknown: Desk says nothing of it without a login"),
+        [_, _, _, _] => return Judged::unknown("unknown: Desk requires a login for these states"),
         missing => format!(
-            "no obstacle seen, but nothing is said of {}",
+            "no obstacle found, but Desk reports nothing about {}",
             missing.join(", ")
         ),
     };
@@ -99,12 +99,16 @@ fn reasons(state: &DeskState) -> Vec<String> {
     let mut reasons = Vec::new();
     match state.system.as_deref() {
         None | Some("Started") => {}
-        Some("RebootRequired") => reasons.push("the system asks for a restart (Desk)".into()),
+        Some("RebootRequired") => {
+            reasons.push("the system requires a restart: restart it in Desk".into())
+        }
         Some(other) => reasons.push(format!("the system is not started: {other}")),
     }
     match state.self_test {
         Some(SelfTest::Due) => reasons.push("the daily self-test is due: run it in Desk".into()),
-        Some(SelfTest::Running) => reasons.push("the self-test runs: wait for its end".into()),
+        Some(SelfTest::Running) => {
+            reasons.push("the self-test is running: wait for its end".into())
+        }
         Some(SelfTest::Done(_) | SelfTest::Soon(_)) | None => {}
     }
     match state.braked.as_deref() {
@@ -123,7 +127,7 @@ fn reasons(state: &DeskState) -> Vec<String> {
     match state.mode.as_deref() {
         None | Some("Execution") => {}
         Some("SafetyRecovery") => reasons.push(
-            "mode SafetyRecovery: the user stop is pressed, or Desk asks for a recovery".into(),
+            "mode SafetyRecovery: the user stop is pressed, or Desk requires a recovery".into(),
         ),
         Some(other) => reasons.push(format!("mode {other}: choose Execution in Desk")),
     }

@@ -77,7 +77,7 @@ pub(crate) fn read(get: &mut dyn FnMut(&str) -> Result<Page, String>) -> Result<
                 .map(|(path, status)| format!("{path}: {status}"));
             let statuses: Vec<String> = statuses.collect();
             format!(
-                "what answers is no Desk that is known here ({})",
+                "the answer is not from a known version of Desk ({})",
                 statuses.join(", ")
             )
         }

@@ -41,7 +41,7 @@ pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unr
         let error = io::Error::last_os_error();
         return Err(match error.raw_os_error() {
             Some(libc::EOPNOTSUPP) => {
-                Unread::Failed(what, "the driver of the card does not say".into())
+                Unread::Failed(what, "the driver of the card does not report it".into())
             }
             _ => Unread::new(what, &error),
         });

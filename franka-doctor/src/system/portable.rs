@@ -13,7 +13,7 @@ use crate::latencies::Latencies;
 /// Returns an error: drivers of network cards are queried on Linux only.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
-    Err(Unread::Failed(what, "asked on Linux only".into()))
+    Err(Unread::Failed(what, "available on Linux only".into()))
 }
 
 /// Returns an error or no answer: leased addresses are queried on Linux only.
