@@ -106,11 +106,13 @@ impl Which {
         };
         let name = named.or_else(only).ok_or_else(|| {
             let known = match file.robots.len() {
-                0 => format!("{} has none", file.path.display()),
-                count => format!("{} has {count}", file.path.display()),
+                0 => format!("{} has no robots", file.path.display()),
+                count => format!("{} has {count} robots", file.path.display()),
             };
-            Failure::usage(format!("no robot was given, and {known}"))
-                .advice("Give a name or an address, or add one: franka robots add NAME ADDRESS")
+            Failure::usage(format!(
+                "got no robot, expected a name or an address: {known}"
+            ))
+            .advice("Give a name or an address, or add one: franka robots add NAME ADDRESS")
         })?;
         let Some(entry) = file.robots.get(&name) else {
             return unlisted(name);
@@ -244,7 +246,8 @@ impl Place {
                 Ending::NoRobot,
                 format!("no {device} at `{host}`: {error}"),
             )
-            .advice(format!("No robot has the name `{host}` either: see franka robots list.")),
+            .advice(format!("No robot has the name `{host}` either; franka robots list shows all \
+                names.")),
             Seen::Other => {
                 let message = format!("no connection to the {device} at {at}: {error}");
                 Failure::new(Ending::NoRobot, message)
@@ -276,7 +279,7 @@ pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failu
         RobotMode::Move => refused(
             Ending::Taken,
             format!("the robot at {place} is already in motion"),
-            "Something else moves it: wait until that motion has ended.",
+            "Another program moves it: wait until that motion has ended.",
         ),
         RobotMode::Guiding => refused(
             Ending::Taken,
@@ -296,13 +299,16 @@ pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failu
         RobotMode::UserStopped => refused(
             Ending::Person,
             format!(
-                "the user stop of the robot at {place} is pressed, or a safety function holds it"
+                "the user stop of the robot at {place} is pressed, or a safety function is active"
             ),
-            "Release the user stop. A safety function is acknowledged in Desk.",
+            "Release the user stop, or acknowledge the safety function in Desk.",
         ),
         RobotMode::Other => refused(
             Ending::Person,
-            format!("the robot at {place} is not ready: its brakes are closed, or it is starting"),
+            format!(
+                "the robot at {place} is not ready: the brakes are closed, or the robot is \
+                starting"
+            ),
             "Open the brakes in Desk.",
         ),
     }

@@ -139,8 +139,8 @@ impl Failure {
     pub(crate) fn without(option: &str, feature: &str) -> Self {
         let message = format!("{option}: this `franka` was built without the feature `{feature}`");
         let advice = format!(
-            "`cargo install --path franka-cli --features {feature}` installs one that has it; the \
-             programs of a release have it."
+            "Install it with `cargo install --path franka-cli --features {feature}`, or use the \
+             program of a release, which has the feature."
         );
         Self::usage(message).advice(advice)
     }

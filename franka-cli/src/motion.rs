@@ -119,7 +119,8 @@ impl Moving {
             let stayed = (to - from).abs() < MOVED;
             if !stayed {
                 let message = format!(
-                    "joint {} has moved since the question, from {from:.3} to {to:.3} rad. Nothing was sent.",
+                    "joint {} has moved from {from:.3} to {to:.3} rad since the question, \
+                     expected an arm at rest. No command was sent.",
                     i + 1
                 );
                 return Err(Failure::new(Ending::Taken, message).into());

@@ -21,7 +21,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         let failure = Failure::new(
             Ending::NotConfirmed,
-            "cannot ask: the program has no terminal. Nothing has moved.",
+            "cannot ask for confirmation: the program has no terminal. Nothing has moved.",
         );
         return Err(failure
             .advice("In scripts, --yes agrees in advance.")
@@ -76,7 +76,8 @@ impl Target {
                     let (lower, upper) = (limits.lower[i], limits.upper[i]);
                     if !(lower..=upper).contains(&to) {
                         let message = format!(
-                            "joint {} cannot go to {to:.4} rad: expected {lower:.4} to {upper:.4}",
+                            "the target of joint {} is {to:.4} rad, expected {lower:.4} to \
+                             {upper:.4} rad",
                             i + 1
                         );
                         return Err(Failure::new(Ending::Failed, message).into());
@@ -84,7 +85,7 @@ impl Target {
                 }
                 let fastest = budget.joints.map(|axis| axis.velocity.to_degrees());
                 let fastest = fastest.into_iter().fold(0.0, f64::max);
-                let pace = format!("{fastest:.0} deg/s of any joint");
+                let pace = format!("{fastest:.0} deg/s for each joint");
                 ("all joints at the same time", *q, robot.pose_at(*q), pace)
             }
             Self::Pose(pose) => {
@@ -100,7 +101,7 @@ impl Target {
                     Failure::new(Ending::Failed, message)
                 })?;
                 let pace = format!(
-                    "{:.0} mm/s and {:.0} deg/s of the hand",
+                    "{:.0} mm/s and {:.0} deg/s for the hand",
                     budget.translation.velocity * 1e3,
                     budget.rotation.velocity.to_degrees()
                 );

@@ -40,14 +40,14 @@ pub(crate) fn partial_pose(text: &str) -> Result<PartialPose, String> {
         7 => {
             let [x, y, z, quaternion @ ..] = numbers::<7>(text)?;
             let pose = pose::from_xyzw([x, y, z], quaternion)
-                .ok_or("a quaternion of length zero has no direction")?;
+                .ok_or("got a quaternion of length 0, expected length 1")?;
             Ok(PartialPose {
                 position: [x, y, z],
                 rotation: Some(pose.rotation),
             })
         }
         count => Err(format!(
-            "{count} numbers given; expected x,y,z or x,y,z,roll,pitch,yaw (degrees) or \
+            "got {count} numbers, expected x,y,z or x,y,z,roll,pitch,yaw (degrees) or \
              x,y,z,qx,qy,qz,qw"
         )),
     }
@@ -57,7 +57,7 @@ pub(crate) fn partial_pose(text: &str) -> Result<PartialPose, String> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let [value] = numbers::<1>(text)?;
     if value <= 0.0 {
-        return Err(format!("{value} given, expected more than 0"));
+        return Err(format!("got {value}, expected more than 0"));
     }
     Ok(value)
 }
@@ -68,7 +68,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     match Duration::try_from_secs_f64(seconds) {
         Ok(duration) if duration <= DAY => Ok(duration),
         _ => Err(format!(
-            "{seconds} s given, expected {} at most",
+            "got {seconds} s, expected {} s at most",
             DAY.as_secs()
         )),
     }
@@ -78,7 +78,9 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 pub(crate) fn rate(text: &str) -> Result<f64, String> {
     let rate = positive(text)?;
     if !(0.1..=100.0).contains(&rate) {
-        return Err(format!("{rate} a second given, expected 0.1 to 100"));
+        return Err(format!(
+            "got {rate} per second, expected 0.1 to 100 per second"
+        ));
     }
     Ok(rate)
 }

@@ -105,8 +105,8 @@ impl Cassette {
                     let tape = pcap::from_capture(&capture)?;
                     if tape.truncated > 0 {
                         say(&format!(
-                            "{} packets of {} were captured in part only, and what they carried is missing: capture \
-                             whole packets (tcpdump -s 0)",
+                            "{} packets of {} were captured only in part, so their data is \
+                             missing: capture whole packets (tcpdump -s 0)",
                             tape.truncated,
                             from.display()
                         ));
@@ -125,7 +125,7 @@ fn open(file: &Path) -> anyhow::Result<Tape> {
     let tape = Tape::open(file);
     let tape = tape.map_err(|error| {
         failed(file, &error)
-            .advice("franka tap makes cassettes; recordings are for franka explain.")
+            .advice("Cassettes come from franka tap. For recordings, use franka explain.")
     })?;
     if let Some(damage) = &tape.damage {
         say(&format!("{} ends early: {damage}", file.display()));

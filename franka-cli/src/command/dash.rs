@@ -94,7 +94,7 @@ impl Dash {
         if let Some(folder) = &self.record {
             if !folder.is_dir() {
                 let text = format!(
-                    "{}: no folder; --record takes one that is there",
+                    "{}: not a folder; --record needs an existing folder",
                     folder.display()
                 );
                 return Err(Failure::usage(text).into());
@@ -120,7 +120,11 @@ impl Dash {
             let place = Which::of(robot).place()?;
             let is_same = |other: &Place| other.name() == place.name();
             if places.iter().any(is_same) {
-                return Err(Failure::usage(format!("{} is named twice", place.name())).into());
+                return Err(Failure::usage(format!(
+                    "got {} twice, expected different robots",
+                    place.name()
+                ))
+                .into());
             }
             places.push(place);
         }
@@ -205,8 +209,8 @@ pub(super) fn no_token(error: TokenError) -> Failure {
     Failure::usage(text).advice(ADVICE)
 }
 
-const ADVICE: &str = "Put a token into the variable FRANKA_ACCESS_TOKEN. franka dash also has --token-file FILE, and \
-    --new-token, which makes one.";
+const ADVICE: &str = "Set a token: in the variable FRANKA_ACCESS_TOKEN, with --token-file FILE, \
+    or with --new-token, which generates one.";
 
 /// Default address of the dashboard.
 pub(super) const PAGE: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 8080));

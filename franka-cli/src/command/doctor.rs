@@ -118,9 +118,9 @@ impl Doctor {
         let mut report = self.host(robot, selection, !taken).await?;
         report.add(found);
         if report.findings.is_empty() {
-            let failure = Failure::usage("none of these checks is there, or can be made so");
+            let failure = Failure::usage("none of the chosen checks exists or can run here");
             return Err(failure
-                .advice("franka doctor --all names those that are.")
+                .advice("franka doctor --all names all checks.")
                 .into());
         }
         if self.output.json {
@@ -206,7 +206,7 @@ impl Doctor {
             // The report still contains the other checks.
             Err(error) => {
                 say(&format!(
-                    "there was no dry run of the control loop: {error:#}"
+                    "the dry run of the control loop failed to start: {error:#}"
                 ));
                 None
             }

@@ -115,11 +115,17 @@ impl Recorded {
             (None, _) => None,
         };
         let robot = robot.ok_or_else(|| {
-            let message = format!("which robot of {}?", self.file.display());
-            Failure::usage(message).advice(format!("--of one of {names:?}"))
+            let message = format!(
+                "{} has several robots, expected the choice of one",
+                self.file.display()
+            );
+            Failure::usage(message).advice(format!("Choose one with --of: {names:?}"))
         })?;
         let kind = robot.kind.with_context(|| {
-            format!("{} does not say which robot it is of", self.file.display())
+            format!(
+                "{} does not name the kind of its robot",
+                self.file.display()
+            )
         })?;
         let name = robot.name.clone();
         Ok((recording, name, Model::of(kind)))
@@ -142,12 +148,13 @@ impl Explain {
             Source::Log(file) => return self.explain_log(file),
         };
         if !self.errors.is_empty() || self.kind.is_some() {
-            let message = "--errors and --kind are for logs of libfranka";
+            let message = "got --errors or --kind for a recording, expected them only for logs of \
+                libfranka";
             return Err(Failure::usage(message).into());
         }
         let robot = recording.robot(&name)?;
         let explain = |until| Explanation::of_recording(&robot.to(until), model);
-        let explain = |until| while_turning("looking at every cycle", || explain(until));
+        let explain = |until| while_turning("reading every cycle", || explain(until));
         let newest = explain(HostTime::from_nanos(u64::MAX));
         if self.earlier > newest.earlier {
             let message = format!(
@@ -171,19 +178,21 @@ impl Explain {
         // Without a table, no number in the text depends on the robot.
         if model.is_none() && !file.log.is_empty() {
             let path = self.recorded.file.display();
-            let message = format!("which kind of robot is the log of? {path} does not say");
+            let message = format!("{path} does not name the kind of the robot, expected --kind");
             return Err(Failure::usage(message)
-                .advice("--kind fr3 or --kind fer")
+                .advice("Add --kind fr3 or --kind fer.")
                 .into());
         }
         if self.earlier > 0 {
-            let message = "--earlier is for recordings: of a log the newest motion is explained";
+            let message = "got --earlier for a log, expected it only for recordings: a log is \
+                explained up to its newest motion";
             return Err(Failure::usage(message).into());
         }
         if !self.errors.is_empty() {
             let named = file.errors();
             if !named.is_empty() {
-                let message = format!("--errors: the file names {named}");
+                let message =
+                    format!("got --errors, but the file names the errors itself: {named}");
                 return Err(Failure::usage(message).into());
             }
             file = file.with_errors(self.errors.iter().copied().collect::<Errors>());

@@ -104,7 +104,7 @@ impl Export {
                     return Err(Failure::usage(message).into());
                 }
                 if file.log.is_empty() {
-                    let message = format!("{path} has the text of an exception, and no table");
+                    let message = format!("{path} has the text of an exception, expected a table");
                     return Err(Failure::usage(message).into());
                 }
                 let cycles = || file.cycles().map(Ok::<_, Infallible>);
@@ -178,10 +178,7 @@ impl Export {
         }
         let mut found = Episode::of(robot.events())?;
         if found.is_empty() {
-            let message = format!(
-                "{} has no episode that has ended",
-                self.recorded.file.display()
-            );
+            let message = format!("{} has no finished episode", self.recorded.file.display());
             let failure = Failure::new(Ending::Failed, message);
             return Err(failure
                 .advice("A program marks them while it records: Recorder::begin_episode and end_episode.")
@@ -205,8 +202,8 @@ impl Export {
             count += added.map_err(|error| {
                 let message = format!("{:?}: {error}", episode.name);
                 Failure::new(Ending::Failed, message).advice(
-                    "--measured takes where the arm was; --no-gripper leaves the gripper out; \
-                     --episodes chooses others.",
+                    "--measured uses measured positions, --no-gripper omits the gripper, and \
+                     --episodes chooses other episodes.",
                 )
             })?;
         }

@@ -109,7 +109,7 @@ impl Gripper {
             }
             Self::Close { fingers } => {
                 let hand = fingers.connect().await?;
-                let not = "the fingers did not close: something is between them";
+                let not = "the fingers did not close: an object is between them";
                 let motion = moved(&hand, 0.0, fingers.speed);
                 fingers
                     .act(&hand, &fingers.way(&hand, 0.0), motion, not)
@@ -126,15 +126,18 @@ impl Gripper {
                 grasp.epsilon_inner = within;
                 grasp.epsilon_outer = within;
                 let way = fingers.way(&hand, width);
-                let what = format!("{way}, then press with {force:.0} N");
+                let what = format!("{way}, then grip with {force:.0} N");
                 let (width, within) = (width * 1e3, within * 1e3);
-                let not = format!("no object of {width:.1} mm is held (within {within:.1} mm)");
+                let not = format!(
+                    "the fingers hold no object of {width:.1} mm (within \
+                    {within:.1} mm)"
+                );
                 fingers.act(&hand, &what, hand.grasp(grasp), &not).await
             }
             Self::Home { fingers } => {
                 let hand = fingers.connect().await?;
                 let what = "The fingers close, then open fully";
-                let not = "the fingers did not reach both ends";
+                let not = "the fingers did not reach both ends of their range";
                 fingers.act(&hand, what, hand.homing(), not).await
             }
             Self::Stop { mut fingers } => {
@@ -233,7 +236,7 @@ async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError
 fn print(state: &State, output: Output) -> anyhow::Result<Ending> {
     output.print(state, || {
         let held = match state.is_grasped {
-            true => "holding something",
+            true => "holding an object",
             false => "holding nothing",
         };
         let width = state.width * 1e3;

@@ -132,7 +132,7 @@ impl Guide {
         match guided {
             Ok(()) => Ok(robot.state().q),
             Err(Guiding::NotAtRest(by)) => {
-                say("The arm is still being pushed and does not rest.");
+                say("The arm is still pushed and moving.");
                 Err(moving.brake(by).await)
             }
             Err(Guiding::Failed(error)) => Err(moving.explain(error).await),

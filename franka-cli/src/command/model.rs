@@ -131,7 +131,13 @@ impl Model {
                 let Known { model, q, ee, .. } = arm.known().await?;
                 let matrix = model.pose(frame, &q, &ee);
                 let pose = pose::from_matrix(&matrix).map_err(|error| {
-                    Failure::new(Ending::Failed, format!("the robot's end effector: {error}"))
+                    Failure::new(
+                        Ending::Failed,
+                        format!(
+                            "cannot use the robot's end effector: \
+                        {error}"
+                        ),
+                    )
                 })?;
                 print_pose(&pose, arm.output)
             }

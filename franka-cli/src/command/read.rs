@@ -62,5 +62,5 @@ impl Read {
 
 fn unknown_field(name: &str) -> Failure {
     Failure::usage(format!("the state has no field `{name}`"))
-        .advice("franka read --list has them. A robot goes before the fields.")
+        .advice("franka read --list shows all fields. Put the robot before the fields.")
 }

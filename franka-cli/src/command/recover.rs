@@ -42,7 +42,7 @@ impl Recover {
         let value = json!({ "recovered": recovered, "errors": before.errors });
         self.output.print(&value, || match recovered {
             true => format!("the robot at {place} is ready"),
-            false => format!("the robot at {place} was ready: nothing to recover from"),
+            false => format!("the robot at {place} is already ready: no recovery needed"),
         })
     }
 
@@ -55,13 +55,14 @@ impl Recover {
         }
         say(diagnosis(&state, robot).trim_end());
         let title = title("recover", robot.model().kind(), place);
-        let what = "The robot releases its joints from the reflex. If the arm presses against something, it may move by some mm.";
+        let what = "The robot ends the reflex. An arm that presses against an object may move by \
+            some millimetres.";
         question::ask(&format!("{title}\n{what}"), self.yes).await?;
         let interrupt = interrupted()?;
         let recovered = tokio::select! {
             recovered = robot.recover() => recovered,
             by = interrupt => {
-                let message = "interrupted: the robot may still recover";
+                let message = "interrupted: the robot may still complete the recovery";
                 return Err(by.failure(message).into());
             }
         };

@@ -74,7 +74,8 @@ impl Replay {
         });
         self.how.output.print(&value, || {
             format!(
-                "replayed in {seconds:.1} s: the hand {:.1} mm off at most, {:.1} mm in the median",
+                "replayed in {seconds:.1} s: the hand was off by {:.1} mm at most, {:.1} mm in \
+                 the median",
                 report.position.max * 1e3,
                 report.position.median * 1e3
             )
@@ -89,7 +90,8 @@ impl Replay {
         let fastest = budget.joints.map(|axis| axis.velocity.to_degrees());
         let fastest = fastest.into_iter().fold(0.0, f64::max);
         let what = format!(
-            "First to where the recording begins:\n{}\nThen as recorded, for {:.1} s: joints at {fastest:.0} deg/s at most.",
+            "First, the motion to the start of the recording:\n{}\nThen the recorded motion, for \
+             {:.1} s: joints at {fastest:.0} deg/s at most.",
             Target::Joints(plan.start()).describe(robot, plan.speed())?,
             plan.duration().as_secs_f64(),
         );

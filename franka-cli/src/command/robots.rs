@@ -71,7 +71,7 @@ impl Robots {
                 };
                 file.insert(&name, &entry);
                 file.write()?;
-                line(&format!("{name} is in {}", file.path.display()))?;
+                line(&format!("{name} is saved in {}", file.path.display()))?;
                 Ok(Ending::Done)
             }
             Self::Remove { name } => {

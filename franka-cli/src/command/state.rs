@@ -36,9 +36,12 @@ impl State {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let draws = self.watch && !self.output.json;
         if draws && !io::stdout().is_terminal() {
-            let failure = Failure::usage("--watch draws on a terminal, and there is none");
+            let failure = Failure::usage(
+                "got --watch without a terminal, expected a terminal to \
+                draw on",
+            );
             return Err(failure
-                .advice("With --json it prints a line for each state.")
+                .advice("With --json, --watch prints a line for each state instead.")
                 .into());
         }
         let (robot, place) = self.which.connect().await?;

@@ -35,13 +35,13 @@ impl Stop {
             );
             let failure = Failure::new(Ending::Taken, message);
             return Err(failure
-                .advice("It is not moved by a client: press the user stop.")
+                .advice("No client moves it: press the user stop.")
                 .into());
         }
         let mode = state.robot_mode.to_string();
         let value = json!({ "mode": mode, "at_rest": true });
         self.output.print(&value, || {
-            format!("nothing moves the robot at {place}: mode {mode}")
+            format!("no motion runs on the robot at {place}: mode {mode}")
         })
     }
 }

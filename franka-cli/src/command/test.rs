@@ -86,8 +86,8 @@ impl Communication {
         self.mover.how.output.print(&value, || {
             let about = match verdict {
                 "good" => "",
-                "usable" => ": motions will be rough, and may be stopped",
-                _ => ": franka doctor says what may be the cause",
+                "usable" => ": motions will be rough, and the robot may stop them",
+                _ => ": franka doctor shows likely causes",
             };
             let tables: String = all.iter().map(table).collect();
             format!("{tables}verdict        {style}{verdict}{style:#}{about}")
@@ -101,8 +101,8 @@ impl Communication {
         other: Option<&Moving>,
     ) -> anyhow::Result<(MotionReport, Option<MotionReport>)> {
         let what = format!(
-            "For {:.0} s the arm gets no torques but those of the robot against gravity,\n\
-             and stays where it is. An undeclared load pulls it down.",
+            "For {:.0} s the arm gets no torques except the robot's gravity compensation,\n\
+             and keeps its position. An undeclared load pulls it down.",
             self.seconds.as_secs_f64()
         );
         one.ask("test", &what).await?;
@@ -120,7 +120,7 @@ impl Communication {
         if both.is_err() {
             let stopped = tokio::join!(one.robot.stop(), other.robot.stop());
             if let (Err(error), _) | (_, Err(error)) = stopped {
-                let message = format!("the other robot was not stopped: {error}");
+                let message = format!("cannot stop the other robot: {error}");
                 return Err(both
                     .map(drop)
                     .expect_err("failed")

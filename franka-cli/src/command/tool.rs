@@ -67,7 +67,7 @@ fn not_negative(text: &str) -> Result<f64, String> {
     let [value] = numbers::<1>(text)?;
     match value >= 0.0 {
         true => Ok(value),
-        false => Err(format!("{value} given, expected 0 or more")),
+        false => Err(format!("got {value}, expected 0 or more")),
     }
 }
 
@@ -141,15 +141,15 @@ impl Identify {
         if let Some(path) = &self.save
             && path.exists()
         {
-            let message = format!("{} exists already", path.display());
+            let message = format!("{} already exists: choose another name", path.display());
             return Err(Failure::new(Ending::Host, message).into());
         }
         let identify = moving.robot.identify();
         let reach = identify.reach();
         let what = format!(
-            "{} motions around the present position, {:.0?} in total.\n\
-             hand  up to {:.0} mm away, {:.0} mm of it down\n\
-             speed at most 12 deg/s of any joint",
+            "{} motions around the current position, {:.0?} in total.\n\
+             hand  up to {:.0} mm away, up to {:.0} mm down\n\
+             speed at most 12 deg/s for each joint",
             identify.motions().len(),
             identify.duration(),
             reach.end_effector * 1e3,

@@ -24,7 +24,7 @@ use report::Report;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   franka trial                            writes trial.md and trial.mcap
-  franka trial left --report left.md      of the robot called left: left.md and left.mcap
+  franka trial left --report left.md      of the robot left: writes left.md and left.mcap
   franka trial sim --yes                  without questions, for simulators";
 
 /// Make the first motions of an arm, with checks, and write a report
@@ -94,9 +94,12 @@ impl Trial {
             return Err(Failure::usage(message).into());
         }
         if path.exists() {
-            let message = format!("{} exists; a trial replaces no file", path.display());
+            let message = format!(
+                "{} already exists, and a trial replaces no file",
+                path.display()
+            );
             let failure = Failure::new(Ending::Host, message);
-            return Err(failure.advice("--report names another one.").into());
+            return Err(failure.advice("Choose another name with --report.").into());
         }
         let name = path.file_name().unwrap_or_default();
         Ok(name.to_string_lossy().into_owned())

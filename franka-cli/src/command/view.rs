@@ -70,7 +70,7 @@ fn mode(state: &RobotState) -> (Style, String) {
         RobotMode::Reflex | RobotMode::UserStopped | RobotMode::Other => BAD,
     };
     let text = match state.robot_mode {
-        RobotMode::Other => "not ready: brakes closed, or starting".to_owned(),
+        RobotMode::Other => "not ready: the brakes are closed, or the robot is starting".to_owned(),
         mode => mode.to_string().to_lowercase(),
     };
     (style, text)

@@ -123,14 +123,14 @@ fn wrong_arguments_are_told_with_code_2() {
     let home = Home::new();
     for (arguments, text) in [
         (&["dance"][..], "dance"),
-        (&["state"], "no robot was given"),
+        (&["state"], "got no robot, expected"),
         (&["state", "a b"], "not a host name"),
         (&["state", "x", "--rate", "5"], "--watch"),
         (&["state", "x", "--watch", "--rate", "1000"], "0.1 to 100"),
         (&["state", "x", "--watch"], "--json"),
         (
             &["model", "pose", "--kind", "fr3", "--q", "1,2"],
-            "7 numbers expected",
+            "got 2 numbers, expected 7",
         ),
         (
             &["model", "ik", "--kind", "fr3", "--pose", "1"],

@@ -25,7 +25,7 @@ fn the_hand_opens_grasps_and_lets_go() {
         let held = run(&["grasp", "--width", "0.03", "--force", "40"]).json();
         assert_eq!(held["is_grasped"], true, "{held}");
         let text = home.run(&["gripper", "state", &hand]).done();
-        assert!(text.contains("holding something"), "{text}");
+        assert!(text.contains("holding an object"), "{text}");
         run(&["stop"]).done();
         let state = home.run(&["gripper", "state", &hand, "--json"]).json();
         assert_eq!(state["is_grasped"], false, "{state}");

@@ -55,7 +55,7 @@ fn what_cannot_be_reached_is_refused_before_anything_moves() {
             (["--pose", "2,0,0"], "out of reach"),
             (
                 ["--joints", "9,0,0,-2,0,2,0"],
-                "joint 1 cannot go to 9.0000 rad: expected",
+                "the target of joint 1 is 9.0000 rad, expected",
             ),
         ] {
             home.run(&moving(&robot, &rest)).failed(1, &[text]);
@@ -120,13 +120,13 @@ fn a_reflex_is_explained() {
         home.run(&ready)
             .failed(1, &["has stopped itself", "franka recover"]);
         home.run(&["recover", &robot])
-            .failed(5, &["may move by some mm"]);
+            .failed(5, &["may move by some millimetres"]);
         sim.rests(RobotMode::Reflex);
         let json = home.run(&["recover", &robot, "--yes", "--json"]).json();
         assert_eq!(json["recovered"], true);
         sim.rests(RobotMode::Idle);
         let text = home.run(&["recover", &robot]).done();
-        assert!(text.contains("nothing to recover"), "{text}");
+        assert!(text.contains("already ready: no recovery needed"), "{text}");
     });
 }
 

@@ -72,7 +72,8 @@ fn several_robots_have_a_page_each() {
     program.signal(Signal::SIGINT);
     program.ended().done();
     let twice = ["dash", &robots[0], &robots[0], "--listen", "127.0.0.1:0"];
-    home.run(&twice).failed(2, &[&robots[0], "named twice"]);
+    home.run(&twice)
+        .failed(2, &[&robots[0], " twice, expected different robots"]);
 }
 
 #[test]

@@ -78,7 +78,10 @@ fn a_motion_is_recorded_exported_and_replayed() {
         let ran = home.run(&[&replay[..], &["--realtime", "ignore"]].concat());
         ran.failed(
             5,
-            &["First to where the recording begins", "Then as recorded"],
+            &[
+                "First, the motion to the start of the recording",
+                "Then the recorded motion",
+            ],
         );
         let json = home
             .run(&[&replay[..], &moving, &["--json"]].concat())
@@ -118,7 +121,7 @@ fn an_earlier_end_of_a_motion_is_explained() {
     let explain = ["explain", "run.mcap"];
     let text = home.run(&explain).done();
     assert!(text.contains("Why the robot stopped"), "{text}");
-    assert!(text.contains("one motion was ended before"), "{text}");
+    assert!(text.contains("one motion ended earlier"), "{text}");
     let ends = |earlier| {
         let earlier = ["--json", "--earlier", earlier];
         let json = home.run(&[&explain[..], &earlier].concat()).json();
@@ -237,15 +240,18 @@ fn a_log_of_libfranka_is_explained_and_exported() {
     let message = log.split("\n\n").next().expect("a text");
     std::fs::write(home.path("text.txt"), message).expect("a file");
     let text = home.run(&["explain", "text.txt"]).done();
-    assert!(text.contains("no cycle of the motion is known"), "{text}");
+    assert!(
+        text.contains("the log has no cycle of the motion"),
+        "{text}"
+    );
     let json = home.run(&["explain", "text.txt", "--json"]).json();
     assert!(json.get("robot").is_none(), "{json}");
     home.run(&["export", "text.txt", "--csv", "x.csv"])
-        .failed(2, &["and no table"]);
+        .failed(2, &["expected a table"]);
     let cut = &log[..log.len() - 20];
     std::fs::write(home.path("cut.txt"), cut).expect("a file");
     home.run(&["explain", "cut.txt", "--kind", "fer"])
-        .failed(6, &["cut.txt: line 9, column ", "the file is cut there"]);
+        .failed(6, &["cut.txt: line 9, column ", "the file ends too early"]);
 }
 
 #[test]

@@ -42,7 +42,7 @@ fn an_arm_is_identified() {
     let found = std::fs::read_to_string(home.path("found.json")).expect("saved");
     assert!(found.contains("joints"), "{found}");
     home.run(&[&identify[..], &["--yes"]].concat())
-        .failed(6, &["exists already"]);
+        .failed(6, &["already exists"]);
 }
 
 #[test]
@@ -66,6 +66,6 @@ fn thresholds_are_set_by_name() {
 fn a_stop_says_that_nothing_moves() {
     Simulated::each(|sim| {
         let text = Home::new().run(&["stop", &sim.address()]).done();
-        assert!(text.contains("nothing moves the robot"), "{text}");
+        assert!(text.contains("no motion runs on the robot"), "{text}");
     });
 }

@@ -167,10 +167,7 @@ impl Report {
         let all = self.steps.iter().flat_map(|step| &step.findings);
         let count = |verdict| all.clone().filter(|it| it.verdict == verdict).count();
         let looks = count(Verdict::Look);
-        let of = format!(
-            "{} checks, {looks} of them worth a look",
-            all.clone().count()
-        );
+        let of = format!("{} checks, {looks} of them to look at", all.clone().count());
         match &self.ended {
             None => format!("complete: {} steps, {of}", self.steps.len()),
             Some(ended) => format!(

@@ -48,7 +48,10 @@ impl Steps<'_> {
         self.drift(&look)?;
         let missing = look.missing();
         let share = missing as f64 / (look.states + missing) as f64;
-        let text = format!("{missing} of {} states did not come", look.states + missing);
+        let text = format!(
+            "{missing} of {} states did not arrive",
+            look.states + missing
+        );
         let figures = json!({ "states": look.states, "missing": missing });
         let verdict = Verdict::of(share, [0.01, 0.1]);
         self.report.note("states", verdict, text, figures)?;
@@ -95,9 +98,9 @@ impl Steps<'_> {
         let model = self.moving.robot.model();
         let (name, difference) = limits::nearest(model.kind(), model.joint_limits());
         let (verdict, text) = match difference {
-            None => (Verdict::Good, format!("those of {name}")),
+            None => (Verdict::Good, format!("equal to {name}")),
             Some(most) => {
-                let text = format!("of no known table; nearest to those of {name}; {most}");
+                let text = format!("in no known table; nearest to {name}; {most}");
                 (Verdict::Look, text)
             }
         };
@@ -129,7 +132,7 @@ impl Steps<'_> {
     fn drift(&mut self, look: &Look) -> anyhow::Result<()> {
         let poses = (look.begin.pose(), look.end.pose());
         let (Some(begin), Some(end)) = poses else {
-            let text = "O_T_EE is no pose".to_owned();
+            let text = "O_T_EE is not a pose".to_owned();
             let failed = self.report.note("drift", Verdict::Bad, text, json!(null));
             return Ok(failed?);
         };
@@ -146,7 +149,7 @@ impl Steps<'_> {
         let tare = match self.moving.robot.tare().await {
             Ok(tare) => tare,
             Err(TareError::Refused(TareRefused::NoEstimate)) => {
-                let text = "none is shown: a singularity is near".to_owned();
+                let text = "the robot shows no estimate: a singularity is near".to_owned();
                 let figures = json!(null);
                 self.report.note("wrench", Verdict::Look, text, figures)?;
                 return Ok(None);
@@ -157,7 +160,7 @@ impl Steps<'_> {
         let verdict = Verdict::of(force, [0.5 * FORCE, FORCE]);
         let what = match verdict {
             Verdict::Good => "",
-            _ => "; is the load what was declared?",
+            _ => "; check the declared load",
         };
         let text = format!("{force:.1} N with nothing attached, tared{what}");
         self.report.note("wrench", verdict, text, json!(tare))?;
@@ -177,7 +180,7 @@ impl Steps<'_> {
             let why = match motion.speed(PACE).preview() {
                 Ok(preview) => {
                     let blocked = preview.blocked(robot.model(), &robot.state(), &[]);
-                    let near = |_| "the arm would come too near itself".to_owned();
+                    let near = |_| "the arm would come too close to itself".to_owned();
                     blocked.map_or_else(|error| Some(error.to_string()), |found| found.map(near))
                 }
                 Err(error) => Some(error.to_string()),
@@ -197,7 +200,7 @@ impl Steps<'_> {
     /// Holds the arm.
     async fn hold(&mut self) -> anyhow::Result<()> {
         let seconds = HOLD.as_secs();
-        let what = format!("The arm is held where it is, for {seconds} s.");
+        let what = format!("The arm holds its position for {seconds} s.");
         let arm = self.begin("hold", &what).await?;
         let look = Look::over(&self.moving.robot, HOLD).await;
         let look = look.map_err(Error::from)?;
@@ -211,8 +214,8 @@ impl Steps<'_> {
     async fn up(&mut self, name: &'static str, height: f64) -> anyhow::Result<()> {
         let pace = PACE * 300.0;
         let what = format!(
-            "The hand moves {:.0} mm up and back, on a straight line.\n\
-             speed at most {pace:.0} mm/s of the hand",
+            "The hand moves {:.0} mm up and back, in a straight line.\n\
+             speed at most {pace:.0} mm/s for the hand",
             height * 1e3
         );
         let arm = self.begin(name, &what).await?;
@@ -273,9 +276,9 @@ impl Steps<'_> {
     async fn stream(&mut self) -> anyhow::Result<()> {
         let (height, fastest) = (2e3 * WAVE.height, 1e3 * WAVE.velocity(0.25 * WAVE.period));
         let what = format!(
-            "The hand follows targets that come every {EVERY} ms: {height:.0} mm up and back, \
+            "The hand follows a target every {EVERY} ms: {height:.0} mm up and back, \
              for {:.0} s.\n\
-             speed {fastest:.0} mm/s of the hand, at most {:.0} mm/s",
+             speed {fastest:.0} mm/s for the hand, at most {:.0} mm/s",
             WAVE.period,
             PACE * 300.0
         );
@@ -341,7 +344,7 @@ impl Steps<'_> {
         };
         let left: [f64; 6] = std::array::from_fn(|i| second.wrench[i] - first.wrench[i]);
         let force = Vector3::from_column_slice(&left[..3]).norm();
-        let text = format!("{force:.1} N are left of it with the tare from before");
+        let text = format!("{force:.1} N remain with the earlier tare");
         let figures = json!({ "wrench": left });
         let verdict = Verdict::of(force, [LEFT, f64::INFINITY]);
         self.report.note("tare", verdict, text, figures)?;
