@@ -62,7 +62,10 @@ pub(crate) fn check(bytes: &[u8]) {
             fed = now;
         }
         if before.commander.is_some() && before.commander != Some(viewer) {
-            assert_eq!(after.commander, before.commander, "the lease is taken away");
+            assert_eq!(
+                after.commander, before.commander,
+                "another page took the lease"
+            );
             assert!(after.holding == before.holding || is_stop);
         }
         assert!(!after.holding || after.commander.is_some());

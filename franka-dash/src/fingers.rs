@@ -139,17 +139,17 @@ async fn act(gripper: &Gripper, action: GripperAction) -> Result<bool, GripperEr
 /// Returns the text of an action's result.
 fn word(action: GripperAction, done: bool) -> &'static str {
     match (action, done) {
-        (GripperAction::Home {}, true) => "knows how wide it opens",
-        (GripperAction::Home {}, false) => "did not find how wide it opens",
-        (GripperAction::Move { .. }, true) => "at the width",
+        (GripperAction::Home {}, true) => "homed: the greatest width is known",
+        (GripperAction::Home {}, false) => "homing failed: the greatest width is unknown",
+        (GripperAction::Move { .. }, true) => "reached the width",
         (GripperAction::Move { .. }, false) => {
-            "not at the width; a width above the greatest is refused before a homing"
+            "did not reach the width; home the gripper first, and choose a width up to the greatest"
         }
         (GripperAction::Grasp { .. }, true) => "holds the object",
         (GripperAction::Grasp { .. }, false) => {
-            "closed, and not at the width of the object; the force stays until it is stopped"
+            "closed, but not at the width of the object; the force remains until Stop"
         }
-        (GripperAction::Stop {}, true) => "let go",
+        (GripperAction::Stop {}, true) => "released",
         (GripperAction::Stop {}, false) => "did not stop",
     }
 }

@@ -47,7 +47,10 @@ fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
 /// Returns the error text for a page path without a slash, from which a browser would look for the
 /// files elsewhere.
 fn needs_a_slash(path: &str) -> String {
-    format!("the page's files are beside it: nest its router under \"{path}/\", got \"{path}\"\n")
+    format!(
+        "got the path \"{path}\", expected \"{path}/\": nest the router there, since the \
+        page's files are beside the page\n"
+    )
 }
 
 const HTML: &str = "text/html; charset=utf-8";

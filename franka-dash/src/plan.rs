@@ -71,13 +71,15 @@ pub(crate) fn plan(
         };
         let (after, at) = (blocked.time.as_secs_f64(), millimetres(place(blocked.q)));
         return Err(format!(
-            "the arm would come too near {what} after {after:.1} s, with the end effector at {at}"
+            "the arm would come too close to {what} after {after:.1} s, with the end effector at \
+             {at}"
         ));
     }
     let fastest = fastest(robot, &state, &preview);
     if fastest > SPEED_MAX {
         return Err(format!(
-            "a point of the arm would move at {:.0} mm/s on the way, {:.0} mm/s at most: choose a lower speed",
+            "a point of the arm would move at {:.0} mm/s, expected {:.0} mm/s at most: choose a \
+             lower speed",
             fastest * 1e3,
             SPEED_MAX * 1e3
         ));
@@ -123,15 +125,18 @@ fn refusal(error: MotionError) -> String {
         }) => {
             let why = match joint {
                 Some(joint) => format!("joint {joint} is at the end of its range"),
-                None => "the arm is stretched out, or cannot turn on".to_owned(),
+                None => "the arm is stretched out, or cannot turn further".to_owned(),
             };
             let at = millimetres(Vector3::new(x, y, z));
             let off = translation * 1e3;
-            format!("the straight way cannot be followed beyond {at}, {off:.0} mm off: {why}")
+            format!(
+                "the arm cannot follow the straight line beyond {at}, where it is off by \
+                {off:.0} mm: {why}"
+            )
         }
         MotionError::Path(PathError::Turn { degrees, .. }) => {
             format!(
-                "a turn by {degrees} degrees has no clear direction: turn less than 170 degrees"
+                "the turn is {degrees} degrees, expected less than 170 degrees, since its direction is not clear"
             )
         }
         error => error.to_string(),

@@ -21,13 +21,16 @@ use crate::{admission, page, serve};
 pub enum NameError {
     /// A name is empty, is longer than 40 characters, or contains characters other than letters,
     /// digits and `-_.:~`.
-    #[error("{name:?} is no part of an address: expected 1 to 40 of a-z, A-Z, 0-9 and -_.:~")]
+    #[error(
+        "got the name {name:?}, expected 1 to 40 characters of a-z, A-Z, 0-9 and -_.:~, since \
+        it is part of an address"
+    )]
     Characters {
         /// The name.
         name: String,
     },
     /// Two robots have the same name, or a file of the page has it.
-    #[error("{name:?} is the name of something else already")]
+    #[error("the name {name:?} is already in use, expected a different one")]
     Taken {
         /// The name.
         name: String,

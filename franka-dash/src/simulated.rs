@@ -128,7 +128,7 @@ impl Simulated {
                 cut.await.map_err(stopped)
             }
             Disturbance::Object { width } => {
-                let hand = self.running.hand().ok_or("this simulator has no hand")?;
+                let hand = self.running.hand().ok_or("this simulator has no Hand")?;
                 let placed = hand.with(move |hand| {
                     let fingers = hand.mechanism_mut();
                     match width {
@@ -143,8 +143,9 @@ impl Simulated {
                 match placed.await.map_err(stopped)? {
                     true => Ok(()),
                     false => Err(format!(
-                        "an object of {} m does not fit between the fingers: open them wider, or leave it \
-                         to the scene where they are those of MuJoCo",
+                        "got an object of {} m, which does not fit between the fingers: open them \
+                         wider. \
+                         With MuJoCo, objects come from the scene",
                         width.unwrap_or_default()
                     )),
                 }

@@ -16,7 +16,7 @@ export function events(connection) {
     if (detail) {
       const more = document.createElement("details");
       const summary = document.createElement("summary");
-      summary.textContent = "Why, and what to change";
+      summary.textContent = "Cause and remedy";
       const pre = document.createElement("pre");
       pre.textContent = detail;
       more.append(summary, pre);

@@ -76,5 +76,5 @@ export class Preview {
 
 function describe({ duration, length, fastest }) {
   const millimetres = (metres) => (metres * 1000).toFixed(0);
-  return `Takes ${duration.toFixed(1)} s over ${millimetres(length)} mm; no joint, flange or end effector above ${millimetres(fastest)} mm/s`;
+  return `Takes ${duration.toFixed(1)} s over ${millimetres(length)} mm; joints, flange and end effector at most ${millimetres(fastest)} mm/s`;
 }

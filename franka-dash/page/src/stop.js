@@ -72,9 +72,9 @@ export function stopControls(known) {
   };
   const show = () => {
     const late = [
-      ...(isEarly ? ["Stop not sent, the robots are not known yet; it is sent as soon as they are."] : []),
-      ...line("unsent", "not sent, no connection; it is sent when the page is connected again"),
-      ...line("unconfirmed", "not confirmed by the server; it is sent again"),
+      ...(isEarly ? ["Stop not sent yet: the page is still loading the robots, and sends it then."] : []),
+      ...line("unsent", "not sent yet: no connection; the page sends it after it reconnects"),
+      ...line("unconfirmed", "not confirmed by the server yet; the page sends it again"),
     ];
     clearTimeout(hide);
     if (late.length) {

@@ -28,7 +28,7 @@ export function tuning(connection) {
     place.append(inputs[name].label);
   }
   const label = document.createElement("label");
-  label.title = "Enter switches it: Space stops the arm";
+  label.title = "Press Enter to switch it. Space stops the arm.";
   Object.assign(compensation, { type: "checkbox", disabled: true });
   compensation.dataset.needs = "motion";
   compensation.addEventListener("change", () => send(current()));

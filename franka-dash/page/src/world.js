@@ -20,7 +20,7 @@ const NUMBERS = {
 };
 
 const SPEEDS = [
-  ["", "as fast as it can"], ["0", "paused"], ["0.05", "0.05 ×"], ["0.1", "0.1 ×"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"],
+  ["", "as fast as possible"], ["0", "paused"], ["0.05", "0.05 ×"], ["0.1", "0.1 ×"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"],
   ["1", "1 ×"], ["2", "2 ×"], ["5", "5 ×"],
 ];
 
@@ -49,7 +49,7 @@ export function world(connection) {
   const width = number("Object", "command", { min: 1, max: 80, step: 1, value: 40, unit: " mm" });
   const object = row(
     width.label,
-    named("put", "Put it in the hand", () => disturb({ kind: "object", width: width.get() / 1000 })),
+    named("put", "Put it into the hand", () => disturb({ kind: "object", width: width.get() / 1000 })),
     named("take", "Take it away", () => disturb({ kind: "object", width: null })),
   );
   place.append(object);

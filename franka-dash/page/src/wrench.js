@@ -31,8 +31,8 @@ export function validity(q, tare) {
   const way = turned(q, tare);
   const posture = tare.q.map(degrees).join(" ");
   return way <= tare.near
-    ? `Tare holds here. Taken at ${posture}.`
-    : `A joint has turned by ${degrees(way)} since the tare, which holds within ${degrees(tare.near)}: take a new one. Taken at ${posture}.`;
+    ? `The tare is valid here. Taken at ${posture}.`
+    : `A joint has turned by ${degrees(way)} since the tare, expected ${degrees(tare.near)} at most: take a new tare. Taken at ${posture}.`;
 }
 
 export class Wrench {
@@ -47,7 +47,7 @@ export class Wrench {
     const clear = button("Clear tare", "motion", () => send(false));
     take.id = "tare";
     clear.id = "tare-clear";
-    take.title = "The arm has to rest, untouched, for half a second. Nothing moves.";
+    take.title = "The arm must rest, untouched, for half a second. Nothing moves.";
     const actions = row(take, clear);
     const names = line("", "th");
     fill(names, NAMES);

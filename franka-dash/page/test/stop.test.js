@@ -92,7 +92,7 @@ const focused = (kind) => Object.assign(element(), { clicks: 0, click() { this.c
 test("stop before the robots are known is sent as soon as they are", () => {
   const add = stopControls([]);
   document.getElementById("stop").dispatchEvent(event("click"));
-  assert.match(notice().textContent, /not sent, the robots are not known.*user stop/);
+  assert.match(notice().textContent, /not sent yet: the page is still loading the robots.*user stop/);
   const connections = [new Connection(), new Connection()];
   add(connections.map((connection, i) => new Stop(connection, `robot ${i}`)));
   for (const connection of connections) {

@@ -99,17 +99,17 @@ pub(crate) enum Effect {
 /// The reason why a hold ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Lost {
-    #[error("let go")]
+    #[error("released")]
     LetGo,
-    #[error("no keep-alive for 150 ms")]
+    #[error("no sign of life from the page for 150 ms")]
     Silent,
-    #[error("keep-alive out of sequence: got {got}, expected {expected}")]
+    #[error("sign of life out of sequence: got number {got}, expected {expected}")]
     Sequence { expected: u32, got: u32 },
-    #[error("the connection of the commander has closed")]
+    #[error("the connection of the commanding page has closed")]
     Disconnected,
-    #[error("the commander has given the lease back")]
+    #[error("the commanding page has released the lease")]
     Released,
-    #[error("another motion was asked for in the middle of a hold")]
+    #[error("another motion was requested while the button was held")]
     Replaced,
     #[error("stopped by a viewer")]
     Stopped,

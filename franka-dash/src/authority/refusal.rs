@@ -13,17 +13,23 @@ pub(crate) enum Refusal {
     ViewOnly,
     #[error(transparent)]
     Taken(#[from] Taken),
-    #[error("this viewer does not command; take the lease first")]
+    #[error("this page has no permission to command the arm: take the lease first")]
     NoLease,
     #[error("{0}")]
     Value(String),
-    #[error("the round trip to the page has not been measured within the last second")]
+    #[error(
+        "the round trip to the page was not measured within the last second: wait a moment, \
+        then press again"
+    )]
     Unmeasured,
-    #[error("the round trip to the page takes {0:.0?}; motions need {ROUND_TRIP_MAX:?} or less")]
+    #[error(
+        "the round trip to the page takes {0:.0?}, expected {ROUND_TRIP_MAX:?} or less for \
+        motions"
+    )]
     Latency(Duration),
-    #[error("another motion was running and was stopped; press again")]
+    #[error("another motion was running and was stopped: press again")]
     Holding,
-    #[error("no motion is running, or it has ended; press again")]
+    #[error("no motion is running: press again")]
     NoHold,
     #[error("only a simulated robot can be disturbed")]
     NoSimulator,

@@ -120,7 +120,7 @@ impl Hub {
             let gripper = hub.fingers.as_ref().map(|fingers| &fingers.gripper);
             match recordings.record(&robot, gripper).await {
                 Some(Ok(text)) => hub.tell(Level::Info, text, None),
-                Some(Err(why)) => hub.tell(Level::Error, format!("Recording: {why}"), None),
+                Some(Err(why)) => hub.tell(Level::Error, format!("Recording failed: {why}"), None),
                 None => {}
             }
         });
@@ -144,7 +144,7 @@ impl Hub {
                     hub.stopping.store(false, Ordering::Relaxed);
                     match stopped {
                         Ok(()) => hub.tell(Level::Warning, "Stopped by a viewer".into(), None),
-                        Err(error) => hub.tell(Level::Error, format!("Stop: {error}"), None),
+                        Err(error) => hub.tell(Level::Error, format!("Stop failed: {error}"), None),
                     }
                 });
             }
@@ -156,7 +156,7 @@ impl Hub {
             let hub = self.clone();
             tokio::spawn(async move {
                 if let Err(why) = simulated.disturb(disturbance).await {
-                    hub.tell(Level::Warning, format!("Not done: {why}"), None);
+                    hub.tell(Level::Warning, format!("Disturbance refused: {why}"), None);
                 }
             });
         }
@@ -165,6 +165,6 @@ impl Hub {
 
 async fn recover(robot: Robot, hub: Arc<Hub>) {
     if let Err(error) = robot.recover().await {
-        hub.tell(Level::Error, format!("Recovery: {error}"), None);
+        hub.tell(Level::Error, format!("Recovery failed: {error}"), None);
     }
 }

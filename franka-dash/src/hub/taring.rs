@@ -43,8 +43,8 @@ impl Hub {
             });
             match taken {
                 _ if !newest => {}
-                Ok(_) => hub.tell(Level::Info, "The wrench is tared".into(), None),
-                Err(error) => hub.tell(Level::Warning, format!("Tare: {error}"), None),
+                Ok(_) => hub.tell(Level::Info, "Tare taken".into(), None),
+                Err(error) => hub.tell(Level::Warning, format!("Tare failed: {error}"), None),
             }
         });
     }
@@ -54,7 +54,10 @@ impl Hub {
     pub(super) fn check_tare(&self, event: &EventKind) {
         let why = match event {
             EventKind::LoadChanged { .. } => "the load has changed",
-            EventKind::Unrecognised { .. } => "the robot is not recognised",
+            EventKind::Unrecognised { .. } => {
+                "the robot differs from the robot before the \
+                connection was lost"
+            }
             _ => return,
         };
         let mut was_tared = false;
@@ -64,7 +67,7 @@ impl Hub {
             was_tared
         });
         if was_tared {
-            let text = format!("The tare is cleared: {why}. Take a new one");
+            let text = format!("Tare cleared: {why}. Take a new tare");
             self.tell(Level::Warning, text, None);
         }
     }

@@ -71,13 +71,13 @@ pub(crate) struct Conditions {
 
 impl Conditions {
     fn check(&self) -> Result<(), String> {
-        within("a share of lost datagrams", "", self.loss, 0.0..=0.5)?;
-        within("a length of bursts", "", self.burst, 1.0..=100.0)?;
-        within("a delay", " ms", self.delay_ms, 0.0..=20.0)?;
-        within("a jitter", " ms", self.jitter_ms, 0.0..=20.0)?;
+        within("the share of lost datagrams", "", self.loss, 0.0..=0.5)?;
+        within("the length of bursts", "", self.burst, 1.0..=100.0)?;
+        within("the delay", " ms", self.delay_ms, 0.0..=20.0)?;
+        within("the jitter", " ms", self.jitter_ms, 0.0..=20.0)?;
         let often = self.stalls_per_second;
-        within("a number of stalls per second", "", often, 0.0..=50.0)?;
-        within("a length of stalls", " ms", self.stall_ms, 0.0..=50.0)
+        within("the number of stalls per second", "", often, 0.0..=50.0)?;
+        within("the length of stalls", " ms", self.stall_ms, 0.0..=50.0)
     }
 }
 
@@ -90,19 +90,19 @@ impl Disturbance {
                 offset,
                 force,
             } => {
-                within("a link to push", "", *link, 1..=7)?;
+                within("the link to push", "", *link, 1..=7)?;
                 let each = |what, unit, numbers: &[f64; 3], most: f64| {
                     let mut numbers = numbers.iter();
                     numbers.try_for_each(|x| within(what, unit, *x, -most..=most))
                 };
-                let what = "a push's offset from the link's frame";
+                let what = "the push's offset from the link's frame";
                 each(what, " m", offset, OFFSET_MAX)?;
-                each("a component of a push", " N", force, FORCE_MAX)
+                each("a component of the push", " N", force, FORCE_MAX)
             }
             Self::Network { conditions } => conditions.check(),
-            Self::Cut { milliseconds } => within("a cut", " ms", *milliseconds, 1..=10_000),
-            Self::Object { width: Some(width) } => within("a width", " m", *width, 0.001..=0.08),
-            Self::Load { mass } => within("a load", " kg", *mass, 0.0..=5.0),
+            Self::Cut { milliseconds } => within("the cut", " ms", *milliseconds, 1..=10_000),
+            Self::Object { width: Some(width) } => within("the width", " m", *width, 0.001..=0.08),
+            Self::Load { mass } => within("the load", " kg", *mass, 0.0..=5.0),
             Self::UserStop { .. }
             | Self::Guide { .. }
             | Self::Brakes { .. }

@@ -26,8 +26,8 @@ pub(crate) enum GripperAction {
 
 impl GripperAction {
     pub(super) fn check(&self) -> Result<(), String> {
-        let width = |width: f64| within("a width", " m", width, 0.0..=0.2);
-        let speed = |speed: f64| within("a speed of the fingers", " m/s", speed, 0.001..=0.2);
+        let width = |width: f64| within("the width", " m", width, 0.0..=0.2);
+        let speed = |speed: f64| within("the speed of the fingers", " m/s", speed, 0.001..=0.2);
         match *self {
             Self::Home {} | Self::Stop {} => Ok(()),
             Self::Move { width: w, speed: v } => width(w).and(speed(v)),
@@ -38,8 +38,8 @@ impl GripperAction {
                 force,
             } => {
                 width(w).and(speed(v))?;
-                within("a tolerance", " m", tolerance, 0.0..=0.2)?;
-                within("a force of the fingers", " N", force, 1.0..=140.0)
+                within("the tolerance", " m", tolerance, 0.0..=0.2)?;
+                within("the force of the fingers", " N", force, 1.0..=140.0)
             }
         }
     }

@@ -78,7 +78,7 @@ impl Request {
             Self::Take { name } => match name.chars().count() {
                 1..=NAME_MAX if !name.trim().is_empty() => Ok(()),
                 got => Err(format!(
-                    "a name has 1 to {NAME_MAX} characters, and not only spaces; got {got}"
+                    "got a name of {got} characters, expected 1 to {NAME_MAX}, and not only spaces"
                 )),
             },
             Self::Seen { .. }
@@ -95,7 +95,7 @@ impl Request {
 }
 
 fn check_speed(speed: f64) -> Result<(), String> {
-    within("a speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
+    within("the speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
 }
 
 /// Checks that `got` is in a range; otherwise returns an error text. `what` is the name of the
@@ -109,7 +109,7 @@ fn within<T: PartialOrd + Display>(
     match range.contains(&got) {
         true => Ok(()),
         false => Err(format!(
-            "{what} is {} to {}{unit}, got {got}",
+            "{what} is {got}{unit}, expected {} to {}{unit}",
             range.start(),
             range.end()
         )),
@@ -188,7 +188,7 @@ mod tests {
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":0,"offset":[0,0,0],"force":[0,0,0]}}"#,
-                "a link to push is 1 to 7, got 0",
+                "the link to push is 0, expected 1 to 7",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,2,0],"force":[0,0,0]}}"#,
@@ -200,7 +200,7 @@ mod tests {
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"network","conditions":{"loss":0.6,"burst":1,"delay_ms":0,"jitter_ms":0,"stalls_per_second":0,"stall_ms":0}}}"#,
-                "a share of lost datagrams is 0 to 0.5, got 0.6",
+                "the share of lost datagrams is 0.6, expected 0 to 0.5",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"cut","milliseconds":0}}"#,

@@ -46,14 +46,15 @@ impl Motion {
                 match norm.is_finite() && norm > 1e-6 {
                     true => Ok(()),
                     false => Err(format!(
-                        "a direction has three finite numbers, not all zero; got {direction:?}"
+                        "got the direction {direction:?}, expected three finite numbers, not all \
+                         zero"
                     )),
                 }
             }
-            Self::Joint { joint, .. } => within("a joint", "", *joint, 1..=7),
-            Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => {
-                Err(format!("joint positions are finite numbers; got {q:?}"))
-            }
+            Self::Joint { joint, .. } => within("the joint", "", *joint, 1..=7),
+            Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => Err(format!(
+                "got the joint positions {q:?}, expected finite numbers"
+            )),
             Self::Pose {
                 position,
                 orientation,

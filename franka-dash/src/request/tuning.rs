@@ -64,9 +64,14 @@ impl Tuning {
 
     pub(super) fn check(&self) -> Result<(), String> {
         let end_effector = self.end_effector;
-        within("a factor of the end effector", "", end_effector, 0.1..=4.0)?;
-        within("a factor of the joints", "", self.joints, 0.1..=2.0)?;
-        within("a factor of the damping", "", self.damping, 0.5..=1.3)?;
-        within("a force cap", " N", self.force_cap, 5.0..=60.0)
+        within(
+            "the factor of the end effector",
+            "",
+            end_effector,
+            0.1..=4.0,
+        )?;
+        within("the factor of the joints", "", self.joints, 0.1..=2.0)?;
+        within("the factor of the damping", "", self.damping, 0.5..=1.3)?;
+        within("the force cap", " N", self.force_cap, 5.0..=60.0)
     }
 }

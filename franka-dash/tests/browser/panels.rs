@@ -38,7 +38,7 @@ pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.check_rest()?;
     take(page)?;
     for (button, tared, said) in [
-        ("#tare", true, "Tare holds here"),
+        ("#tare", true, "The tare is valid here"),
         ("#tare-clear", false, ""),
     ] {
         page.click(button)?;

@@ -49,12 +49,12 @@ fn the_gripper_homes_opens_holds_an_object_and_loses_it() {
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
     act(&mut viewer, json!({"kind": "home"}));
-    viewer.event("Gripper: knows how wide it opens");
+    viewer.event("Gripper: homed: the greatest width is known");
     act(
         &mut viewer,
         json!({"kind": "move", "width": 0.05, "speed": 0.1}),
     );
-    viewer.event("Gripper: at the width");
+    viewer.event("Gripper: reached the width");
     let open = viewer.wait_for("gripper");
     assert_eq!(open["max_width"], 0.08);
     let width = open["width"].as_f64().expect("a number");

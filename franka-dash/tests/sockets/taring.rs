@@ -30,7 +30,7 @@ fn a_tare_is_shown_to_every_viewer_until_it_is_cleared() {
     while force_z(&mut viewer) < 2.0 {}
     served.wait_for_rest();
     tare(&mut viewer, true);
-    viewer.event("The wrench is tared");
+    viewer.event("Tare taken");
     let taken = other.wait_until("tare", |it| it["tare"] != Value::Null);
     let taken = &taken["tare"];
     let numbers = |name: &str| -> Vec<f64> {
@@ -61,7 +61,7 @@ fn a_newcomer_is_told_the_tare_and_a_cleared_one_does_not_come_back() {
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
     tare(&mut viewer, true);
-    viewer.event("The wrench is tared");
+    viewer.event("Tare taken");
     // The socket sends it as its first message.
     let mut late = Viewer::greeted(served.address, "ws");
     assert_ne!(late.wait_for("tare")["tare"], Value::Null);
@@ -82,9 +82,9 @@ fn a_tare_is_cleared_when_the_load_changes() {
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
     tare(&mut viewer, true);
-    viewer.event("The wrench is tared");
+    viewer.event("Tare taken");
     served.set_load(0.2);
-    viewer.event("The tare is cleared: the load has changed");
+    viewer.event("Tare cleared: the load has changed");
     let mut late = Viewer::greeted(served.address, "ws");
     assert_eq!(late.wait_for("tare")["tare"], Value::Null);
 }
@@ -103,5 +103,5 @@ fn an_arm_that_moves_is_not_tared() {
     viewer.send(json!({"type": "end"}));
     served.wait_for_rest();
     tare(&mut viewer, true);
-    viewer.event("The wrench is tared");
+    viewer.event("Tare taken");
 }
