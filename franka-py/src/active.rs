@@ -217,7 +217,8 @@ impl ActiveControl {
             Ok(guard) => Ok(guard),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
-                "another thread reads or writes: active control belongs to one thread at a time",
+                "another thread is reading or writing, expected one thread at a time for active \
+                 control",
             )),
         }
     }

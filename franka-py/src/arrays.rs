@@ -45,7 +45,7 @@ fn converted<'py>(
     argument: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let py = argument.py();
-    let got = |what: &str| PyTypeError::new_err(format!("{name} holds no numbers: got {what}"));
+    let got = |what: &str| PyTypeError::new_err(format!("{name} has {what}, expected numbers"));
     if argument.is_none() {
         return Err(got("None"));
     }
@@ -54,7 +54,7 @@ fn converted<'py>(
         if !cause.is_instance_of::<PyException>(py) {
             return cause;
         }
-        PyTypeError::new_err(format!("{name} holds no numbers: {cause}"))
+        PyTypeError::new_err(format!("{name} has no numbers: {cause}"))
     };
     let numpy = py.import("numpy")?;
     let array = numpy.call_method1("asarray", (argument,));
@@ -185,7 +185,7 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
 /// `ValueError`.
 pub(crate) fn from_xyzw(name: &str, position: [f64; 3], quaternion: [f64; 4]) -> PyResult<Pose> {
     pose::from_xyzw(position, quaternion).ok_or_else(|| {
-        let text = format!("{name} has the quaternion {quaternion:?}, which has no direction");
+        let text = format!("{name} has the quaternion {quaternion:?}, expected a length above 0");
         PyValueError::new_err(text)
     })
 }

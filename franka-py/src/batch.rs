@@ -96,7 +96,7 @@ pub(crate) fn common_count(
 ) -> PyResult<Option<usize>> {
     match (count, others) {
         (Some(one), Some(two)) if one != two => Err(PyValueError::new_err(format!(
-            "{other} has {two} rows, expected {one}, as {name} has, or a single one"
+            "{other} has {two} rows, expected {one} as in {name}, or one row"
         ))),
         (one, two) => Ok(one.or(two)),
     }

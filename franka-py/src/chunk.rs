@@ -72,7 +72,12 @@ fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
             (0..count)
                 .map(|i| {
                     let step = u32::try_from(i).ok().and_then(|i| dt.checked_mul(i));
-                    step.ok_or_else(|| PyValueError::new_err("dt is too long"))
+                    step.ok_or_else(|| {
+                        PyValueError::new_err(
+                            "dt is too long, expected at most 60 \
+                        s for the whole chunk",
+                        )
+                    })
                 })
                 .collect()
         }
@@ -86,7 +91,8 @@ fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
             times.map(|time| seconds("times", time)).collect()
         }
         _ => Err(PyValueError::new_err(
-            "a chunk needs either dt, the time between two points, or the times of all points",
+            "got both or neither of dt and times, expected one: dt, the time between two points, \
+             or the times of all points",
         )),
     }
 }

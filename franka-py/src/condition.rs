@@ -54,7 +54,8 @@ impl Condition {
 
     fn __bool__(&self) -> PyResult<bool> {
         Err(PyTypeError::new_err(
-            "a condition is neither true nor false here: join conditions by & | ~, each in brackets",
+            "a condition is neither true nor false in Python: join conditions with & | ~, each in \
+             brackets",
         ))
     }
 

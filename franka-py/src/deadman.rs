@@ -29,9 +29,7 @@ impl Deadman {
             .unwrap_or_else(PoisonError::into_inner)
             .take();
         monitor.ok_or_else(|| {
-            PyValueError::new_err(
-                "deadman is bound to a session already, or was: expected a new one",
-            )
+            PyValueError::new_err("deadman is or was bound to a session, expected a new Deadman")
         })
     }
 }

@@ -51,8 +51,8 @@ pub(crate) fn target(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Target
         Some(target) => Ok(target),
         None => match whole_pose(name, argument) {
             Err(_) if is(argument, "Offset")? => Err(PyTypeError::new_err(format!(
-                "{name} is an Offset, expected a whole pose or Joints: turn it into a pose, \
-                 robot.pose() @ way"
+                "{name} is an Offset, expected a pose or Joints: make a pose with robot.pose() @ \
+                 way"
             ))),
             pose => Ok(pose?.into()),
         },

@@ -150,6 +150,6 @@ pub(crate) fn at_least_zero(name: &str, got: f64) -> PyResult<f64> {
     if got.is_finite() && got >= 0.0 {
         return Ok(got);
     }
-    let text = format!("{name} is {got}, expected a finite number from 0 on");
+    let text = format!("{name} is {got}, expected a finite number of 0 or more");
     Err(PyValueError::new_err(text))
 }

@@ -181,8 +181,10 @@ impl Sim {
         offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Touch> {
         let point = Vector3::from(vector::<3>("point", point)?);
-        let normal = UnitVector3::try_new(vector::<3>("normal", normal)?.into(), 1e-9)
-            .ok_or_else(|| PyValueError::new_err("normal has no length"))?;
+        let normal =
+            UnitVector3::try_new(vector::<3>("normal", normal)?.into(), 1e-9).ok_or_else(|| {
+                PyValueError::new_err("normal has the length 0, expected a direction")
+            })?;
         let wall = franka_sim::Touch::wall(point, normal.into_inner());
         touch(this, wall, Some((at, offset)), (duration, once_moving))
     }
@@ -247,7 +249,8 @@ impl Sim {
     #[pyo3(signature = (error, *, once_moving = false))]
     fn trip(&self, py: Python<'_>, error: &str, once_moving: bool) -> PyResult<()> {
         let found = RobotError::from_name(error).ok_or_else(|| {
-            let names = "a name such as 'joint_reflex': the book's Errors by cause has all of them";
+            let names = "a name such as 'joint_reflex'; the book's page Errors by cause lists all \
+                names";
             PyValueError::new_err(format!("error is {error:?}, expected {names}"))
         })?;
         let trip = move |robot: &mut franka_sim::Robot| robot.trip(found);
@@ -297,7 +300,10 @@ impl Sim {
         })?;
         let problem = match placed {
             Some(true) => return Ok(()),
-            Some(false) => format!("an object of {width} m does not fit between the fingers"),
+            Some(false) => format!(
+                "got an object of {width} m, which does not fit between the \
+                fingers"
+            ),
             None => "this robot has no Hand: start it with hand=True".into(),
         };
         Err(PyValueError::new_err(problem))

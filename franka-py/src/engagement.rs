@@ -86,7 +86,12 @@ impl Engagement {
         _rest: &Bound<'_, PyAny>,
     ) -> PyResult<Operation> {
         let session = self.entered.session.get();
-        let session = session.ok_or_else(|| PyTypeError::new_err("the session was not entered"))?;
+        let session = session.ok_or_else(|| {
+            PyTypeError::new_err(
+                "the session has not begun: use \
+            'with' or 'async with'",
+            )
+        })?;
         Ok(leave(session.clone(), kind))
     }
 }
@@ -95,8 +100,12 @@ impl Engagement {
 fn region(region: &Bound<'_, PyAny>) -> PyResult<Obstacle> {
     if is(region, "Plane")? {
         let normal = Vector3::from(vector::<3>("normal", &region.getattr("normal")?)?);
-        let normal = UnitVector3::try_new(normal, 1e-9)
-            .ok_or_else(|| PyValueError::new_err("the normal of a plane has no length"))?;
+        let normal = UnitVector3::try_new(normal, 1e-9).ok_or_else(|| {
+            PyValueError::new_err(
+                "the normal of a plane has the length 0, \
+                expected a direction",
+            )
+        })?;
         let offset = region.getattr("offset")?.extract()?;
         return Ok(Obstacle::Plane { normal, offset });
     }

@@ -26,8 +26,8 @@ pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explana
             Some(RobotKind::Fr3) => Model::fr3(),
             Some(RobotKind::Fer) => Model::fer(),
             _ => {
-                let text = "the recording does not say which robot it is of, or is of several: \
-                            choose one by robot(name)";
+                let text = "the recording has several robots or does not name its robot, expected \
+                    one: choose it with robot(name)";
                 return Err(PyValueError::new_err(text));
             }
         };

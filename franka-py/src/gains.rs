@@ -74,7 +74,7 @@ pub(crate) fn _gains<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, Py
         "droid" => Gains::droid(),
         _ => {
             return Err(PyValueError::new_err(format!(
-                "no gains are called {name:?}"
+                "got the gains {name:?}, expected a known name"
             )));
         }
     };

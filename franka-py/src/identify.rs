@@ -159,7 +159,7 @@ impl PyIdentified {
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
         let broken = |error: &dyn std::fmt::Display| {
-            PyValueError::new_err(format!("this is no identification: {error}"))
+            PyValueError::new_err(format!("text is not an identification: {error}"))
         };
         let found: Identified = serde_json::from_str(text).map_err(|error| broken(&error))?;
         found.check(found.kind).map_err(|error| broken(&error))?;

@@ -218,7 +218,7 @@ fn log(py: Python<'_>, report: &Report) -> PyResult<()> {
     let logger = logging.call_method1("getLogger", (name.as_str(),))?;
     if report.dropped > 0 {
         let text = format!(
-            "{} reports were dropped: they came faster than they were taken",
+            "{} log messages were dropped: they arrived faster than Python could handle them",
             report.dropped
         );
         logger.call_method1("warning", (text,))?;

@@ -122,7 +122,10 @@ impl Member {
                 return Err(PyValueError::new_err(text));
             };
             if !member.is_of_session(told) {
-                let text = format!("motion {number} is not one of arms[{number}] of this team");
+                let text = format!(
+                    "motion {number} belongs to another arm, expected a motion of \
+                    arms[{number}] of this team"
+                );
                 return Err(PyValueError::new_err(text));
             }
         }
@@ -131,7 +134,7 @@ impl Member {
                 take(&member.of);
                 (member.take)()
             });
-            let begun = "a motion has begun already: it takes one that was not awaited";
+            let begun = "got a motion that has begun, expected a motion that was not awaited";
             let taken = taken.ok_or_else(|| PyValueError::new_err(begun))?;
             // It is awaited as a part of the joint motion.
             motion.call_method0("close")?;

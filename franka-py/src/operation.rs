@@ -139,8 +139,10 @@ impl Operation {
             begun => begun,
         };
         let problem = match &begun {
-            Stage::Coroutine(_) => "needs an event loop, which its targets come from",
-            _ => "was awaited already: call it again for another",
+            Stage::Coroutine(_) => {
+                "needs a running event loop, since its targets come from an asynchronous iterator"
+            }
+            _ => "was already awaited: call it again for another motion or result",
         };
         self.replace(begun);
         Err(PyRuntimeError::new_err(format!(
@@ -376,7 +378,7 @@ fn warn_of_unawaited(py: Python<'_>, name: &str) {
 /// `ValueError` unless it is finite and not negative.
 pub(crate) fn seconds(name: &str, seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|_| {
-        let text = format!("{name} is {seconds} s, expected a number from 0 on");
+        let text = format!("{name} is {seconds} s, expected a number of 0 or more");
         PyValueError::new_err(text)
     })
 }

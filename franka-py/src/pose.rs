@@ -19,7 +19,7 @@ pub(crate) fn from_xyzw<'py>(
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let quaternion = vector("quaternion", quaternion)?;
     let made = pose::from_xyzw(vector("position", position)?, quaternion);
-    let text = || format!("quaternion is {quaternion:?}, expected one that is longer than zero");
+    let text = || format!("quaternion is {quaternion:?}, expected a length above 0");
     let made = made.ok_or_else(|| PyValueError::new_err(text()))?;
     Ok(pose_array(py, &made))
 }

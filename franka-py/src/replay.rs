@@ -117,7 +117,7 @@ impl Motion {
         // The kind of robot must be known.
         recording.get().view(py, |_| ())?;
         let Some(kind) = recording.get().kind() else {
-            return refused("the recording does not say which robot it is of".to_owned());
+            return refused("the recording does not name the kind of its robot".to_owned());
         };
         let options = ReplayOptions::default().speed(speed);
         Ok(Self {

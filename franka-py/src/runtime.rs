@@ -97,7 +97,10 @@ pub(crate) fn wait<T: Send + 'static>(
                 match tokio::time::timeout_at(until, &mut task).await {
                     Ok(outcome) => return Ok(outcome),
                     Err(_) if deadline.is_some_and(|deadline| deadline <= Instant::now()) => {
-                        return Err(PyTimeoutError::new_err("not done in time, and cancelled"));
+                        return Err(PyTimeoutError::new_err(
+                            "not done within the timeout, and \
+                            cancelled",
+                        ));
                     }
                     Err(_) => Python::attach(|py| py.check_signals())?,
                 }

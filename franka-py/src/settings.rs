@@ -306,7 +306,7 @@ fn arguments<'py, const N: usize>(
         let place = names.iter().position(|known| *known == name);
         let place = place.ok_or_else(|| {
             let names = names.join(", ");
-            PyTypeError::new_err(format!("got {name}, expected some of {names}"))
+            PyTypeError::new_err(format!("got {name}, expected one of {names}"))
         })?;
         if given[place].replace(value).is_some() {
             return Err(PyTypeError::new_err(format!("got {name} twice")));

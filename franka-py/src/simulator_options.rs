@@ -129,7 +129,7 @@ fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
     let is_ideal = keywords.value("ideal")?.unwrap_or(false);
     let name = match arm.as_deref() {
         Some(name) if is_ideal && name != "ideal" => {
-            let text = format!("arm is {name:?} and ideal is True: expected one of them");
+            let text = format!("got arm={name:?} and ideal=True, expected one of them");
             return Err(PyValueError::new_err(text));
         }
         _ if is_ideal => "ideal",

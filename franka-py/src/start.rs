@@ -38,7 +38,8 @@ impl StartTicket {
         let ticket = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         ticket.ok_or_else(|| {
             PyRuntimeError::new_err(
-                "this ticket has been given to a motion: each takes one of its own",
+                "this ticket already belongs to a motion, expected a separate ticket for each \
+                 motion",
             )
         })
     }

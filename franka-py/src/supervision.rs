@@ -54,8 +54,8 @@ pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
             policy = policy.recover(times, seconds("the window of recover", window)?);
         }
         (None, Some(_)) => {
-            let text =
-                "only names errors to recover from, but recover is None: expected (times, seconds)";
+            let text = "got only, which names errors to recover from, without recover: expected \
+                 recover=(times, seconds) too";
             return Err(PyValueError::new_err(text));
         }
         (None, None) => {}
@@ -132,8 +132,7 @@ pub(crate) fn supervise_by(
     let flag = |policy: &Bound<'_, PyAny>| policy.cast::<PyBool>().ok().map(|flag| flag.is_true());
     let policy = match policy.map(|policy| (policy, flag(policy))) {
         None | Some((_, Some(false))) if ask.is_some() => {
-            let text =
-                "ask_before_recovery is given, but the robot is not supervised: expected a Policy";
+            let text = "got ask_before_recovery without supervision, expected a Policy as well";
             return Err(PyValueError::new_err(text));
         }
         None | Some((_, Some(false))) => return Ok(builder),

@@ -245,7 +245,7 @@ impl Team {
         if got == expected {
             return Ok(());
         }
-        let text = format!("got {got} {name}, expected {expected}: one for each arm");
+        let text = format!("got {got} {name}, expected {expected}, one for each arm");
         Err(PyTypeError::new_err(text))
     }
 

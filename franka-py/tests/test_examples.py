@@ -27,7 +27,7 @@ PRINTS = {
     "pick": r"holding 30\.0 mm\nput down\n",
     "guarded_move": r"contact at \d\.\d+ m .*\n",
     "impedance_law": r"tried out: 0\.0\d+ rad .*\nheld for 1\.00 s .*\n",
-    "explain": r"cartesian_reflex\n<RecordingFile of fr3, .*What touched the arm.*explained\n",
+    "explain": r"cartesian_reflex\n<RecordingFile of fr3, .*Contact with the arm.*explained\n",
     "record": r"\d{3,} cycles, \d+ lost\neach joint .* at most \[[0-9. ]*\] rad\n",
     "recover": r"cartesian_reflex\n.*\nrecovered\n",
     "team": r"arrived after .*\nback on the table\n",

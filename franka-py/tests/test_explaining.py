@@ -40,7 +40,7 @@ def check(explanation: Explanation, error: ControlError, kind: str) -> None:
     assert explanation.first_ms < explanation.end_ms <= explanation.last_ms
     assert repr(explanation).startswith(f"<Explanation of {explanation.cycles} cycles of an {kind}, stopped by {error.errors[0]}")
     text = str(explanation)
-    assert f"Why the robot stopped at {explanation.end_ms} ms" in text and "What touched the arm" in text
+    assert f"Why the robot stopped at {explanation.end_ms} ms" in text and "Contact with the arm" in text
     assert explanation.cause == error.diagnosis and explanation.findings == error.findings
     collisions = [moment for moment in explanation.timeline if moment.kind == "collision"]
     assert collisions and all(explanation.first_ms <= moment.time_ms <= explanation.last_ms for moment in collisions)
@@ -63,7 +63,7 @@ def test_a_recording_is_explained(hit: tuple[Path, ControlError]) -> None:
     svg = explanation.svg()
     assert ElementTree.fromstring(svg).tag.endswith("svg") and len(svg) < 200_000
     html = explanation._repr_html_()
-    assert html.startswith(svg) and "<pre>" in html and "What touched the arm" in html
+    assert html.startswith(svg) and "<pre>" in html and "Contact with the arm" in html
     # Before the push there was nothing to explain.
     before = explain(recording.between(end=int(recording.column("host_time")[4])))
     assert before.cause is None and before.errors == [] and "not stopped" in repr(before)

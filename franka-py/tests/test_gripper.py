@@ -162,8 +162,8 @@ def test_without_a_connection_it_says_what_to_do() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((float("nan"), 0.1), "width is NaN, expected a finite number from 0 on"),
-        ((0.03, -0.1), "speed is -0.1, expected a finite number from 0 on"),
+        ((float("nan"), 0.1), "width is NaN, expected a finite number of 0 or more"),
+        ((0.03, -0.1), "speed is -0.1, expected a finite number of 0 or more"),
     ],
 )
 def test_arguments_that_make_no_sense_are_refused(arguments: tuple[float, float], message: str) -> None:

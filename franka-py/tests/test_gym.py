@@ -173,7 +173,7 @@ def unknown(name: str) -> Any:
         (lambda: gym.FrankaEnv(cycles=0), "cycles is 0"),
         (lambda: gym.FrankaEnv(max_steps=0), "max_steps is 0"),
         (lambda: gym.FrankaEnv(action_scale=[1.0]), r"action_scale has the shape \(1,\), expected \(\) or \(7,\)"),
-        (lambda: gym.FrankaEnv(action_scale=-1.0), "action_scale holds numbers that are not positive"),
+        (lambda: gym.FrankaEnv(action_scale=-1.0), "action_scale has numbers that are not positive"),
         (lambda: gym.part(np.zeros(69), "pose"), "name is 'pose', expected one of q, dq, "),
         (lambda: gym.FrankaVectorEnv(2).reset(seed=[1]), "seed has 1 numbers, expected 2"),
         (lambda: gym.FrankaVectorEnv(2, reward=lambda o, a: [0.0]).step(np.zeros((2, 7))), "reward returned the shape"),

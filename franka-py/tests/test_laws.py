@@ -414,7 +414,7 @@ def test_numba_refuses_a_law_that_allocates() -> None:
         return 0
 
     for law in (makes_zeros, subtracts, multiplies):
-        with pytest.raises(TypeError, match=f"{law.__name__} is no law that numba can compile: it allocates"):
+        with pytest.raises(TypeError, match=f"{law.__name__} is not a law that numba can compile: it allocates"):
             laws.compiled(law)
 
 

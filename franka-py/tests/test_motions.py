@@ -79,7 +79,7 @@ def test_a_pose_is_said_in_many_ways(robot: Robot) -> None:
 
 
 def test_an_offset_where_only_a_place_can_be_is_a_type_error(robot: Robot) -> None:
-    with pytest.raises(TypeError, match="waypoint 1 is an Offset, expected a whole pose"):
+    with pytest.raises(TypeError, match="waypoint 1 is an Offset, expected a pose or Joints"):
         robot.move_through([Offset([0.0, 0.0, 0.02])])  # type: ignore[list-item]
     with pytest.raises(TypeError, match="target is an Offset"):
         force_z(8.0).then(Offset([0.0, 0.0, 0.02]))  # type: ignore[arg-type]
@@ -149,7 +149,7 @@ def test_a_target_out_of_reach_raises_and_nothing_moves(robot: Robot) -> None:
 def test_the_joints_go_where_there_is_no_straight_line(robot: Robot) -> None:
     target = robot.pose()
     target[:3, 3] -= [2.2 * target[0, 3], 0.0, 0.4]  # to the other side of the base
-    with pytest.raises(MotionError, match="cannot go to .* on a straight line"):
+    with pytest.raises(MotionError, match="cannot move to .* in a straight line"):
         robot.move_to(target).wait()
     robot.move_to(target, joint_fallback=True).wait()
     np.testing.assert_allclose(robot.pose(), target, atol=3e-3)
@@ -181,17 +181,17 @@ def test_options_change_the_motion(robot: Robot) -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda robot: robot.move_to(None), "^target holds no numbers: got None"),
-        (lambda robot: robot.move_by(None), "^way holds no numbers: got None"),
-        (lambda robot: robot.move_joints([0.0] * 6 + [None]), "^q holds no numbers: got None"),
-        (lambda robot: robot.move_joints(["0"] * 7), "^q holds no numbers: got text"),
-        (lambda robot: robot.move_joints([True] * 7), "^q holds no numbers: got truth values"),
-        (lambda robot: robot.move_joints(np.zeros(7) * 1j), "^q holds no numbers: got complex numbers"),
-        (lambda robot: robot.move_through([None]), "^waypoint 1 holds no numbers: got None"),
-        (lambda robot: robot.move_through([Waypoint(None)]), "^waypoint 1 holds no numbers: got None"),  # type: ignore[arg-type]
-        (lambda robot: Latest().set(None), "^target holds no numbers: got None"),  # type: ignore[arg-type]
-        (lambda robot: Joints(None), "^q holds no numbers: got None"),  # type: ignore[arg-type]
-        (lambda robot: robot.follow(iter([None])).wait(), "^a target holds no numbers: got None"),
+        (lambda robot: robot.move_to(None), "^target has None, expected numbers"),
+        (lambda robot: robot.move_by(None), "^way has None, expected numbers"),
+        (lambda robot: robot.move_joints([0.0] * 6 + [None]), "^q has None, expected numbers"),
+        (lambda robot: robot.move_joints(["0"] * 7), "^q has text, expected numbers"),
+        (lambda robot: robot.move_joints([True] * 7), "^q has truth values, expected numbers"),
+        (lambda robot: robot.move_joints(np.zeros(7) * 1j), "^q has complex numbers, expected numbers"),
+        (lambda robot: robot.move_through([None]), "^waypoint 1 has None, expected numbers"),
+        (lambda robot: robot.move_through([Waypoint(None)]), "^waypoint 1 has None, expected numbers"),  # type: ignore[arg-type]
+        (lambda robot: Latest().set(None), "^target has None, expected numbers"),  # type: ignore[arg-type]
+        (lambda robot: Joints(None), "^q has None, expected numbers"),  # type: ignore[arg-type]
+        (lambda robot: robot.follow(iter([None])).wait(), "^a target has None, expected numbers"),
         (lambda robot: robot.record("q"), r"^columns is 'q', expected a list of names: \['q'\]"),
     ],
 )
@@ -414,7 +414,7 @@ def test_a_motion_is_awaited_once(robot: Robot) -> None:
         motion = robot.move_by([0.0, 0.0, 0.01])
         await motion
         assert repr(motion) == "<Robot.move_by over>"
-        with pytest.raises(RuntimeError, match=r"Robot.move_by\(\) was awaited already: call it again for another"):
+        with pytest.raises(RuntimeError, match=r"Robot.move_by\(\) was already awaited: call it again for another"):
             await motion
 
     asyncio.run(main())

@@ -28,7 +28,7 @@ def test_a_turn_keeps_the_position() -> None:
 
 
 def test_what_is_no_pose_is_refused() -> None:
-    with pytest.raises(ValueError, match="expected one that is longer than zero"):
+    with pytest.raises(ValueError, match="expected a length above 0"):
         pose.from_xyzw([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0])
     with pytest.raises(ValueError, match="pose"):
         pose.to_xyzw(np.zeros((4, 4)))

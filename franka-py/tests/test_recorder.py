@@ -61,7 +61,7 @@ def test_the_arms_of_a_team_are_recorded(fr3: Robot, fer: Robot, tmp_path: Path)
                     recorder.attach_team(team, ["left"])
                 await recorder.attach_team(team, ["left", "right"])
                 await team.arms[0].move_by([0.0, 0.0, 0.01])
-            with pytest.raises(RecordError, match='a robot called "left" is recorded already') as raised:
+            with pytest.raises(RecordError, match='a robot named "left" is already recorded') as raised:
                 await recorder.attach(fr3, "left")
             assert (raised.value.kind, raised.value.party) == ("same_name", "caller")
         assert recorder.status().cycles > 300
@@ -98,12 +98,12 @@ def test_what_is_wrong_is_said(fr3: Robot, tmp_path: Path) -> None:
     with pytest.raises(RecordError, match="a recording never overwrites a file") as exists:
         Recorder.to_file(path)
     assert (exists.value.kind, exists.value.party) == ("exists", "caller")
-    with pytest.raises(RecordError, match="cannot make .*No such file") as create:
+    with pytest.raises(RecordError, match="cannot create .*No such file") as create:
         Recorder.to_file(tmp_path / "missing" / "run.mcap")
     assert (create.value.kind, create.value.party) == ("create", "host")
     for options, text in (
-        ({"flush": 5.0}, "flush is 5s; expected 0.01 s to 1 s"),
-        ({"rotate_bytes": 10}, "rotation.bytes is 10; expected 1000000 or more"),
+        ({"flush": 5.0}, "flush is 5s, expected 0.01 s to 1 s"),
+        ({"rotate_bytes": 10}, "rotation.bytes is 10, expected 1000000 or more"),
         ({"rotate_time": -1.0}, "rotate_time is -1 s, expected"),
         ({"black_box": BlackBox(tmp_path, before=0.5)}, "black_box.before is 500ms"),
     ):
@@ -124,9 +124,9 @@ def test_what_is_wrong_is_said(fr3: Robot, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="has an empty task"):
         recorder.episode("up", task=" ")
     with recorder.episode("up", task="move up") as episode:
-        with pytest.raises(RuntimeError, match="another episode of this recording is under way"):
+        with pytest.raises(RuntimeError, match="another episode of this recording is running"):
             recorder.episode("down", task="move down").__enter__()
-        with pytest.raises(RuntimeError, match="has begun already"):
+        with pytest.raises(RuntimeError, match="has already begun"):
             episode.__enter__()
     recorder.finish().wait()
     ended = (lambda: recorder.note("late"), lambda: recorder.attach(fr3).wait(), recorder.episode("up", task="up").__enter__)

@@ -63,7 +63,7 @@ def test_columns_are_arrays_with_a_row_for_each_cycle(recording: RecordingFile) 
     np.testing.assert_array_equal(recording.column("q"), columns["q"])
     runs = columns["activity"] == "running"
     assert runs.sum() > 500 and np.abs(columns["q"][runs] - columns["q_ref"][runs]).max() < 0.1
-    with pytest.raises(ValueError, match='got the column "theta", expected some of q, q_d'):
+    with pytest.raises(ValueError, match='got the column "theta", expected columns from q, q_d'):
         recording.column("theta")
 
 
@@ -149,7 +149,7 @@ def test_episodes_become_a_dataset(recording: RecordingFile, path: Path, tmp_pat
     name = recording.episodes()[1].name
     assert recording.to_lerobot(tmp_path / "one", fps=20, episodes=[name])[0] == 1
     first = recording.episodes()[0]
-    with pytest.raises(ExportError, match=f'"{first.name}" was begun and not ended'):
+    with pytest.raises(ExportError, match=f'"{first.name}" has begun, but not ended'):
         recording.between(first.begin, first.end - 1).to_lerobot(tmp_path / "open")
     with pytest.raises(ValueError, match='got the episode "none", expected one of '):
         recording.to_lerobot(tmp_path / "none", episodes=["none"])
@@ -213,14 +213,14 @@ def pair(tmp_path: Path) -> Iterator[RecordingFile]:
 
 def test_of_several_robots_one_is_chosen(pair: RecordingFile, tmp_path: Path) -> None:
     assert [(robot.name, robot.kind) for robot in pair.robots] == [("left", "fr3"), ("right", "fer")]
-    with pytest.raises(ValueError, match="there are 2 robots in this recording .*: choose one by robot"):
+    with pytest.raises(ValueError, match="the recording has 2 robots, .*: choose one with robot"):
         pair.column("q")
     left, right = pair.robot("left"), pair.robot("right")
     assert len(left.column("q")) > 100 and len(right.column("q")) > 100
     assert repr(left).startswith("<RecordingFile of left,")
-    with pytest.raises(RecordingError, match='no robot is called "middle"'):
+    with pytest.raises(RecordingError, match='got the robot name "middle", expected one of'):
         pair.robot("middle")
-    with pytest.raises(ValueError, match="there are 2 robots in this recording"):
+    with pytest.raises(ValueError, match="the recording has 2 robots"):
         pair.to_lerobot(tmp_path / "dataset")
 
 

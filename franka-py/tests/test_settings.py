@@ -94,7 +94,7 @@ def test_a_refusal_of_the_robot_is_raised(fr3: Robot) -> None:
         ([30.0] * 4, {}, r"lower_torque_thresholds has the shape \[\], not \(7,\): expected 'careful'.*; four arrays"),
         ([30.0, 30.0], {}, "lower_force_thresholds is missing, expected 'careful'"),
         ([TORQUES] * 9, {}, "got 9 arrays, expected 'careful'.*; four arrays.*; or eight"),
-        ([], {"upper_torque": TORQUES}, "got upper_torque, expected some of lower_torque_thresholds_acceleration"),
+        ([], {"upper_torque": TORQUES}, "got upper_torque, expected one of lower_torque_thresholds_acceleration"),
         ([TORQUES], {"lower_torque_thresholds": TORQUES}, "got lower_torque_thresholds twice"),
         ([TORQUES, FORCES, FORCES, FORCES], {}, r"upper_torque_thresholds has the shape \[6\], not \(7,\): expected"),
         ([[np.nan] * 7, TORQUES, FORCES, FORCES], {}, "lower_torque_thresholds holds NaN"),
@@ -107,7 +107,7 @@ def test_thresholds_that_make_no_sense_are_refused(arguments: list[Any], named: 
 
 def test_loads_that_make_no_sense_are_refused() -> None:
     robot = Robot("127.0.0.1")
-    with pytest.raises(ValueError, match="mass is -1, expected a finite number from 0 on"):
+    with pytest.raises(ValueError, match="mass is -1, expected a finite number of 0 or more"):
         robot.set_load(-1.0)
     with pytest.raises(ValueError, match="expected a symmetric matrix"):
         robot.set_load(1.0, inertia=np.arange(9.0).reshape(3, 3))

@@ -182,7 +182,7 @@ def test_what_makes_no_team_is_refused(fr3: Robot, fer: Robot) -> None:
             with pytest.raises(TypeError, match="got 1 targets, expected 2: one for each arm"):
                 team.move_to([up(fr3, 0.1)])
             motions = [left.hold(), left.hold()]
-            with pytest.raises(ValueError, match=r"motion 1 is not one of arms\[1\] of this team"):
+            with pytest.raises(ValueError, match=r"motion 1 belongs to another arm, expected a motion of arms\[1\] of this team"):
                 team.run(motions)
             for motion in motions:
                 motion.close()
@@ -202,7 +202,7 @@ def test_motions_with_tickets_begin_together(fr3: Robot, fer: Robot) -> None:
         assert np.abs(fr3.state().dq).max() < 0.02
         await fer.move_by([0.0, 0.0, 0.03], start_with=right)
         assert isinstance(await first, MotionReport)
-        with pytest.raises(RuntimeError, match="this ticket has been given to a motion"):
+        with pytest.raises(RuntimeError, match="this ticket already belongs to a motion"):
             fr3.move_by([0.0, 0.0, 0.03], start_with=left)
 
     asyncio.run(main())

@@ -110,7 +110,7 @@ class Limits:
 
     def _scaled(self, factor: float) -> Limits:
         if self.velocity is None or self.acceleration is None or self.jerk is None:
-            raise ValueError("these limits are not complete: begin with those of robot.budget()")
+            raise ValueError("got incomplete limits, expected all: begin with the limits of robot.budget()")
         return Limits(self.velocity * factor, self.acceleration * factor**2, self.jerk * factor**3)
 
 

@@ -188,7 +188,7 @@ def _scale(bound: Array, action: ActionKind, scale: ArrayLike | None) -> Array:
     if scale.shape not in ((), bound.shape):
         raise ValueError(f"action_scale has the shape {scale.shape}, expected () or {bound.shape}")
     if not (np.isfinite(scale) & (scale > 0.0)).all():
-        raise ValueError("action_scale holds numbers that are not positive and finite")
+        raise ValueError("action_scale has numbers that are not positive and finite, expected positive finite numbers")
     return np.broadcast_to(scale, bound.shape).copy()
 
 

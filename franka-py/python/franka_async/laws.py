@@ -109,7 +109,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
         text = str(error)
         if any(sign in text for sign in _SIGNS_OF_ALLOCATION):
             text = f"it allocates, which a law must not: write loops instead of array expressions ({text})"
-        raise TypeError(f"{function.__name__} is no law that numba can compile: {text}") from error
+        raise TypeError(f"{function.__name__} is not a law that numba can compile: {text}") from error
 
 
 def make_cycle(**fields: npt.ArrayLike) -> np.record:

@@ -68,7 +68,7 @@ class Tool:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and 0.0 <= self.mass):
-            raise ValueError(f"mass is {self.mass}, expected a finite number from 0 on")
+            raise ValueError(f"mass is {self.mass}, expected a finite number of 0 or more")
         for name, shape in (("center", (3,)), ("inertia", (3, 3)), ("frame", (4, 4))):
             object.__setattr__(self, name, _matrix(name, getattr(self, name), shape))
         object.__setattr__(self, "mass", float(self.mass))
@@ -79,7 +79,7 @@ class Tool:
         rounding = 1e-9 + 1e-6 * float(np.abs(self.inertia).max())
         if least < -rounding or greatest > least + middle + rounding:
             moments = f"{round(least, 6):g}, {round(middle, 6):g} and {round(greatest, 6):g} kg m^2"
-            raise ValueError(f"inertia has the principal moments {moments}, expected none below 0 and none above the sum of the others")
+            raise ValueError(f"inertia has the principal moments {moments}, expected no moment below 0 and no moment above the sum of the other two")
         rotation = self.pose[:3, :3]
         if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) and np.linalg.det(rotation) > 0):
             raise ValueError(f"frame is {self.frame}, expected a rigid transformation")
@@ -113,7 +113,7 @@ def get(name: str) -> Tool:
     tools = _read()
     if name not in tools:
         known = ", ".join(sorted(tools)) or "none"
-        raise KeyError(f"there is no tool {name!r} in {path()}: it has {known}")
+        raise KeyError(f"got the tool {name!r}, expected a tool of {path()}: {known}")
     return tools[name]
 
 
@@ -177,7 +177,7 @@ def _read() -> dict[str, Tool]:
     except FileNotFoundError:
         return {}
     except UnicodeDecodeError as error:
-        raise ToolFileError(f"{file} is no text: {error}") from None
+        raise ToolFileError(f"{file} is not a text file: {error}") from None
     try:
         content = json.loads(text)
     except json.JSONDecodeError as error:

@@ -282,7 +282,8 @@ impl Robot {
         let law = match law.cast::<Law>() {
             Ok(_) if command.is_some() || elbow || parameters.is_some() || memory.is_some() => {
                 return Err(PyValueError::new_err(
-                    "command, elbow, parameters and memory belong to the Law that was given",
+                    "got command, elbow, parameters or memory beside a Law, expected them in the \
+                     Law",
                 ));
             }
             Ok(law) => law.clone(),

@@ -106,7 +106,7 @@ impl Clearance {
 fn name(body: i64) -> String {
     match body {
         0 => "the base".into(),
-        8 => "what is on the flange".into(),
+        8 => "the tool on the flange".into(),
         link => format!("link {link}"),
     }
 }

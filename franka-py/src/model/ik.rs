@@ -55,7 +55,7 @@ impl Model {
         let given = redundancy(joint7, joint4, swivel)?;
         let (poses, ee) = (Poses::read("poses", poses)?, end_effector(F_T_EE, None)?);
         let Some(count) = poses.count() else {
-            let text = "poses is a single one, expected (n, 4, 4) or (n, 7)";
+            let text = "poses is a single pose, expected (n, 4, 4) or (n, 7)";
             return Err(PyValueError::new_err(text));
         };
         let found: PyResult<Vec<_>> = py.detach(|| {
@@ -215,7 +215,7 @@ impl Model {
             let text = match why {
                 Err(why) => why.to_string(),
                 // The sweep misses poses that allow only a hundredth of a radian of joint 7.
-                Ok(_) => "no posture was found; ik_from finds one".into(),
+                Ok(_) => "no posture was found for this redundant joint: try ik_from".into(),
             };
             return Err(PyValueError::new_err(format!("pose: {text}")));
         }
@@ -260,7 +260,7 @@ fn redundancy(
     match angle.is_finite() {
         true => Ok(given),
         false => Err(PyValueError::new_err(format!(
-            "the angle is {angle}, expected a finite one"
+            "the angle is {angle}, expected a finite number"
         ))),
     }
 }

@@ -80,7 +80,7 @@ impl Model {
     #[staticmethod]
     fn from_urdf(text: &str) -> PyResult<Self> {
         let numbers = Numbers::from_urdf(text).map_err(|error| {
-            PyValueError::new_err(format!("text does not describe this arm: {error}"))
+            PyValueError::new_err(format!("text does not describe a supported arm: {error}"))
         })?;
         let urdf = Some(text.into());
         Ok(Self { numbers, urdf })
@@ -194,7 +194,8 @@ impl Model {
             return Ok((class.getattr("from_urdf")?, PyTuple::new(py, [&**text])?));
         }
         if self.numbers != *Numbers::of(self.numbers.kind()) {
-            let text = "a model with numbers of its own is pickled only if made by from_urdf";
+            let text = "cannot pickle this model with changed numbers: only models from from_urdf \
+                can be pickled";
             return Err(PyTypeError::new_err(text));
         }
         Ok((class.getattr(self.kind())?, PyTuple::empty(py)))

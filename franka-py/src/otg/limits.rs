@@ -123,7 +123,7 @@ impl AxisLimits {
                 _ if limits.len() == 1 => {}
                 Some(axes) if axes != limits.len() => {
                     return Err(PyValueError::new_err(format!(
-                        "{name} has {} axes, expected {axes} as the limits before, or one number",
+                        "{name} has {} axes, expected {axes} as the other limits, or one number",
                         limits.len()
                     )));
                 }

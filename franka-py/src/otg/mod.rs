@@ -104,7 +104,7 @@ pub(crate) fn plan_trajectory(
         part("target_acceleration", target_acceleration)?,
     ];
     if target.is_none() && (target_velocity.is_some() || target_acceleration.is_some()) {
-        let text = "target is None, expected one, as its velocity or acceleration is given";
+        let text = "target is None, expected a target for the given velocity or acceleration";
         return Err(PyValueError::new_err(text));
     }
     let synchronisation = match synchronisation {

@@ -50,7 +50,7 @@ impl Robot {
             let column = Column::find(name).ok_or_else(|| {
                 let known: Vec<&str> = Column::all().iter().map(|column| column.name).collect();
                 let known = known.join(", ");
-                let expected = format!("expected some of time, {known}");
+                let expected = format!("expected columns from time, {known}");
                 PyValueError::new_err(format!("got the column {name:?}, {expected}"))
             })?;
             if !chosen.iter().any(|it: &&Column| it.name == column.name) {
@@ -204,7 +204,7 @@ impl Recording {
     fn begin(&self) -> PyResult<()> {
         let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
         if begun.is_some() {
-            let text = "this recording has begun already: call record() for another";
+            let text = "this recording has already begun: call record() for another recording";
             return Err(PyRuntimeError::new_err(text));
         }
         let robot = self.robot().clone().expect("taken at the end only");

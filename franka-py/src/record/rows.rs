@@ -87,7 +87,10 @@ impl Cut<'_> {
         let column = column.ok_or_else(|| {
             let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
             let names = names.join(", ");
-            PyKeyError::new_err(format!("{name:?} is not recorded, but time, {names}"))
+            PyKeyError::new_err(format!(
+                "got the column {name:?}, expected one of the recorded \
+                columns: time, {names}"
+            ))
         })?;
         let source = Source::of(column) as usize;
         let values = self.tables.0[source].values(column, &self.rows[source]);

@@ -63,10 +63,10 @@ impl EpisodeUnderWay {
         let episode = this.get();
         let refused = |text: &str| Err(PyRuntimeError::new_err(text.to_owned()));
         if episode.has_begun.swap(true, Ordering::Relaxed) {
-            return refused("this episode has begun already: call episode() for another");
+            return refused("this episode has already begun: call episode() for another episode");
         }
         if episode.shared.in_episode.swap(true, Ordering::Relaxed) {
-            return refused("another episode of this recording is under way: it has to end first");
+            return refused("another episode of this recording is running: end it first");
         }
         let begun = episode.tell(this.py(), |recorder| {
             let begun = recorder.begin_episode(&*episode.name, &*episode.task);

@@ -93,7 +93,7 @@ impl RecordingFile {
             || match self.kind() {
                 Some(kind) => Ok(format!("franka_{}", kind.python_name())),
                 None => Err(PyValueError::new_err(
-                    "the recording does not say which robot it is of: robot_type is needed",
+                    "the recording does not name the kind of its robot: give robot_type",
                 )),
             },
             Ok,
@@ -109,7 +109,7 @@ impl RecordingFile {
                 begun.last()
             })?
         {
-            let text = format!("no episode was added: {name:?} was begun and not ended");
+            let text = format!("no episode was added: {name:?} has begun, but not ended");
             return Err(made(py, "ExportError", "dataset", "caller", &text));
         }
         if let Some(names) = episodes {

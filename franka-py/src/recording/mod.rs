@@ -272,7 +272,7 @@ impl RecordingFile {
             PyValueError::new_err(match names.len() {
                 0 => "the recording has no robot".to_owned(),
                 count => format!(
-                    "there are {count} robots in this recording {names:?}: choose one by robot(name)"
+                    "the recording has {count} robots, {names:?}: choose one with robot(name)"
                 ),
             })
         })
