@@ -95,7 +95,10 @@ async fn main() -> anyhow::Result<ExitCode> {
     let (verdict, code) = if worst >= good {
         ("good", 0)
     } else if worst >= usable {
-        ("usable, but motions will be rough, and may be stopped", 3)
+        (
+            "usable, but motions will be rough, and the robot may stop them",
+            3,
+        )
     } else {
         ("not usable: see the chapter on the real-time set-up", 4)
     };

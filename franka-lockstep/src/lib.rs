@@ -305,7 +305,7 @@ impl Lockstep {
         );
         assert!(
             self.frozen || !record.bindings.contains(Guard::Unresponsive),
-            "an arm that obeys is not taken for one that ignores its commands"
+            "an arm that follows its commands is not reported as unresponsive"
         );
         if let Some(guard) = &mut self.guard {
             guard.check(&decoded, state, record);

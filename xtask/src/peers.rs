@@ -330,10 +330,10 @@ impl Running {
         match listens.recv_timeout(READY_TIME_MAX) {
             Ok(()) => Ok(running),
             Err(mpsc::RecvTimeoutError::Timeout) => Err(anyhow!(
-                "the simulator did not listen for {READY_TIME_MAX:?}"
+                "the simulator did not listen within {READY_TIME_MAX:?}"
             )),
             Err(mpsc::RecvTimeoutError::Disconnected) => {
-                Err(anyhow!("the simulator ended at once"))
+                Err(anyhow!("the simulator ended before it listened"))
             }
         }
     }

@@ -36,12 +36,12 @@ impl Python {
             }
         }
         let found = match unfit.as_slice() {
-            [] => "none was found".to_owned(),
+            [] => "no Python was found".to_owned(),
             _ => unfit.join(", "),
         };
         let range = text(&versions);
         Err(format!(
-            "Python {range} with the modules venv and ensurepip is needed: {found}"
+            "got {found}, expected Python {range} with the modules venv and ensurepip"
         ))
     }
 

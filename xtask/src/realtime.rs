@@ -20,7 +20,7 @@ pub fn obtain() -> Result<(), String> {
     {
         return Ok(());
     }
-    Err("SCHED_FIFO is not granted here and cannot be: threads had no priority".to_owned())
+    Err("the system did not grant SCHED_FIFO: threads ran without priority".to_owned())
 }
 
 /// Set for the tests if the right is available: the control thread must then have its priority.

@@ -25,7 +25,7 @@ impl Outcome {
     /// If `CI=true`.
     pub fn without(why: String) -> anyhow::Result<Self> {
         if is_ci() {
-            bail!("{why}; with CI=true this step has to run");
+            bail!("{why}; with CI=true this step must run");
         }
         Ok(Self::Skipped(why))
     }

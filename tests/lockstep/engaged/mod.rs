@@ -321,7 +321,7 @@ fn a_chunk_of_another_clock_or_from_before_the_newest_is_refused() {
         sent.err().map(|error| error.to_string())
     };
     let ahead = "the chunk's time origin is 60001 ms after the robot's newest state, \
-                 expected 60000 ms at most, by the robot's clock";
+                 expected 60000 ms at most: pass times of the robot's clock";
     assert_eq!(refused(now + 60_001, 0.3).as_deref(), Some(ahead));
     assert_eq!(refused(now, 0.2), None);
     let outdated = "the chunk's observation is 250 ms older than the observation of the active \

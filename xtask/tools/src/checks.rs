@@ -105,7 +105,7 @@ impl StepOf for Nightly {
             Self::Playground => ("playground", "the book's playground in a real browser"),
             Self::Targets => (
                 "targets",
-                "what is portable, for other systems and machines",
+                "the portable crates, for other systems and machines",
             ),
         }
     }
@@ -139,7 +139,7 @@ impl StepOf for Check {
         match self {
             Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
             Self::Circles => ("circles", "imports between the modules of a crate"),
-            Self::Names => ("names", "what programs name, and where it is"),
+            Self::Names => ("names", "public names, and their places"),
             Self::Texts => ("texts", "names of files, spelling, and the workflows"),
             Self::Prose => ("prose", "plain English in comments, texts and the book"),
             Self::Dependencies => ("dependencies", "their licences and sources"),
@@ -154,7 +154,7 @@ impl StepOf for Check {
             Self::Peers => ("peers", "other clients against the simulator"),
             Self::Python => ("python", "the Python package: its tests and types"),
             Self::Recordings => ("recordings", "recordings read by the standard reader"),
-            Self::Assets => ("assets", "the dashboard's files are what its sources make"),
+            Self::Assets => ("assets", "the dashboard's files match its sources"),
         }
     }
 

@@ -17,7 +17,7 @@ pub(crate) fn sysroot() -> anyhow::Result<PathBuf> {
     let output = Command::new("rustc")
         .args(["--print", "sysroot"])
         .output()?;
-    ensure!(output.status.success(), "rustc does not say where it is");
+    ensure!(output.status.success(), "rustc does not report its sysroot");
     Ok(String::from_utf8(output.stdout)?.trim().into())
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
         };
         ensure!(
             expanded(read(&made)?)? == expanded(read(&page.join("dist"))?)?,
-            "franka-dash/page/dist/{name} is not what the page's sources make: run cargo xtask assets"
+            "franka-dash/page/dist/{name} does not match the page's sources: run cargo xtask assets"
         );
     }
     Ok(Outcome::Passed)
@@ -196,7 +196,7 @@ pub(crate) fn browse(
 /// caller must check if it exists afterwards.
 fn install() {
     if is_ci() {
-        println!("no browser is found; installing Debian's chromium and chromium-driver");
+        println!("found no browser; installing Debian's chromium and chromium-driver");
         let install = ["install", "--yes", "--quiet", "--no-install-recommends"];
         let packages = ["chromium", "chromium-driver"];
         if succeeds(&["apt-get", "update", "--quiet"]) {

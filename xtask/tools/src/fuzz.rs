@@ -47,7 +47,7 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
 /// only some platforms.
 fn supported() -> Result<(), String> {
     if !cfg!(any(target_os = "linux", target_os = "macos")) {
-        return Err("the address sanitizer is there on Linux and macOS only".to_owned());
+        return Err("the address sanitizer exists on Linux and macOS only".to_owned());
     }
     let compiler = std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned());
     let mut probe = Command::new(&compiler);

@@ -47,7 +47,7 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
 /// the reason why this machine cannot have one.
 fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     if let Some(variable) = named_by_user(workspace) {
-        println!("{variable} is set: its library is used");
+        println!("using the library of {variable}");
         return Ok(Ok(()));
     }
     let directory = directory(workspace);
@@ -87,7 +87,7 @@ fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     }
     // Written last, so that an interrupted installation is repeated.
     fs::write(&stamp, origin)?;
-    println!("{} is there", library.display());
+    println!("{} exists", library.display());
     Ok(Ok(()))
 }
 

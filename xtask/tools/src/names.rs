@@ -243,7 +243,7 @@ impl Names {
             format!("{IN_PYTHON} lacks {name} (`{name} = franka_async.X` or `{name}: why not`)")
         });
         let gone = told.difference(&names);
-        let gone = gone.map(|name| format!("{IN_PYTHON} has {name}, which is not there"));
+        let gone = gone.map(|name| format!("{IN_PYTHON} has {name}, which franka-async lacks"));
         missing.chain(gone).collect()
     }
 
@@ -254,7 +254,7 @@ impl Names {
         if root.len() >= ROOT_MAX {
             let names: Vec<&str> = root.keys().map(String::as_str).collect();
             faults.push(format!(
-                "{} names at the root, fewer than {ROOT_MAX} are wanted: {}",
+                "got {} names at the root, expected fewer than {ROOT_MAX}: {}",
                 root.len(),
                 names.join(" ")
             ));
@@ -393,7 +393,7 @@ mod tests {
         let found = names.untold("# see: above\nB = franka_async.B\nm::g: gone\n");
         assert!(found[0].contains(" lacks m::f "), "{found:?}");
         assert!(
-            found[1].ends_with("has m::g, which is not there"),
+            found[1].ends_with("has m::g, which franka-async lacks"),
             "{found:?}"
         );
         assert_eq!(found.len(), 2);

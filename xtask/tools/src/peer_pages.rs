@@ -93,7 +93,7 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     }
     if !found.is_empty() {
         bail!(
-            "chapters for those who come from elsewhere:\n{}",
+            "chapters for users of other packages:\n{}",
             found.join("\n")
         );
     }
@@ -131,7 +131,7 @@ fn check_franka_rs(workspace: &Workspace, list: &BTreeSet<String>) -> anyhow::Re
         .map(|name| format!("it lacks {name}")))
     .chain(
         list.difference(&names)
-            .map(|name| format!("it has {name}, which is gone")),
+            .map(|name| format!("it has {name}, which no longer exists")),
     )
     .collect();
     if !faults.is_empty() {

@@ -175,7 +175,7 @@ fn differences(place: &str, named: &BTreeSet<&str>, there: &BTreeSet<&str>) -> V
         .map(|name| format!("{place} lacks {name}"));
     let strange = named
         .difference(there)
-        .map(|name| format!("{place} has {name}, which is not there"));
+        .map(|name| format!("{place} has {name}, which does not exist"));
     lacks.chain(strange).collect()
 }
 
@@ -204,6 +204,6 @@ mod tests {
     fn names_of_one_side_are_told() {
         let set = |names: [&'static str; 2]| BTreeSet::from(names);
         let found = differences("x", &set(["a", "b"]), &set(["b", "c"]));
-        assert_eq!(found, ["x lacks c", "x has a, which is not there"]);
+        assert_eq!(found, ["x lacks c", "x has a, which does not exist"]);
     }
 }

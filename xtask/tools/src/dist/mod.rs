@@ -174,7 +174,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
         lines.push(format!("{}: {line}", machine.target));
     }
     lines.push(match parts.is_empty() {
-        true => "image: NOT BUILT: it takes a static program".to_owned(),
+        true => "image: NOT BUILT: it needs a static program".to_owned(),
         false => {
             let name = format!("franka-{}.oci.tar", release.version);
             let file = artefacts.add(&name, &image::image(&release, &parts)?)?;
@@ -191,7 +191,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
     ensure!(built > 0, "nothing was built");
     ensure!(
         built == chosen.len() || !is_ci(),
-        "with CI=true every chosen program has to be built"
+        "with CI=true every chosen program must be built"
     );
     Ok(())
 }
@@ -300,7 +300,7 @@ impl Machine {
         let count = bill.count();
         let package = match package {
             Some(package) => debian::check(workspace, &package)?,
-            None => "is that of the static program".to_owned(),
+            None => "is the bill of the static program".to_owned(),
         };
         Ok(format!("{count} crates in its bill; package {package}"))
     }

@@ -78,7 +78,7 @@ impl Changelog {
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
         if !self.begins {
-            found.push(format!("{FILE}: the first section has to be [Unreleased]"));
+            found.push(format!("{FILE}: the first section must be [Unreleased]"));
         }
         let mut newer: Option<Version> = None;
         for (title, _) in &self.releases {
@@ -92,9 +92,7 @@ impl Changelog {
                 found.push(format!("{FILE}: {version}: {date:?} is no date"));
             }
             if newer.as_ref().is_some_and(|newer| *newer <= version) {
-                found.push(format!(
-                    "{FILE}: {version} is below a version that is older"
-                ));
+                found.push(format!("{FILE}: {version} is below an older version"));
             }
             newer = Some(version);
         }

@@ -142,7 +142,7 @@ pub(crate) fn order(manifests: &[Manifest]) -> anyhow::Result<Vec<&Manifest>> {
         if next.is_empty() {
             let names: Vec<_> = later.iter().map(|it| it.name.as_str()).collect();
             bail!(
-                "cannot be published one after the other, or need what is not published: {}",
+                "cannot be published in any order, or need unpublished crates: {}",
                 names.join(", ")
             );
         }

@@ -54,7 +54,7 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
         found.extend(last_faults(workspace, &published, &version, &changelog)?);
     }
     if !found.is_empty() {
-        bail!("what a release takes:\n{}", found.join("\n"));
+        bail!("missing for a release:\n{}", found.join("\n"));
     }
     compare_with_last_release(workspace)
 }
@@ -89,13 +89,13 @@ fn last_faults(
             "CHANGELOG.md: no section [{version}]; `cargo xtask version {version}` makes it"
         )),
         Some(logged) if date.as_deref() != Some(logged) => found.push(format!(
-            "CITATION.cff: released {date:?}, CHANGELOG.md says {logged}"
+            "CITATION.cff: got the release date {date:?}, expected {logged} as in CHANGELOG.md"
         )),
         Some(_) => {}
     }
     if !changelog.unreleased.trim().is_empty() {
         found.push(format!(
-            "CHANGELOG.md: what is unreleased is not part of {version}"
+            "CHANGELOG.md: the unreleased part must move to {version}"
         ));
     }
     if !git(workspace, &["status", "--porcelain"])?.is_empty() {
@@ -105,7 +105,7 @@ fn last_faults(
     let tagged = git(workspace, &["tag", "--points-at", "HEAD"])?;
     let exists = git(workspace, &["tag", "--list", &tag])?;
     if !exists.is_empty() && !tagged.lines().any(|line| line == tag) {
-        found.push(format!("the tag {tag} is that of another commit"));
+        found.push(format!("the tag {tag} belongs to another commit"));
     }
     Ok(found)
 }
@@ -115,7 +115,7 @@ fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let tags = git(workspace, &["tag", "--list", "v*", "--sort=-v:refname"])?;
     let head = git(workspace, &["tag", "--points-at", "HEAD"])?;
     let Some(last) = tags.lines().find(|tag| !head.lines().any(|it| it == *tag)) else {
-        println!("nothing was released yet that public names could be compared with");
+        println!("no earlier release to compare public names with");
         return Ok(Outcome::Passed);
     };
     if !succeeds(&["cargo", "semver-checks", "--version"]) {

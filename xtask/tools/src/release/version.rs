@@ -84,7 +84,7 @@ pub(crate) fn set(
     let log = changelog::read(workspace)?;
     ensure!(
         log.date_of(version).is_none(),
-        "CHANGELOG.md: {version} was released already"
+        "CHANGELOG.md: {version} is already released"
     );
     ensure!(
         !log.unreleased.trim().is_empty(),

@@ -59,9 +59,8 @@ pub enum PathError {
     },
     /// The arm cannot follow the path between two waypoints.
     #[error(
-        "between {} and waypoint {to}, at ({x:.3}, {y:.3}, {z:.3}) m, the end effector would leave \
-         the path by {:.1} mm and {:.1} mrad{}, expected at most {:.0} mm and {:.0} mrad: add a waypoint, \
-         or choose another elbow (`posture`)",
+        "between {} and waypoint {to}, the end effector leaves the path by {:.1} mm and {:.1} mrad \
+         at ({x:.3}, {y:.3}, {z:.3}) m{}, expected {:.0} mm and {:.0} mrad at most: add a waypoint",
         begin_of(*from),
         translation * 1e3,
         rotation * 1e3,

@@ -86,7 +86,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
     let is_missing = lines.iter().any(|line| line.contains("NOT BUILT"));
     ensure!(
         !(is_missing && xtask::step::is_ci()),
-        "with CI=true every chosen wheel has to be built"
+        "with CI=true every chosen wheel must be built"
     );
     Ok(())
 }
@@ -95,7 +95,10 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
 pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     match PLATFORMS.iter().find(|it| it.is_of_this_machine()) {
         Some(platform) => build(workspace, platform, "dist"),
-        None => Ok(Err(format!("this machine is none of {}", targets()))),
+        None => Ok(Err(format!(
+            "got this machine, expected one of {}",
+            targets()
+        ))),
     }
 }
 
@@ -143,7 +146,7 @@ impl Platform {
         let expected = format!("-cp{major}{minor}-abi3-{}.whl", self.tag);
         ensure!(
             name.ends_with(&expected),
-            "the wheel is {name}, expected one that ends with {expected}"
+            "the wheel is {name}, expected a name that ends with {expected}"
         );
         Ok(())
     }
