@@ -95,7 +95,7 @@ def test_an_operation_is_awaited_once_and_says_if_it_never_was(robot: Robot) -> 
     operation = robot.stop()
     assert "not begun" in repr(operation)
     operation.wait()
-    with pytest.raises(RuntimeError, match="awaited already"):
+    with pytest.raises(RuntimeError, match="already awaited"):
         operation.wait()
     with pytest.warns(RuntimeWarning, match="never awaited"):
         robot.stop()

@@ -80,7 +80,7 @@ def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
 
 def test_a_robot_with_an_unknown_geometry_is_refused_unless_that_is_accepted() -> None:
     with Sim.fr3(virtual_time=True, ideal=True, state_geometry="random", seed=3) as sim:
-        with pytest.raises(ConnectError, match=r"µm from that of its model .*: expected 2 µm") as refused:
+        with pytest.raises(ConnectError, match=r"µm from the pose of its model .*, expected 2 µm") as refused:
             sync.Robot(sim.address, realtime="ignore").connect()
         assert refused.value.entry == "connect-geometry"
         with sync.Robot(sim.address, realtime="ignore", accept_geometry_error=True) as robot:

@@ -208,7 +208,7 @@ def test_policies_that_make_no_sense_are_refused(fields: dict[str, Any], message
 
 
 def test_a_function_needs_a_supervisor() -> None:
-    with pytest.raises(ValueError, match="not supervised: expected a Policy"):
+    with pytest.raises(ValueError, match="without supervision, expected a Policy"):
         Robot("127.0.0.1", ask_before_recovery=lambda reflex: True)
 
 

@@ -179,7 +179,7 @@ def test_what_makes_no_team_is_refused(fr3: Robot, fer: Robot) -> None:
     async def main() -> None:
         async with await Team.engage(fr3, fer, silence=SILENCE) as team:
             left, right = team.arms
-            with pytest.raises(TypeError, match="got 1 targets, expected 2: one for each arm"):
+            with pytest.raises(TypeError, match="got 1 targets, expected 2, one for each arm"):
                 team.move_to([up(fr3, 0.1)])
             motions = [left.hold(), left.hold()]
             with pytest.raises(ValueError, match=r"motion 1 belongs to another arm, expected a motion of arms\[1\] of this team"):

@@ -125,8 +125,8 @@ def test_the_file_may_be_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     [
         ({"mass": float("nan")}, "mass is nan"),
         ({"inertia": np.arange(9.0).reshape(3, 3)}, "expected a symmetric matrix"),
-        ({"inertia": np.diag([1e-4, 1e-4, 5e-3])}, "principal moments 0.0001, 0.0001 and 0.005 kg m.2, expected none below 0"),
-        ({"inertia": np.diag([1e-3, 1e-3, -1e-4])}, "principal moments -0.0001, 0.001 and 0.001 kg m.2, expected none below 0"),
+        ({"inertia": np.diag([1e-4, 1e-4, 5e-3])}, "principal moments 0.0001, 0.0001 and 0.005 kg m.2, expected no moment below 0"),
+        ({"inertia": np.diag([1e-3, 1e-3, -1e-4])}, "principal moments -0.0001, 0.001 and 0.001 kg m.2, expected no moment below 0"),
         ({"frame": 2 * np.eye(4)}, "expected a rigid transformation"),
         ({"center": [0.0, float("inf"), 0.0]}, "center holds inf, expected finite numbers"),
     ],

@@ -20,7 +20,7 @@ fn the_hand_opens_grasps_and_lets_go() {
             (open["width"].as_f64().expect("metres") - 0.06).abs() < 2e-3,
             "{open}"
         );
-        run(&["grasp", "--width", "0.06"]).failed(1, &["no object of 60.0 mm is held"]);
+        run(&["grasp", "--width", "0.06"]).failed(1, &["the fingers hold no object of 60.0 mm"]);
         run(&["open"]).done();
         let held = run(&["grasp", "--width", "0.03", "--force", "40"]).json();
         assert_eq!(held["is_grasped"], true, "{held}");

@@ -195,7 +195,7 @@ fn what_desk_says_is_the_reason_of_a_refusal() {
     assert!(ran.out.contains(expected), "{ran:?}");
     assert!(!ran.out.contains("kernel.rt"), "{ran:?}");
     let none = ["doctor", "--only", "nothing", "--skip", "nic"];
-    home.run(&none).failed(2, &["none of these checks"]);
+    home.run(&none).failed(2, &["none of the chosen checks"]);
 }
 
 #[test]

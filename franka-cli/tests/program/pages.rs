@@ -81,7 +81,7 @@ fn a_folder_for_recordings_has_to_be_there() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let nowhere = ["dash", &sim.address(), "--record", "/no/such/folder"];
     home.run(&nowhere)
-        .failed(2, &["/no/such/folder", "one that is there"]);
+        .failed(2, &["/no/such/folder", "existing folder"]);
 }
 
 #[test]

@@ -57,7 +57,7 @@ fn a_motion_is_recorded_exported_and_replayed() {
             .failed(6, &["run.mcap exists", "never replaces a file"]);
         assert!(std::fs::read(home.path("run.mcap")).expect("it is there") == recorded);
         home.run(&["export", "run.mcap", "--lerobot", "data"])
-            .failed(1, &["no episode that has ended"]);
+            .failed(1, &["no finished episode"]);
         let bad = [
             "export",
             "run.mcap",

@@ -76,7 +76,7 @@ fn the_gripper_homes_opens_holds_an_object_and_loses_it() {
     disturb(&mut viewer, json!({"kind": "object", "width": null}));
     viewer.wait_until("gripper", |it| it["is_grasped"] == false);
     act(&mut viewer, json!({"kind": "stop"}));
-    viewer.event("Gripper: let go");
+    viewer.event("Gripper: released");
 }
 
 /// Ends the action of the first viewer's fingers; the second viewer is another one.

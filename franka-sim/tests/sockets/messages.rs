@@ -59,7 +59,10 @@ fn a_message_that_breaks_off_ends_the_session() {
                     assert_served(binary);
                 }
             }
-            binary.assert_logged(&format!("client of the {} disconnected: half", port.name));
+            binary.assert_logged(&format!(
+                "client of the {} disconnected in the middle",
+                port.name
+            ));
         }
     });
 }

@@ -271,7 +271,7 @@ async fn a_robot_with_poses_of_other_lengths_is_another_one() {
     let reason = timeout(SOON, robot.closed()).await.expect("it gives up");
     let text = reason.to_string();
     assert!(
-        matches!(reason, CloseReason::AnotherRobot { .. }) && text.contains("other lengths"),
+        matches!(reason, CloseReason::AnotherRobot { .. }) && text.contains("link lengths"),
         "{text}"
     );
 }
