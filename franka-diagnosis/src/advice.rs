@@ -48,15 +48,13 @@ impl Advice {
                 "commands continuous in position, velocity and acceleration; limit_rate(true) smooths small steps of joints, not of poses"
             }
             (Self::Smooth, Active) => {
-                "commands continuous in position, velocity and acceleration, since limit_rate \
-                 does not apply here"
+                "commands continuous in position, velocity and acceleration: the driver does not limit them here"
             }
             (Self::SmoothTorques, Function) => {
                 "torques that start and end at zero and have no steps; limit_rate(true) turns steps into ramps"
             }
             (Self::SmoothTorques, Active) => {
-                "torques that start and end at zero and have no steps, since limit_rate does not \
-                 apply here"
+                "torques that start and end at zero and have no steps: the driver does not limit them here"
             }
             (Self::Smooth | Self::SmoothTorques | Self::SlowDown, Goals) => {
                 "speed below 1, limits with less velocity and acceleration, or softer gains"

@@ -319,7 +319,7 @@ mod tests {
         let Answer::Missing(why) = asked(text, false, PATIENCE) else {
             panic!("no robot answers with HTTP")
         };
-        assert!(why.contains("bytes is announced"), "{why}");
+        assert!(why.contains("announces a message of"), "{why}");
     }
 
     #[test]

@@ -145,7 +145,7 @@ fn what_is_no_desk_is_unknown() {
     let other = web(&ask_desk(address), Purpose::Move);
     assert_eq!(other.verdict, Verdict::Unknown, "{other:?}");
     assert!(
-        other.read.contains("no Desk that is known here"),
+        other.read.contains("not from a known version of Desk"),
         "{other:?}"
     );
 }

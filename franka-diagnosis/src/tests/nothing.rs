@@ -26,7 +26,7 @@ fn what_the_log_does_not_show_is_said_not_to_be_visible() {
             diagnosis.causes
         );
         let text = diagnosis.to_string();
-        let first = format!("{error}: not visible in the log of 3 cycles");
+        let first = format!("{error}: its cause is not visible in the log of 3 cycles");
         assert_eq!(text.lines().next(), Some(&first[..]));
         assert_eq!(diagnosis.advice.len(), 1);
     }
@@ -52,7 +52,7 @@ fn neither_an_empty_log_nor_one_cycle_of_it_is_too_little_to_say_so() {
         assert!(
             empty
                 .to_string()
-                .contains("no cycle of the motion is in the log")
+                .contains("the log has no cycle of the motion")
         );
         assert_eq!(one.error, Some(error));
         assert_eq!(one.end, Some(BEGIN));

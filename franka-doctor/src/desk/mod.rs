@@ -209,14 +209,18 @@ mod tests {
             (
                 |state| state.self_test = Some(SelfTest::Running),
                 Failure,
-                "self-test runs",
+                "self-test is running",
             ),
             (
                 |state| state.self_test = Some(SelfTest::Soon(Some(7300))),
                 Warning,
                 "due in 2 h",
             ),
-            (|state| state.mode = None, Info, "nothing is said of mode"),
+            (
+                |state| state.mode = None,
+                Info,
+                "reports nothing about mode",
+            ),
             (
                 |state| *state = DeskState::default(),
                 Unknown,

@@ -239,7 +239,7 @@ mod tests {
         );
         let other = state(&[("/api/system", 200, json!("hello"))]).expect_err("no Desk");
         assert!(
-            other.contains("no Desk that is known here (/api/system: 200"),
+            other.contains("not from a known version of Desk (/api/system: 200"),
             "{other}"
         );
         let silent = read(&mut |_| Err("no connection".into()));

@@ -124,7 +124,7 @@ fn without_a_log_the_diagnosis_says_so() {
         assert!(
             diagnosis
                 .to_string()
-                .contains("no cycle of the motion is in the log")
+                .contains("the log has no cycle of the motion")
         );
     });
 }
