@@ -116,7 +116,7 @@ LIMITS = otg.AxisLimits(1.0, 1.0, 1.0)
         (lambda: otg.plan([0.0], [np.nan], LIMITS), "target holds NaN"),
         (lambda: otg.plan([0.0], [1.0], otg.AxisLimits.fr3()), "limits have 7 axes, expected 1 as start has"),
         (lambda: otg.plan([0.0], [1.0], LIMITS, synchronisation="none"), "synchronisation is \"none\""),  # type: ignore[arg-type]
-        (lambda: otg.plan([0.0], [1.0], LIMITS, target_velocity=[2.0]), "moves faster than its limits allow"),
+        (lambda: otg.plan([0.0], [1.0], LIMITS, target_velocity=[2.0]), "moves faster than the limits allow"),
         (lambda: otg.plan([0.0], None, LIMITS, target_velocity=[0.5]), "target is None, expected a target"),
         (lambda: otg.plan([0.0], [1.0], LIMITS).sample(0.0), "dt is 0, expected a positive finite number"),
         (lambda: otg.plan([0.0], [1.0], LIMITS).sample(1e-12), "dt is 0.000000000001, which makes"),

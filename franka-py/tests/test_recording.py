@@ -141,7 +141,7 @@ def test_episodes_become_a_dataset(recording: RecordingFile, path: Path, tmp_pat
         return info
 
     assert info()["robot_type"] == f"franka_{path.stem}" and info()["total_frames"] == frames
-    with pytest.raises(ExportError, match="expected an empty folder") as there:
+    with pytest.raises(ExportError, match="expected an empty or new folder") as there:
         recording.to_lerobot(folder, fps=20, action="measured")
     assert (there.value.kind, there.value.party) == ("dataset", "caller")
     assert recording.to_lerobot(folder, fps=20, action="measured", append=True) == (2, frames)

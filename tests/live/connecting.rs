@@ -138,7 +138,7 @@ async fn garbage_in_the_handshake_is_an_error_at_once() {
         (&[0_u8; 40][..], "libfranka: Incorrect TCP message size."),
         (
             b"HTTP/1.1 400 Bad Request\r\n\r\n",
-            "a message of 808465440 bytes is announced",
+            "the header announces a message of 808465440 bytes",
         ),
         (
             &[0, 0, 0, 0, 0, 0, 0, 0, 13, 0, 0, 0, 0],

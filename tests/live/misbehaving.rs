@@ -33,11 +33,11 @@ const GARBAGE: [(&[u8], &str); 5] = [
     ),
     (
         &[1, 0, 0, 0, 1, 0, 0, 0, 0xff, 0xff, 0xff, 0xff],
-        "a message of 4294967295 bytes is announced",
+        "the header announces a message of 4294967295 bytes",
     ),
     (
         b"HTTP/1.1 400 Bad Request\r\n\r\n",
-        "a message of 808465440 bytes is announced",
+        "the header announces a message of 808465440 bytes",
     ),
     // A message that is announced, and cut off.
     (

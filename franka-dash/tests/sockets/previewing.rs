@@ -97,7 +97,7 @@ fn what_must_not_be_done_is_refused_before_and_when_it_is_asked_for() {
     for (target, why) in [
         (down, "keep-out region 2"),
         (away, "no joint positions"),
-        (turned, "turn less than 170 degrees"),
+        (turned, "expected less than 170 degrees"),
     ] {
         let motion = motion(&target);
         let answer = preview(&mut viewer, 1, &motion);

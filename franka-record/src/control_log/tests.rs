@@ -241,7 +241,7 @@ fn what_is_wrong_with_a_file_has_its_line_and_column() {
         ),
         (
             cut(MESSAGE, "reflex!"),
-            "line 1, column 59: got \"the end of the text\", expected the list of errors",
+            "line 1, column 59: got \"the end of the text\", expected a list of errors",
         ),
         (
             MESSAGE.replace("0.98", "high"),

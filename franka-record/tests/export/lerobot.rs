@@ -255,7 +255,7 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     assert!(add(vec![free(sample(3))]).contains("at 5003 ms"));
     assert!(refused(dataset.add_episode(" ", None, [sample(0)])).contains("expected a text"));
     let nothing = dataset.finish().unwrap_err().to_string();
-    assert!(nothing.contains("no episode was added"), "{nothing}");
+    assert!(nothing.contains("got no episodes"), "{nothing}");
     let mut dataset = Dataset::create(&root, options()).expect("an empty folder");
     dataset
         .add_episode("pick", None, (0..100).map(sample))

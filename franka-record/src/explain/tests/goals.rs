@@ -146,7 +146,7 @@ fn a_goal_without_an_end_is_under_way() {
     assert_eq!((cut.cause.is_none(), cut.under_way), (true, Some(9)));
     let text = cut.to_string();
     assert!(text.contains("No reflex, guard or lost link"), "{text}");
-    assert!(text.contains("Goal 9 was under way"), "{text}");
+    assert!(text.contains("Goal 9 was running"), "{text}");
     assert_eq!(of(true).under_way, None);
 }
 
