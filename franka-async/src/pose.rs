@@ -49,8 +49,8 @@ pub enum NotRigid {
     },
     /// The transpose is a pose: the numbers are row by row.
     #[error(
-        "got the pose row by row (its last column is 0 0 0 1), expected it column by column (last \
-         row 0 0 0 1)"
+        "got the pose row by row, expected it column by column: 0 0 0 1 is in the last column, not in \
+         the last row"
     )]
     RowMajor,
     /// The last row is another.

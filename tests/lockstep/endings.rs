@@ -259,7 +259,10 @@ fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() 
             panic!("{error:?}")
         };
         assert_eq!(short.limited, None, "no torque limit binds");
-        assert!(error.to_string().contains("something holds the arm"), "{error}");
+        assert!(
+            error.to_string().contains("something holds the arm"),
+            "{error}"
+        );
         let error = short.error;
         // 22 N against 750 N/m and the additional stiffness of the joint springs.
         assert!((0.012..0.024).contains(&error.translation), "{error:?}");

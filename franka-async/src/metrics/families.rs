@@ -94,7 +94,7 @@ impl<'a, 'e> Families<'a, 'e> {
                 ([("error", error.name())], i64::from(holds))
             })
         })?;
-        let help = "Share of the last 100 commands that the robot received in time, 0 to 1.";
+        let help = "Share of the last 100 commands that the robot received in time.";
         self.gauges("franka_success_ratio", help, None, |scrape| {
             [(ALONE, scrape.state.control_command_success_rate)]
         })
