@@ -1,9 +1,9 @@
 //! Makes the native library available at run time to programs with the feature `mujoco`.
 //!
-//! `mujoco-rs` links them. Cargo adds the output directories of build scripts to the loader's
-//! search path of the programs that it runs. A link in our output directory thus serves
-//! `cargo run`, tests and documentation examples of every dependent. The binary `franka-sim` also
-//! contains the directory, and looks in its own directory first.
+//! `mujoco-rs` links the library. Cargo adds the output directories of build scripts to the
+//! loader's search path of the programs that Cargo runs. A link in the output directory of this
+//! script thus serves `cargo run`, tests and documentation examples of every dependent. The binary
+//! `franka-sim` also contains this path. It looks in its own directory first.
 
 use std::env;
 use std::error::Error;
@@ -52,7 +52,8 @@ fn put(file: &Path, name: &Path) -> std::io::Result<()> {
     fs::hard_link(file, name).or_else(|_| fs::copy(file, name).map(|_| ()))
 }
 
-/// Set where documentation is built without native libraries; the variables that `mujoco-rs` reads.
+/// Environment variables that `mujoco-rs` reads. They are set where documentation is built without
+/// native libraries.
 const DOCS: &str = "DOCS_RS";
 const STATIC: &str = "MUJOCO_STATIC_LINK_DIR";
 const DYNAMIC: &str = "MUJOCO_DYNAMIC_LINK_DIR";

@@ -4,7 +4,7 @@ use franka_model::JointVector;
 
 use crate::signal::JointSignal;
 
-/// A stop under way. Every joint stops in its own shortest time.
+/// A stop in progress. Every joint stops in its own shortest time.
 #[derive(Debug, Clone)]
 pub(crate) struct Brake {
     axes: [AxisStop; 7],
@@ -49,7 +49,8 @@ impl Brake {
     }
 }
 
-/// Three phases of constant jerk: towards the peak deceleration, along it, and back to zero.
+/// The stop of one joint in three phases of constant jerk: deceleration rises to its peak, stays
+/// there, and returns to zero.
 #[derive(Debug, Clone, Copy)]
 struct AxisStop {
     position: f64,

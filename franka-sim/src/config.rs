@@ -1,4 +1,4 @@
-//! The configuration of a simulated robot.
+//! Configuration of a simulated robot.
 
 mod unpublished;
 
@@ -14,53 +14,54 @@ use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
 use crate::arm::Arm;
 
-/// The model of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in the
-/// ready pose, as strict as a robot.
+/// Configuration of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in
+/// the ready pose. It enforces its limits as a real robot does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
-    /// Kind of the robot, which also sets the protocol version.
+    /// Kind of the robot. The kind also sets the protocol version.
     pub kind: RobotKind,
     /// Joint positions at the start, `[rad]`.
     pub q: JointVector,
     /// Tool on the flange that the robot knows, as set up in Desk.
     pub tool: Tool,
-    /// Undeclared load on the flange besides the tool; a client declares it with `SetLoad`.
+    /// Load on the flange in addition to the tool. The robot does not know it until a client
+    /// declares it with `SetLoad`.
     pub payload: Load,
-    /// The arm: friction, drives, sensors, and differences from its model. `None` for the
-    /// [ideal](Arm::ideal) arm of its kind, unlike any real arm. Robots of
+    /// The arm: friction, drives, sensors, and differences from its model. `None` is the
+    /// [ideal](Arm::ideal) arm of the robot's kind, which no real arm equals. Robots of
     /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) have a realistic arm.
     pub arm: Option<Arm>,
-    /// Seed of all randomness: the same seed and the same input give the same states.
+    /// Seed of all randomness. The same seed and the same input give the same states.
     pub seed: u64,
-    /// `message_id` of the last cycle before the first: milliseconds since the robot started.
+    /// Value of `message_id` before the first cycle: milliseconds since the robot started.
     pub clock: u64,
-    /// True if commands and motion outside the limits end in a reflex. If false, the arm does what
-    /// it physically can.
+    /// True if commands and motions outside the limits end in a reflex (the robot's own stop). If
+    /// false, only physics limits the arm.
     pub enforce_limits: bool,
     /// Factor on the bounds of acceleration and jerk for commanded joints. Use a value above 1 for
-    /// clients that are rougher than a robot allows. Default 1.
+    /// clients whose commands are rougher than a robot allows. Default 1.
     pub joint_discontinuity_scale: f64,
     /// True if 20 lost commands in a row end in a reflex. If false, the motion generator ignores a
     /// cycle without a command and keeps its setpoint until the next command. A client may then be
     /// slower than 1 kHz or stopped in a debugger.
     pub enforce_communication: bool,
-    /// Description that the robot serves instead of the built-in one (protocol 10), without any
-    /// check: for clients' tests.
+    /// URDF that the robot serves instead of the built-in description (protocol 10). The simulator
+    /// does not check it. Use it to test clients.
     pub urdf: Option<String>,
     /// The model library that the robot serves to every architecture and system (protocol 5). The
-    /// vendor's library cannot be distributed here; without a library the robot answers with an
-    /// error.
+    /// licence of the vendor's library does not permit to distribute it here. Without a library the
+    /// robot answers with an error.
     pub model_library: Option<Bytes>,
-    /// Virtual walls, as set up in Desk, by the number that a client requests (protocol 5). The end
-    /// effector stays inside the cuboid of each active one, which reaches from the origin of its
-    /// frame to its corner.
+    /// Virtual walls, as set up in Desk, with the numbers by which clients request them (protocol
+    /// 5). Each wall is a cuboid from the origin of its frame to its corner. The end effector stays
+    /// inside the cuboid of each active wall.
     pub walls: Vec<(i32, VirtualWall)>,
-    /// Assumptions where nothing is published.
+    /// Assumptions about behaviour that the vendor has not published.
     pub unpublished: Unpublished,
 }
 
 impl Config {
-    /// The arm: [`arm`](Self::arm), or the ideal one.
+    /// Returns [`arm`](Self::arm), or the ideal arm if it is `None`.
     pub fn chosen_arm(&self) -> Arm {
         self.arm.clone().unwrap_or_else(|| Arm::ideal(self.kind))
     }
@@ -95,7 +96,7 @@ pub struct Tool {
     /// Mass, centre of mass and inertia of the tool: `m_ee`, `F_x_Cee`, `I_ee`.
     pub load: Load,
     /// True if the tool has the shape of the Franka Hand, which the robot includes in its
-    /// self-collision check. It does not know the shape of any other tool.
+    /// self-collision check. The robot does not know the shape of any other tool.
     pub has_hand_shape: bool,
 }
 
@@ -112,8 +113,9 @@ impl Tool {
         has_hand_shape: false,
     };
 
-    /// The Franka Hand: turned by -45 degrees about the flange axis, fingertips 0.1034 m out, and
-    /// the mass that Desk declares for it (0.73 kg; the description files say 0.7126 kg).
+    /// The Franka Hand. It is turned by -45 degrees about the flange axis, and its fingertips are
+    /// 0.1034 m from the flange. Its mass is 0.73 kg, as Desk declares it (the description files
+    /// say 0.7126 kg).
     pub fn hand() -> Self {
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -core::f64::consts::FRAC_PI_4);
         let mut f_t_ne = turn.to_homogeneous();

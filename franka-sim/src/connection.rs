@@ -1,5 +1,5 @@
-//! The connection of one client to a device. It answers the handshake and turns stream bytes into
-//! requests.
+//! Connection of one client to a device. It answers the handshake and turns the bytes of the stream
+//! into requests.
 
 use std::collections::VecDeque;
 
@@ -8,20 +8,20 @@ use franka_proto::framing::{FrameError, Message};
 use franka_proto::server::{Event, Session};
 use franka_proto::{Command, CommandId, Protocol, ServiceCommand, Violation};
 
-/// Reason why a client is disconnected; `C` are the commands of its device.
+/// Reason why a client is disconnected; `C` is the set of commands of the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SessionError<C: ServiceCommand = Command> {
     /// The client sent bytes that are not a message.
     #[error("{0}")]
     Frame(FrameError),
-    /// The client's messages are not allowed.
+    /// The client sent a message that the protocol does not permit.
     #[error("{0}")]
     Violation(Violation<C>),
-    /// The client announced another version, and was notified.
+    /// The client announced another protocol version. The server has told the client so.
     #[error("got protocol {announced}, which this server does not support")]
     Incompatible {
-        /// The announced version.
+        /// The version that the client announced.
         announced: u16,
     },
 }
@@ -35,7 +35,7 @@ pub struct Datagram<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Cuts the first message off a stream: `None` while it is incomplete.
+/// Splits the first message off a stream; `None` while the message is incomplete.
 pub(crate) type Framing = fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>;
 
 /// A request, and the id for its answer.
@@ -69,8 +69,8 @@ impl<P: Protocol> Connection<P> {
         self.received.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete request. Handshakes, and requests that no device accepts, are
-    /// answered here, through `replies`.
+    /// Returns the next complete request. This function itself answers handshakes and requests that
+    /// no device accepts, through `replies`.
     pub(crate) fn next_request(
         &mut self,
         replies: &mut VecDeque<Bytes>,

@@ -8,7 +8,8 @@ use crate::config::ForceAxes;
 use crate::generator::ArmModel;
 use crate::signal::{halves, stack};
 
-/// The observed external torques, the wrench that corresponds to them, and the exceeded thresholds.
+/// Estimated external torques, the wrench that corresponds to them, and the thresholds that they
+/// exceed.
 ///
 /// A positive value is the robot's action on its environment, as in the state (libfranka 0.21,
 /// `robot_state.h`). If a hand pushes the arm upwards, the force along z is negative.
@@ -63,7 +64,7 @@ impl Estimate {
     /// Compares the estimate with the thresholds, with forces along `axes`; `accelerating` selects
     /// the set. Returns the errors that stop the robot.
     ///
-    /// A collision is latched only if `moving`: an arm at rest has nothing to stop.
+    /// A collision is latched only if `moving` is true, because an arm at rest need not stop.
     pub(crate) fn compare(
         &mut self,
         thresholds: &CollisionBehavior,

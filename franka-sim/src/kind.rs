@@ -6,9 +6,9 @@ use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version
 /// One kind of robot.
 pub(crate) struct Description {
     kind: RobotKind,
-    /// The robot's protocol.
+    /// Version of the robot's protocol.
     pub(crate) version: Version,
-    /// Name of the robot in its description; `None` if it serves none.
+    /// Name of the robot in its description; `None` if the robot serves no description.
     pub(crate) urdf_name: Option<&'static str>,
     /// Precision of the numbers in its states.
     pub(crate) precision: Precision,
@@ -20,9 +20,9 @@ pub(crate) struct Description {
 
 /// Answers to requests while a safety function forbids motion.
 pub(crate) struct SafetyStatuses {
-    /// For a motion that was running.
+    /// Answer for a running motion.
     pub(crate) preempted: MoveStatus,
-    /// For a requested motion.
+    /// Answer for a requested motion.
     pub(crate) rejected: MoveStatus,
     pub(crate) setter: SetterStatus,
     pub(crate) recovery: RecoveryStatus,

@@ -36,7 +36,8 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
-//! On Unix a robot over sockets follows the wall clock, or the client: [`Sim::virtual_time`].
+//! On Unix a robot over sockets follows the wall clock. With [`Sim::virtual_time`] its time follows
+//! the client.
 //!
 //! # Features
 //!
@@ -47,24 +48,26 @@
 //!
 //! # Disturbances
 //!
-//! [`Robot`], and from any task through [`Running::with`]: press the user stop, close the brakes,
-//! guide the arm, activate a safety function, change the payload, trip any error, and perform the
-//! recovery that requires a person. [`touch`](Robot::touch) acts on the arm anywhere ([`Touch`]):
-//! push it, also over time, pull it by a spring, hold it, block a joint, or put a wall in its path.
+//! The methods of [`Robot`] disturb the robot; [`Running::with`] calls them from any task. They
+//! press the user stop, close the brakes, guide the arm, activate a safety function, change the
+//! payload, raise any error, or perform the recovery that requires a person.
+//! [`touch`](Robot::touch) acts on the arm at any point ([`Touch`]). It pushes the arm, pulls it by
+//! a spring, holds it, blocks a joint, or puts a wall in its path.
 //!
 //! # What it does not do
 //!
-//! - The robot: the user must provide its model library (protocol 5). For self-collision it knows
-//!   the shape of the Franka Hand and of no other tool.
+//! - The robot: the user must provide its model library (protocol 5). Its self-collision check
+//!   knows the shape of the Franka Hand, and no other tool.
 //! - Errors that never occur automatically: errors of the force controller, of Desk's own motions
 //!   and of the base's acceleration. [`Robot::trip`] raises any.
 //! - Physics: links do not bend, and joints only if the [`Arm`] has elasticity. The rigid-body
 //!   plant has no surroundings except a [`Touch`], and no contact with itself. The plant of MuJoCo
 //!   (feature `mujoco`) has a scene.
-//! - The end effectors: kinematics, unless the plant has fingers. Without fingers in the plant,
-//!   arm and end effectors are independent, and held objects have neither mass nor pose.
-//! - Unpublished values of a robot have values chosen here, which are options: [`Unpublished`].
-//!   They are tolerances, default thresholds and gains, the gain of the force estimate, and the
+//! - The end effectors have only kinematics, unless the plant (the physics) has fingers. Without
+//!   fingers in the plant, arm and end effectors are independent, and held objects have neither
+//!   mass nor pose.
+//! - Unpublished values: this simulator chooses them, and [`Unpublished`] makes them options. They
+//!   are tolerances, default thresholds and gains, the gain of the force estimate, and the
 //!   criterion for instability. None has been measured on a robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

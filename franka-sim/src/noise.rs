@@ -5,8 +5,8 @@ use franka_model::JointVector;
 /// SplitMix64 (Steele, Lea and Flood, 2014) and, for normally distributed values, the Box-Muller
 /// transform.
 ///
-/// Written here so that a seed gives the same run with every version and on every platform: the
-/// algorithm of `rand`'s small generator may change with either.
+/// The crate `rand` may change its small generator with the version or the platform. This generator
+/// gives the same run for a seed everywhere.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,
@@ -37,7 +37,7 @@ impl Random {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Any number.
+    /// 64 random bits.
     pub(crate) fn bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.state;

@@ -20,9 +20,9 @@ pub(crate) struct MomentumObserver {
 /// The arm as the observer sees it at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instant {
-    /// Measured, `[rad/s]`.
+    /// Measured joint velocities, `[rad/s]`.
     pub(crate) dq: JointVector,
-    /// With the declared load, `[kg·m²]`.
+    /// Mass matrix with the declared load, `[kg·m²]`.
     pub(crate) mass: MassMatrix,
     /// `C dq + g`, `[N·m]`.
     pub(crate) bias: JointVector,
@@ -46,10 +46,10 @@ impl MomentumObserver {
         }
     }
 
-    /// Processes one millisecond: the arm at both ends, and the mean sensor torque, `[N·m]`. `gain`
-    /// in `[1/s]`.
+    /// Processes one millisecond, from the arm at its beginning and end and the mean sensor torque,
+    /// `[N·m]`. `gain` is in `[1/s]`.
     ///
-    /// Backward Euler in the residual, the trapezoidal rule elsewhere, so that no gain is too high.
+    /// The residual uses backward Euler and the rest the trapezoidal rule, so every gain is stable.
     pub(crate) fn update(
         &mut self,
         before: &Instant,

@@ -6,19 +6,19 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::config::{SetterBounds, Tool, Unpublished};
 
-/// The values in force. They outlive the client that set them, as on a robot.
+/// Settings in force. They outlive the client that set them, as on a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
     pub(crate) tool: Tool,
-    /// `NE_T_EE`
+    /// Pose of the end effector in the nominal end effector frame, `NE_T_EE`.
     pub(crate) ne_t_ee: Matrix4<f64>,
-    /// `F_T_EE` and `EE_T_K`
+    /// Frames `F_T_EE` and `EE_T_K`.
     pub(crate) frames: EndEffector,
-    /// Declared by `SetLoad`.
+    /// Load that a client declared by `SetLoad`.
     pub(crate) load: Load,
-    /// `[N·m/rad]`
+    /// Stiffness of the joint impedance controller, `[N·m/rad]`.
     pub(crate) joint_stiffness: JointVector,
-    /// In stiffness-frame axes, `[N/m, N·m/rad]`.
+    /// Stiffness of the Cartesian impedance controller in stiffness-frame axes, `[N/m, N·m/rad]`.
     pub(crate) cartesian_stiffness: Twist,
     pub(crate) thresholds: CollisionBehavior,
     pub(crate) guiding: Guiding,
@@ -30,9 +30,9 @@ pub(crate) struct Settings {
 /// The directions in which a person may guide the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Guiding {
-    /// Translation along and rotation about the axes of the end effector.
+    /// Translation along the axes of the end effector, and rotation about them.
     pub(crate) axes: [bool; 6],
-    /// The elbow, without motion of the end effector.
+    /// Motion of the elbow that does not move the end effector.
     pub(crate) elbow: bool,
 }
 
@@ -64,12 +64,12 @@ impl Settings {
         }
     }
 
-    /// The load of the flange in the controllers' model.
+    /// Load on the flange that the controllers' model assumes.
     pub(crate) fn declared_load(&self) -> Load {
         self.tool.load.combine(&self.load)
     }
 
-    /// Applies a setter, or returns the reason why not.
+    /// Applies a setter (a request that changes a setting), or returns the reason for refusing it.
     pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
         let applied = match request {
             Request::SetCollisionBehavior(thresholds) => {
@@ -116,7 +116,7 @@ fn all_within(values: &[f64], lower: f64, upper: f64) -> bool {
     values.iter().all(|value| (lower..=upper).contains(value))
 }
 
-/// Cutoff frequencies have a documented range, `[Hz]`.
+/// True if the cutoff frequencies are in their documented range, `[Hz]`.
 fn are_filters(filters: &Filters) -> bool {
     let frequencies = [
         filters.joint_position_filter_frequency,
@@ -128,8 +128,9 @@ fn are_filters(filters: &Filters) -> bool {
     all_within(&frequencies, 1.0, 1000.0)
 }
 
-/// Thresholds are finite and not negative. A threshold of zero is always reached. Upper thresholds
-/// below the lower ones are allowed: the collision then comes without an earlier contact.
+/// True if all thresholds are finite and not negative. A threshold of zero is always reached. Upper
+/// thresholds below the lower thresholds are valid: a collision then occurs without an earlier
+/// contact.
 fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
     let t = thresholds;
     let torques = [
@@ -151,15 +152,16 @@ fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
         .all(|value| value.is_finite() && *value >= 0.0)
 }
 
-/// A rigid transform within the bounds.
+/// Returns the matrix if it is a rigid transform within the bounds.
 fn rigid(column_major: &[f64; 16], bounds: &SetterBounds) -> Option<Matrix4<f64>> {
     let pose = transform::isometry_from_array(column_major)?;
     let is_near = pose.translation.vector.norm() <= bounds.translation;
     is_near.then(|| Matrix4::from_column_slice(column_major))
 }
 
-/// A load that a rigid body can have: mass not negative, inertia symmetric, no principal moment
-/// below zero or above the sum of the others (up to rounding), all within the bounds.
+/// Returns the load if a rigid body can have it, and if it is within the bounds. The mass must not
+/// be negative, and the inertia must be symmetric. No principal moment may be below zero or, except
+/// for rounding, above the sum of the other two.
 fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
     let inertia = Matrix3::from_column_slice(&load.I_load);
     let com = Vector3::from(load.F_x_Cload);

@@ -13,11 +13,11 @@ use crate::kind::Precision;
 /// Positions of the seven joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JointSignal {
-    /// `[rad]`
+    /// Joint positions, `[rad]`.
     pub(crate) q: JointVector,
-    /// `[rad/s]`
+    /// Joint velocities, `[rad/s]`.
     pub(crate) dq: JointVector,
-    /// `[rad/s²]`
+    /// Joint accelerations, `[rad/s²]`.
     pub(crate) ddq: JointVector,
 }
 
@@ -31,14 +31,15 @@ impl JointSignal {
         }
     }
 
-    /// One cycle later at `q`, and the necessary jerk, `[rad/s³]`.
+    /// The signal one cycle later at the position `q`, and the jerk that this requires, `[rad/s³]`.
     pub(crate) fn to_position(self, q: &JointVector) -> (Self, JointVector) {
         let (mut next, jerk) = self.to_velocity(&((q - self.q) / CYCLE));
         next.q = *q;
         (next, jerk)
     }
 
-    /// One cycle later at velocity `dq`, and the necessary jerk, `[rad/s³]`.
+    /// The signal one cycle later at the velocity `dq`, and the jerk that this requires,
+    /// `[rad/s³]`.
     pub(crate) fn to_velocity(self, dq: &JointVector) -> (Self, JointVector) {
         let ddq = (dq - self.dq) / CYCLE;
         let next = Self {
@@ -49,7 +50,7 @@ impl JointSignal {
         (next, (ddq - self.ddq) / CYCLE)
     }
 
-    /// One cycle later with the acceleration unchanged.
+    /// The signal one cycle later with the acceleration unchanged.
     pub(crate) fn extrapolated(self) -> Self {
         let dq = self.dq + self.ddq * CYCLE;
         Self {
@@ -59,7 +60,7 @@ impl JointSignal {
         }
     }
 
-    /// The signal as a client knows it, read from a state of this precision.
+    /// The signal that a client reads from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {
@@ -75,9 +76,9 @@ impl JointSignal {
 pub(crate) struct CartesianSignal {
     /// Pose in the base frame, `[m]`.
     pub(crate) pose: Isometry3<f64>,
-    /// `[m/s, rad/s]`
+    /// Twist, `[m/s, rad/s]`.
     pub(crate) twist: Twist,
-    /// `[m/s², rad/s²]`
+    /// Derivative of the twist, `[m/s², rad/s²]`.
     pub(crate) acceleration: Twist,
 }
 
@@ -91,7 +92,7 @@ impl CartesianSignal {
         }
     }
 
-    /// One cycle later at `pose`, and the necessary jerk, `[m/s³, rad/s³]`.
+    /// The signal one cycle later at `pose`, and the jerk that this requires, `[m/s³, rad/s³]`.
     pub(crate) fn to_pose(self, pose: &Isometry3<f64>) -> (Self, Twist) {
         let shift = (pose.translation.vector - self.pose.translation.vector) / CYCLE;
         let turn = rotation::error(&pose.rotation, &self.pose.rotation) / CYCLE;
@@ -100,7 +101,7 @@ impl CartesianSignal {
         (next, jerk)
     }
 
-    /// One cycle later at twist `twist`, and the necessary jerk, `[m/s³, rad/s³]`.
+    /// The signal one cycle later with `twist`, and the jerk that this requires, `[m/s³, rad/s³]`.
     pub(crate) fn to_twist(self, twist: &Twist) -> (Self, Twist) {
         let acceleration = (twist - self.twist) / CYCLE;
         let next = Self {
@@ -111,8 +112,8 @@ impl CartesianSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// One cycle later with the acceleration unchanged; the angular acceleration in the axes of
-    /// `orientation`.
+    /// The signal one cycle later with the acceleration unchanged. The angular acceleration is
+    /// constant in the axes that `orientation` selects.
     pub(crate) fn extrapolated(self, orientation: Extrapolation) -> Self {
         let (linear, angular) = halves(&self.twist);
         let (acceleration, turning) = halves(&self.acceleration);
@@ -133,7 +134,7 @@ impl CartesianSignal {
         }
     }
 
-    /// The signal as a client knows it, read from a state of this precision.
+    /// The signal that a client reads from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         let rounded = transform::array(&self.pose).map(read);
@@ -169,7 +170,7 @@ impl ElbowSignal {
         }
     }
 
-    /// One cycle later at `angle`, and the necessary jerk, `[rad/s³]`.
+    /// The signal one cycle later at `angle`, and the jerk that this requires, `[rad/s³]`.
     pub(crate) fn to_angle(self, angle: f64) -> (Self, f64) {
         let velocity = (angle - self.angle) / CYCLE;
         let acceleration = (velocity - self.velocity) / CYCLE;
@@ -182,7 +183,7 @@ impl ElbowSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// One cycle later with the acceleration unchanged.
+    /// The signal one cycle later with the acceleration unchanged.
     pub(crate) fn extrapolated(self) -> Self {
         let velocity = self.velocity + self.acceleration * CYCLE;
         Self {
@@ -192,7 +193,7 @@ impl ElbowSignal {
         }
     }
 
-    /// The signal as a client knows it, read from a state of this precision.
+    /// The signal that a client reads from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {

@@ -1,9 +1,9 @@
-//! `control_command_success_rate`: the cycles of a motion that the client answered, and the number
-//! lost in a row. `robot::motion` defines the effect of a lost command.
+//! `control_command_success_rate`: the fraction of a motion's cycles that the client answered, and
+//! the number of cycles lost in a row. `robot::motion` defines the effect of a lost command.
 
 use crate::config::FirstCycles;
 
-/// Cycles lost in a row that end a motion (FCI documentation,
+/// Number of cycles lost in a row that ends a motion (FCI documentation,
 /// "communication_constraints_violation").
 pub(crate) const LOST_LIMIT: u32 = 20;
 
@@ -12,8 +12,8 @@ const WINDOW: u32 = 100;
 
 /// The last hundred cycles, newest in the lowest bit.
 ///
-/// Counting begins with the client's first command, before which the robot waits. A late command
-/// counts as the first; that is a choice of this simulator.
+/// Counting begins with the client's first command; before it the robot waits. A late command
+/// counts as the first command, which is a choice of this simulator.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,
@@ -28,15 +28,15 @@ impl SuccessRate {
         self.lost_in_a_row = 0;
     }
 
-    /// Counts a cycle without a command; returns the number lost in a row.
+    /// Counts a cycle without a command. Returns the number of cycles lost in a row.
     pub(crate) fn miss(&mut self) -> u32 {
         self.count(0);
         self.lost_in_a_row += 1;
         self.lost_in_a_row
     }
 
-    /// Fraction of commands received over the window; while it is not full, `first` sets the
-    /// divisor. Zero before the first command that came in time.
+    /// Fraction of commands received over the window; while the window is not full, `first` selects
+    /// the divisor. The rate is zero before the first command that arrived in time.
     pub(crate) fn rate(&self, first: FirstCycles) -> f64 {
         if self.counted == 0 {
             return 0.0;

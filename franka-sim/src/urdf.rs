@@ -1,12 +1,12 @@
 //! The description that the robot serves: a URDF text.
 //!
-//! Clients read two things from it: the velocity envelope, from the joints' limits and a vendor
-//! element, and the rigid-body model. Both parsers of libfranka 0.21 require the following, and
-//! fail otherwise:
+//! Clients read two things from the description: the velocity envelope (from the joints' limits and
+//! a vendor element), and the rigid-body model. Both parsers of libfranka 0.21 require the
+//! following:
 //!
 //! - all of `joint1` to `joint7`, each with `limit` (lower, upper, velocity, effort) and
-//!   `position_based_velocity_limits` as direct children; no other joint whose name contains one
-//!   of these (fingers do);
+//!   `position_based_velocity_limits` as direct children; no other joint name may contain one of
+//!   these names (those of the fingers do);
 //! - exactly seven movable joints, a link named `link8`, an `axis` for each joint;
 //! - no fixed link with mass behind link 7: a hand is part of `m_ee`.
 //!
@@ -17,7 +17,7 @@ use core::fmt::Write;
 use franka_model::geometry::FLANGE;
 use franka_model::{Model, RigidBody};
 
-/// The URDF text that describes `model` as a robot called `name`.
+/// Returns the URDF text that describes `model` as a robot called `name`.
 ///
 /// A model without a velocity envelope has no element for it.
 pub(crate) fn text(name: &str, model: &Model) -> String {

@@ -5,32 +5,34 @@ use nalgebra::{Isometry3, Vector3};
 
 use super::{StateGeometry, SystemLimits};
 
-/// Differences between the arm's body and the controllers' model, and between that model and the
-/// clients'. The robot's controllers and its state compute with
-/// [`state_geometry`](Self::state_geometry); the physics and everything that touches the arm add
-/// the errors on top.
+/// Differences between the arm's body and the controllers' model, and between the controllers'
+/// model and the model of the clients. The robot's controllers and its state compute with
+/// [`state_geometry`](Self::state_geometry). The physics and everything that touches the arm add
+/// the errors to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Error of each link's mass as a fraction; the error of its inertia is the same fraction.
-    /// Source: a third to a half of the torque residuals at rest depends on the pose; one averaged
-    /// model for all robots (franka_ros issue 404).
+    /// Error of each link's mass as a fraction. The link's inertia has the same relative error.
+    /// Source: a third to a half of the torque residuals at rest depends on the pose, because all
+    /// robots share one averaged model (franka_ros issue 404).
     pub mass_error: [f64; 7],
     /// Error of each link's centre of mass in the link's axes, `[m]`. Source: see
     /// [`mass_error`](Self::mass_error).
     pub com_error: [Vector3<f64>; 7],
-    /// Geometry of `O_T_EE`, of the controllers and of the served description.
+    /// Geometry that `O_T_EE`, the robot's controllers and the served description use.
     pub state_geometry: StateGeometry,
-    /// Pose of each joint's true frame in the frame that `state_geometry` has there. `O_T_EE` does
-    /// not show it. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2 to 1 mm.
+    /// Pose of each joint's true frame in the frame that `state_geometry` gives for this joint.
+    /// `O_T_EE` does not show this error. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2
+    /// to 1 mm.
     pub kinematic_error: [Isometry3<f64>; 7],
     /// Undeclared mass on the flange besides tool and payload, `[kg]`, at the centre of mass of the
-    /// tool. Source: the sag at a session's start excludes 0.2 kg on two FERs.
+    /// tool. Source: the small sag at the start of a session rules out 0.2 kg on two FERs.
     pub undeclared_mass: f64,
-    /// Error of the tool's centre of mass in the flange frame, `[m]`. An estimate.
+    /// Error of the tool's centre of mass in the flange frame, `[m]`. The default is an estimate,
+    /// not a measurement.
     pub load_com_error: Vector3<f64>,
     /// Gravitational acceleration in the base frame, `[m/s²]`. Only the physics uses it. The
-    /// controllers' model and the state (`O_ddP_O`) assume an upright arm; with another value here
-    /// they estimate a load that does not exist. See [`tilted`](Self::tilted).
+    /// controllers' model and the state (`O_ddP_O`) assume an upright arm. With another value here,
+    /// the controllers estimate a load that does not exist. See [`tilted`](Self::tilted).
     pub gravity_earth: Vector3<f64>,
     /// Mechanical end stops.
     pub stops: EndStops,
@@ -53,8 +55,8 @@ impl Body {
         }
     }
 
-    /// Tilts the base by this rotation vector against an upright one, `[rad]`. An estimate of real
-    /// mountings: 0.25 degrees about each horizontal axis.
+    /// Tilts the base by this rotation vector from the upright position, `[rad]`. Real mountings
+    /// are estimated to tilt by 0.25 degrees about each horizontal axis.
     #[must_use]
     pub fn tilted(mut self, rotation: Vector3<f64>) -> Self {
         let turn = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
@@ -62,7 +64,7 @@ impl Body {
         self
     }
 
-    /// The arm with these links and axes.
+    /// Returns the geometry and inertia of the arm with these links and axes.
     pub fn as_built(&self, kind: RobotKind) -> AsBuilt {
         let exact = AsBuilt::exactly(&self.state_geometry.model(kind));
         let mut links = *exact.links();
@@ -75,7 +77,7 @@ impl Body {
             .with_deviations(&self.kinematic_error)
     }
 
-    /// Load on the flange with this tool and this payload.
+    /// Returns the total load on the flange: this tool, this payload and the undeclared mass.
     pub(crate) fn load(&self, tool: &Load, payload: &Load) -> Load {
         let carried = Load {
             mass: tool.mass + self.undeclared_mass,
@@ -105,8 +107,8 @@ const CLEARANCE: f64 = 0.04;
 impl EndStops {
     /// Stops for an arm whose interface enforces `lower` and `upper`, `[rad]`.
     ///
-    /// Clearance, stiffness and damping are choices of this simulator: 87 N·m press the strongest
-    /// joint 0.03 rad into its stop.
+    /// Clearance, stiffness and damping are choices of this simulator. The strongest joint moves
+    /// 0.03 rad into its stop at 87 N·m.
     pub fn around(lower: &JointVector, upper: &JointVector) -> Self {
         Self {
             lower: lower.add_scalar(-CLEARANCE),
@@ -124,9 +126,9 @@ impl EndStops {
         damping: 0.0,
     };
 
-    /// Returns the stops' torques over a step of `dt` seconds that begins at `q`, `dq`, to be
-    /// subtracted, `[N·m]`. The second value is their growth with the velocity at the end of the
-    /// step, `[N·m·s/rad]`.
+    /// Returns the stops' torques over a step of `dt` seconds that begins at `q`, `dq`, `[N·m]`.
+    /// The caller subtracts them. The second value is the increase of these torques per velocity at
+    /// the end of the step, `[N·m·s/rad]`.
     pub(crate) fn resistance(
         &self,
         q: &JointVector,
@@ -144,7 +146,7 @@ impl EndStops {
         (torque, slope)
     }
 
-    /// Depth of joint `i` at `q` in a stop: negative in the lower, positive in the upper one,
+    /// Depth of joint `i` at `q` in a stop: negative in the lower stop, positive in the upper stop,
     /// `[rad]`.
     fn depth(&self, i: usize, q: f64) -> f64 {
         (q - self.upper[i]).max(0.0) + (q - self.lower[i]).min(0.0)

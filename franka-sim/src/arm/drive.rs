@@ -12,12 +12,12 @@ pub struct Drive {
     /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Source: a gain of 2 turns the
     /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`.
     pub torque_loop_gain: f64,
-    /// Time constant with which the torque follows a command of the torque interface, a first-order
-    /// lag, `[s]`. No source. Bounded by a force bandwidth of 10 Hz and by the gains that run on
-    /// real arms.
+    /// Time constant of the first-order lag with which the torque follows a command of the torque
+    /// interface, `[s]`. No source is known. A force bandwidth of 10 Hz and the gains that run on
+    /// real arms bound the value.
     pub torque_lag: f64,
-    /// Cycles from a state to the cycle in which its answer acts, at least 1. The value 1 is from
-    /// the protocol.
+    /// Number of cycles from a state to the cycle in which the command that answers it acts, at
+    /// least 1. The protocol prescribes 1.
     pub command_delay: u32,
     /// Elasticity between gear and link; `None` for rigid joints.
     pub elasticity: Option<Elasticity>,
@@ -28,18 +28,21 @@ pub struct Drive {
 /// Springs and dampers between rotors and links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elasticity {
-    /// `[N·m/rad]`. Source: `theta − q = tau_J / K` in published states: 14250 (joints 1 to 4) and
-    /// 9000 (5 to 7) on two FERs, 7000 in the oldest sample of the documentation.
+    /// Stiffness of each spring, `[N·m/rad]`. Source: `theta − q = tau_J / K` in published states:
+    /// 14250 (joints 1 to 4) and 9000 (5 to 7) on two FERs, 7000 in the oldest sample of the
+    /// documentation.
     pub stiffness: JointVector,
-    /// `[N·m·s/rad]`. A two-mass check: with 30 and 5, libfranka's example gains are about stable.
-    /// A wrist damping of 30 to 40 rings, as users report.
+    /// Damping of each damper, `[N·m·s/rad]`. The values come from a calculation with two masses.
+    /// With 30 and 5, libfranka's example gains are just stable. With 30 to 40 at the wrist, the
+    /// arm rings, as users report.
     pub damping: JointVector,
 }
 
 /// A torque that depends on the motor's angle: `amplitude · sin(order · angle)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ripple {
-    /// `[N·m]`. Source: the log of Gaz et al., 0.1 to 0.25 (joints 1 to 4), 0.02 (5 and 6).
+    /// Amplitude, `[N·m]`. Source: the log of Gaz et al., 0.1 to 0.25 (joints 1 to 4), 0.02 (5 and
+    /// 6).
     pub amplitude: JointVector,
     /// Periods per turn of the joint. Source: the same log, 241 to 243 and 160.
     pub order: JointVector,
@@ -47,8 +50,9 @@ pub struct Ripple {
 
 /// Rotor inertia of a Franka Research 3 under its torque loop, `[kg·m²]`.
 ///
-/// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs it: its link alone has 1.2e-4 kg·m²,
-/// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
+/// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs rotor inertia, because its link alone
+/// has 1.2e-4 kg·m². With the link alone, a damping above 0.24 N·m·s/rad in a torque client is
+/// unstable at 1 kHz.
 const IDEAL_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
 
 /// Rotor inertia of a Franka Emika Robot under its torque loop, `[kg·m²]`. Source:
@@ -77,7 +81,8 @@ impl Drive {
         self.rotor_inertia / (1.0 + self.torque_loop_gain)
     }
 
-    /// Inertia that frictionless drives add to the links over a step of `dt` seconds, `[kg·m²]`.
+    /// Inertia that drives without friction add to the links over a step of `dt` seconds,
+    /// `[kg·m²]`.
     #[cfg(feature = "mujoco")]
     pub(crate) fn link_inertia(&self, dt: f64) -> JointVector {
         let felt = self.felt_inertia();

@@ -15,7 +15,7 @@ use super::{
 use crate::network::Stalls;
 use crate::noise::Random;
 
-/// The distributions that the parameters of an arm are drawn from.
+/// Family of arms: one distribution for each parameter of an arm.
 ///
 /// Units are SI. Unless noted otherwise, a parameter is drawn for each joint (or link), and its
 /// distribution has one number for all or seven. With the feature `serde` a family can be read from
@@ -40,56 +40,58 @@ use crate::noise::Random;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Family {
-    /// Breakaway torque before its scale, `[N·m]`.
+    /// Breakaway torque before the factor [`static_friction_scale`](Self::static_friction_scale),
+    /// `[N·m]`.
     pub static_friction: Distribution,
-    /// Factor on the breakaway torques of all joints, drawn once.
+    /// Factor on the breakaway torques of all joints, drawn once per arm.
     pub static_friction_scale: Distribution,
-    /// Kinetic over static friction, 0 to 1.
+    /// Kinetic friction divided by static friction, 0 to 1.
     pub kinetic_ratio: Distribution,
-    /// `[rad/s]`
+    /// Speed at which friction falls from static to kinetic ([`Friction::stribeck_speed`]),
+    /// `[rad/s]`.
     pub stribeck_speed: Distribution,
-    /// `[N·m/rad]`
+    /// Stiffness of the bristles ([`Bristle`]), `[N·m/rad]`.
     pub bristle_stiffness: Distribution,
-    /// `[N·m·s/rad]`
+    /// Damping of the bristles, `[N·m·s/rad]`.
     pub bristle_damping: Distribution,
-    /// `[N·m·s/rad]`
+    /// Viscous friction, `[N·m·s/rad]`.
     pub viscous_friction: Distribution,
-    /// Share of friction beyond the torque sensor, 0 to 1.
+    /// Share of the friction on the link's side of the torque sensor, 0 to 1.
     pub link_share: Distribution,
     /// Rotor inertia without torque control, `[kg·m²]`.
     pub rotor_inertia: Distribution,
-    /// Drawn once.
+    /// Gain of the torque loop, drawn once per arm.
     pub torque_loop_gain: Distribution,
-    /// `[s]`, drawn once.
+    /// Time constant of the torque loop, `[s]`, drawn once per arm.
     pub torque_lag: Distribution,
-    /// Delay in whole cycles, at least 1, drawn once.
+    /// Delay of commands in whole cycles, at least 1, drawn once per arm.
     pub command_delay: Distribution,
-    /// Elasticity of the joints; `null` for rigid ones.
+    /// Elasticity of the joints; `null` in JSON for rigid joints.
     // `Option::deserialize`, since a plain `Option` may be missing.
     #[cfg_attr(
         feature = "serde",
         serde(deserialize_with = "serde::Deserialize::deserialize")
     )]
     pub elasticity: Option<Elastic>,
-    /// `[N·m]`
+    /// Amplitude of the torque ripple, `[N·m]`.
     pub ripple_amplitude: Distribution,
-    /// Periods per turn.
+    /// Periods of the torque ripple per turn of the joint.
     pub ripple_order: Distribution,
     /// Zero error of the torque sensors, `[N·m]`.
     pub torque_offset: Distribution,
-    /// `[N·m]`
+    /// Step of the torque sensors, `[N·m]`.
     pub torque_quantum: Distribution,
-    /// Standard deviation, `[N·m]`.
+    /// Noise of the torque sensors at rest, standard deviation, `[N·m]`.
     pub torque_noise_at_rest: Distribution,
-    /// Standard deviation at 1 rad/s and above, `[N·m]`.
+    /// Noise of the torque sensors at 1 rad/s and above, standard deviation, `[N·m]`.
     pub torque_noise_in_motion: Distribution,
-    /// Standard deviation, `[rad/s]`.
+    /// Noise of the joint velocities at rest, standard deviation, `[rad/s]`.
     pub velocity_noise_at_rest: Distribution,
-    /// Standard deviation at 1 rad/s and above, `[rad/s]`.
+    /// Noise of the joint velocities at 1 rad/s and above, standard deviation, `[rad/s]`.
     pub velocity_noise_in_motion: Distribution,
-    /// Standard deviation, `[rad]`.
+    /// Noise of the joint positions, standard deviation, `[rad]`.
     pub position_noise: Distribution,
-    /// Error as a fraction of the link's mass.
+    /// Error of a link's mass, as a fraction of this mass.
     pub mass_error: Distribution,
     /// Error of each coordinate of a link's centre of mass, `[m]`.
     pub com_error: Distribution,
@@ -97,24 +99,25 @@ pub struct Family {
     pub axis_error: Distribution,
     /// Error of each coordinate of the position of a joint's frame, `[m]`.
     pub length_error: Distribution,
-    /// Length of upper arm and forearm above the vendor's description, in the states of a Franka
-    /// Research 3 and in the description that it serves, `[m]`, drawn once; 0.2 mm makes
-    /// [`StateGeometry::RECORDED_FR3`]. A Franka Emika Robot has the described lengths.
+    /// Excess of the lengths of upper arm and forearm over the vendor's description, `[m]`, drawn
+    /// once per arm. The states of a Franka Research 3 and the description that it serves contain
+    /// this excess. 0.2 mm gives [`StateGeometry::RECORDED_FR3`]. A Franka Emika Robot has the
+    /// described lengths.
     pub state_length_excess: Distribution,
-    /// Error of each coordinate of a joint frame's rotation vector in the states, `[rad]`, in the
-    /// described frame.
+    /// Error of the joint frames that the states use: each coordinate of the rotation vector in the
+    /// described frame, `[rad]`.
     pub state_axis_error: Distribution,
-    /// Error of each coordinate of a joint frame's position in the states, `[m]`, in the described
-    /// frame.
+    /// Error of the joint frames that the states use: each coordinate of the position in the
+    /// described frame, `[m]`.
     pub state_length_error: Distribution,
-    /// `[kg]`, drawn once.
+    /// Undeclared mass on the flange, `[kg]`, drawn once per arm.
     pub undeclared_mass: Distribution,
     /// Error of each coordinate of the tool's centre of mass, `[m]`.
     pub load_com_error: Distribution,
     /// Tilt about each horizontal axis, `[rad]`.
     pub base_tilt: Distribution,
-    /// Stalls of the network interface per second, for a Franka Emika Robot, drawn once. A Franka
-    /// Research 3 has none. [`Stalls::FER`] has their lengths.
+    /// Stalls of the network interface of a Franka Emika Robot, per second, drawn once per arm. A
+    /// Franka Research 3 has no stalls. [`Stalls::FER`] gives the lengths of the stalls.
     pub stalls_per_second: Distribution,
     /// Zero error of the motors' positions, for a Franka Research 3, `[rad]`. A Franka Emika Robot
     /// has none.
@@ -128,20 +131,20 @@ pub struct Family {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Elastic {
-    /// `[N·m/rad]`
+    /// Stiffness of the joints, `[N·m/rad]`.
     pub stiffness: Distribution,
-    /// `[N·m·s/rad]`
+    /// Damping of the joints, `[N·m·s/rad]`.
     pub damping: Distribution,
 }
 
-/// Reason why a text describes no family of arms.
+/// Reason why a text is not a valid family of arms.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FamilyError {
-    /// The text is not JSON, or has other fields or types.
+    /// The text is not JSON, lacks a field, or has an unknown field or a wrong type.
     #[error("{0}")]
     Unreadable(String),
-    /// A value that no arm has.
+    /// The text contains a value that no arm can have.
     #[error("{field}: {got}, expected {expected}")]
     Invalid {
         /// The field's name.
@@ -154,10 +157,10 @@ pub enum FamilyError {
 }
 
 impl Family {
-    /// Reads a family.
+    /// Reads a family from JSON.
     ///
     /// # Errors
-    /// [`FamilyError`] if the text is not JSON, lacks a field or has an unknown one, or if a
+    /// [`FamilyError`] if the text is not JSON, lacks a field or has an unknown field, or if a
     /// distribution has impossible values.
     #[cfg(feature = "serde")]
     pub fn from_json(text: &str) -> Result<Self, FamilyError> {
@@ -171,13 +174,13 @@ impl Family {
         Ok(family)
     }
 
-    /// The family as JSON.
+    /// Returns the family as JSON.
     #[cfg(feature = "serde")]
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("plain data")
     }
 
-    /// Checks the parameters that every arm of the family would have.
+    /// Checks that every arm of the family has valid parameters.
     ///
     /// # Errors
     /// [`FamilyError::Invalid`] for the first field that is wrong.
@@ -262,7 +265,7 @@ impl Family {
         Ok(())
     }
 
-    /// Returns the arm of this seed, or the central arm.
+    /// Returns the arm of this seed, or the central arm if the seed is `None`.
     pub(super) fn arm(&self, kind: RobotKind, seed: Option<u64>) -> Arm {
         let mut draw = Draw {
             random: seed.map(Random::new),
@@ -391,7 +394,7 @@ impl Draw {
         self.number(distribution, 0)
     }
 
-    /// A whole number, with equal probability for each between the ends.
+    /// A whole number between the ends of the distribution; all are equally probable.
     fn whole(&mut self, distribution: &Distribution) -> u32 {
         let wide = match *distribution {
             Distribution::Uniform { low, high } if self.random.is_some() => Distribution::Uniform {

@@ -2,7 +2,7 @@
 
 use franka_model::{JointVector, RobotKind, joint_vector};
 
-/// Friction of the joints, as it opposes a torque command. The part of a motor's friction that the
+/// Friction of the joints that opposes a torque command. The part of a motor's friction that the
 /// control box compensates is not included.
 ///
 /// With a [`Bristle`], a joint sticks. Without one, the torque at velocity `v` is
@@ -12,35 +12,40 @@ pub struct Friction {
     /// Torque at which a joint at rest breaks away, `[N·m]`. It has no effect without a bristle.
     ///
     /// Sources: breakaway ramps of one Panda (franka_emulator, 2021) and of another (ETH PdZ
-    /// thesis, 2023-24). They are 0.83 to 1.6 on joints 1 to 5, 0.4 to 0.9 on 6 and 7.
+    /// thesis, 2023-24). The values are 0.83 to 1.6 on joints 1 to 5, and 0.4 to 0.9 on joints 6
+    /// and 7.
     pub static_torque: JointVector,
-    /// Torque of a joint that slides fast, `[N·m]`. Source: ETH PdZ, static over kinetic 1 to 1.5.
+    /// Friction torque of a joint that slides fast, `[N·m]`. Source: ETH PdZ, a ratio of static to
+    /// kinetic friction of 1 to 1.5.
     pub kinetic_torque: JointVector,
-    /// Speed at which friction has fallen from static to kinetic by 63 %, `[rad/s]`. The fall is
-    /// Gaussian. Without a bristle: the speed at which friction has reached 76 %. Source: ETH PdZ,
-    /// joint 7, 0.049.
+    /// Speed at which friction has covered 63 % of its decrease from static to kinetic, `[rad/s]`.
+    /// The decrease is Gaussian. Without a bristle, friction reaches 76 % of its kinetic value at
+    /// this speed. Source: ETH PdZ, joint 7, 0.049.
     pub stribeck_speed: JointVector,
     /// Viscous friction, `[N·m·s/rad]`. Sources: ETH PdZ, 0 to 1.2; Gaz et al., 0 to 0.17.
     pub viscous: JointVector,
     /// Elasticity before a joint slides; `None` for smooth friction.
     pub bristle: Option<Bristle>,
     /// Share of the friction that is on the link's side of the torque sensor, 0 to 1. Only this
-    /// share appears in `tau_J` and in the external estimate. Source: Gaz et al. 2019, at the
-    /// sensor, against the breakaway from the torque command: 0.25 to 0.5.
+    /// share appears in `tau_J` and in the external estimate. Source: the friction at the sensor
+    /// (Gaz et al. 2019) is 0.25 to 0.5 of the breakaway torque command.
     pub link_share: JointVector,
 }
 
-/// The contact of two rough surfaces as elastic bristles: the elasto-plastic LuGre model (Dupont,
-/// Hayward, Armstrong and Altpeter, "Single state elasto-plastic friction models", IEEE TAC 2002).
+/// Elastic bristles that represent the contact of two rough surfaces: the elasto-plastic LuGre
+/// model (Dupont, Hayward, Armstrong and Altpeter, "Single state elasto-plastic friction models",
+/// IEEE TAC 2002).
 ///
-/// Bristles yield only at the full torque of the Stribeck curve. Below it a joint moves only by
-/// their deflection, even under vibration; the original LuGre model drifts under vibration.
+/// Bristles yield only at the full torque of the Stribeck curve. Below this torque, a joint moves
+/// only as the bristles bend, even under vibration. The original LuGre model drifts under
+/// vibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristle {
-    /// `[N·m/rad]`. No measurement is published. With 1000 to 4000, the drift at the start of a
-    /// session is 0.13 to 0.23 mm, as franka-rs measured on two FERs.
+    /// Stiffness of the bristles, `[N·m/rad]`. No measurement is published. With 1000 to 4000, the
+    /// drift at the start of a session is 0.13 to 0.23 mm, as franka-rs measured on two FERs.
     pub stiffness: JointVector,
-    /// `[N·m·s/rad]`. A choice that lets a stuck joint settle within milliseconds.
+    /// Damping of the bristles, `[N·m·s/rad]`. With the chosen values, a stuck joint comes to rest
+    /// within milliseconds.
     pub damping: JointVector,
 }
 

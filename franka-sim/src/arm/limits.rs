@@ -3,16 +3,18 @@
 use franka_model::RobotKind;
 use franka_model::limits::JointLimits;
 
-/// The joint limits that a Franka Research 3 enforces and serves. They belong to its system, not to
-/// its metal. A Franka Emika Robot has the limits of its kind in either case.
+/// The joint limits that a Franka Research 3 enforces and serves. They depend on the version of its
+/// system software, not on its mechanics. A Franka Emika Robot has the same limits with either
+/// value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SystemLimits {
-    /// Systems from 5.9. Their hard range is an assumption: see [`JointLimits::fr3_system_5_9`].
+    /// System versions from 5.9. Their hard range is an assumption: see
+    /// [`JointLimits::fr3_system_5_9`].
     #[default]
     #[cfg_attr(feature = "serde", serde(rename = "5.9"))]
     From5_9,
-    /// Earlier systems.
+    /// System versions before 5.9.
     #[cfg_attr(feature = "serde", serde(rename = "before-5.9"))]
     Before5_9,
 }

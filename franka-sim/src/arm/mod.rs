@@ -56,10 +56,10 @@ pub struct Arm {
 
 impl Arm {
     /// An arm that matches its model: rigid joints, a perfect torque loop and perfect sensors. Its
-    /// friction is smooth, a twentieth of the published friction, so that it creeps to its target.
-    /// Its lengths match the vendor's description, also as a Franka Research 3.
+    /// friction is smooth and a twentieth of the published friction; the arm creeps to its target.
+    /// Its lengths match the vendor's description, also for a Franka Research 3.
     ///
-    /// For tests that need exactness. No real arm is like this.
+    /// Use this arm for tests that need exact results. No real arm is like this.
     pub fn ideal(kind: RobotKind) -> Self {
         Self {
             friction: Friction::smooth(kind),
@@ -86,8 +86,8 @@ impl Arm {
         Self::central(kind, &Family::bad())
     }
 
-    /// The controllers' model of this arm: the model of its kind, with the geometry of its states
-    /// and the limits of its system.
+    /// The model that the robot's controllers use: the model of the arm's kind, with the geometry
+    /// of its states and the limits of its system.
     pub(crate) fn model(&self, kind: RobotKind) -> Model {
         let limits = *self.limits.joints(kind);
         let model = self.body.state_geometry.model(kind);

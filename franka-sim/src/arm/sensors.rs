@@ -2,13 +2,13 @@
 
 use franka_model::{JointVector, joint_vector};
 
-/// Errors of the sensors. Noise is white from one millisecond to the next and given as its standard
-/// deviation.
+/// Errors of the sensors. Noise is white: its values in successive milliseconds are independent.
+/// Each noise is given as its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensors {
     /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this value, and the torque
-    /// of the torque loop is lower by it. Sources: `tau_J` at rest less the model's gravity in
-    /// published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
+    /// of the torque loop is lower by it. Sources: `tau_J` at rest minus the gravity torques of the
+    /// model, in published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
     pub torque_offset: JointVector,
     /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
     /// (joints 1 to 4) and 0.006 (5 to 7).
@@ -16,20 +16,20 @@ pub struct Sensors {
     /// Noise of `tau_J` at rest, `[N·m]`. Source: a recorded Franka Research 3, 0.007 to 0.027 with
     /// the steps.
     pub torque_noise_at_rest: JointVector,
-    /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`; in between, it grows with the speed. Source:
-    /// the log of Gaz et al., in motion, 0.03 to 0.08.
+    /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`. Between rest and 1 rad/s, the noise grows
+    /// with the speed. Source: the log of Gaz et al., in motion, 0.03 to 0.08.
     pub torque_noise_in_motion: JointVector,
     /// Noise of `dq` at rest, `[rad/s]`. Sources: published states, 5e-4; a recorded Franka
     /// Research 3, 7e-4 to 9e-4.
     pub velocity_noise_at_rest: JointVector,
-    /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; in between, it grows with the speed. Source:
-    /// the log of Gaz et al., 0.002 to 0.01.
+    /// Noise of `dq` at 1 rad/s and above, `[rad/s]`. Between rest and 1 rad/s, the noise grows
+    /// with the speed. Source: the log of Gaz et al., 0.002 to 0.01.
     pub velocity_noise_in_motion: JointVector,
     /// Noise of `q`, `[rad]`. Source: a recorded Franka Research 3, 1.5e-6 to 2.2e-6.
     pub position_noise: JointVector,
     /// Zero error of the motors' positions: `theta` is higher by this value, `[rad]`. Source: a
-    /// Franka Research 3, -3.8e-3 to 2.6e-3, different in each session. A Franka Emika Robot has
-    /// none.
+    /// Franka Research 3, -3.8e-3 to 2.6e-3, different in each session. A Franka Emika Robot has no
+    /// such error.
     pub motor_offset: JointVector,
 }
 
@@ -80,7 +80,7 @@ impl Sensors {
     }
 }
 
-/// A deviation at rest that grows to another one at 1 rad/s.
+/// Standard deviation between `rest` and `motion`. It reaches `motion` at 1 rad/s.
 fn between(rest: &JointVector, motion: &JointVector, dq: &JointVector) -> JointVector {
     JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
 }

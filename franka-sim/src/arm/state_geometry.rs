@@ -8,13 +8,13 @@ use crate::noise::Random;
 
 /// Kinematics of the robot's controllers. `O_T_EE`, all other poses in its states and its inverse
 /// kinematics use it. The served description has the lengths, not the deviations. The model of a
-/// client may differ from it, and so may the links: their
-/// [`kinematic_error`](super::Body::kinematic_error) comes on top.
+/// client may differ from this geometry. The links may differ, too: their
+/// [`kinematic_error`](super::Body::kinematic_error) is added to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateGeometry {
     /// Upper arm and forearm.
     pub lengths: Lengths,
-    /// Pose of each joint's frame in the frame that an arm with these lengths has there.
+    /// Pose of each joint's frame in the frame that this joint has on an arm with these lengths.
     pub deviations: [Isometry3<f64>; 7],
 }
 
@@ -24,11 +24,12 @@ impl StateGeometry {
     pub const DESCRIBED: Self = Self::with(Lengths::DESCRIBED);
 
     /// Geometry of the Franka Research 3 whose states were recorded, [`Lengths::RECORDED_FR3`]. All
-    /// arms of this kind in the [families](super::Family) of the simulator have it.
+    /// Franka Research 3 arms in the [families](super::Family) of the simulator have it.
     pub const RECORDED_FR3: Self = Self::with(Lengths::RECORDED_FR3);
 
-    /// Joint frames that are off the described ones by 1 mm and 3 mrad in total (root of the sum of
-    /// squares), equally for each joint, in directions drawn from `seed`. No client knows them.
+    /// Random joint frames, drawn from `seed`. In total (root of the sum of squares) they deviate
+    /// from the described frames by 1 mm and 3 mrad, equally for each joint. No client knows these
+    /// deviations.
     pub fn random(seed: u64) -> Self {
         let mut random = Random::new(seed);
         let mut along = |size: f64| {

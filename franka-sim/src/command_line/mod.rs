@@ -22,11 +22,11 @@ pub use values::numbers;
 use crate::Running;
 
 impl Arguments {
-    /// Simulates until SIGINT or SIGTERM. Once the robot is ready, calls `ready` with it and a line
-    /// for each address that it listens on.
+    /// Simulates until SIGINT or SIGTERM. Once the robot is ready, calls `ready` with the robot and
+    /// with one line of text per address on which the robot listens.
     ///
     /// # Errors
-    /// Options that describe no valid robot, an address that is taken, or a simulation that has
+    /// An error if the options describe no valid robot, an address is in use, or the simulation has
     /// ended.
     pub async fn run(
         &self,

@@ -1,4 +1,4 @@
-//! Options to a robot, a plant, grippers and a network.
+//! Turns options into a robot, a plant (the physics), grippers and a network.
 
 use std::fmt::Display;
 use std::fs;
@@ -92,10 +92,10 @@ impl Arguments {
         })
     }
 
-    /// Returns the robot that the options describe, before its start.
+    /// Returns the robot that the options describe; the caller starts it.
     ///
     /// # Errors
-    /// A text that names the option that is invalid, and the reason.
+    /// A text that names the invalid option and the reason.
     pub fn sim(&self) -> Result<Sim, String> {
         let mut config = self.config()?;
         config.model_library = self.library()?;

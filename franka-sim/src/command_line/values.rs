@@ -7,7 +7,7 @@ use crate::Fingers;
 /// Returns `N` finite numbers from comma-separated text.
 ///
 /// # Errors
-/// A text that reports the error.
+/// A text that describes the error.
 pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let values = text
         .split(',')

@@ -3,75 +3,79 @@
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
-/// Assumptions about the robot where nothing is published. None has been measured; a client that
-/// depends on one of them may be tested against others.
+/// Assumptions about the robot where nothing is published. None has been measured. If a client
+/// depends on one of these values, test the client with other values, too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {
-    /// Largest distance of the first command of a motion from the values that the state publishes
-    /// as commanded.
+    /// Largest permitted distance of the first command of a motion from the commanded values in the
+    /// state.
     pub start: StartTolerance,
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-    /// start. Default 0.05. A pose that a robot refuses has 0.011; ordinary poses have 0.14
-    /// to 0.23.
+    /// start. Default 0.05. A pose that a real robot refuses has 0.011. Ordinary poses have 0.14 to
+    /// 0.23.
     pub singular: f64,
     /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
-    /// is zero. Default 0.1. Of two recorded Franka Research 3, one has no wrench at 0.076, in
-    /// three states, and the other has one at 0.159. The range between is unknown.
+    /// is zero. Default 0.1. Two Franka Research 3 were recorded. The first reports no wrench at
+    /// 0.076 (three states), the second reports a wrench at 0.159. The range between these values
+    /// is unknown.
     pub wrench_singular: f64,
     /// Extrapolation of the orientation in a cycle whose command is lost.
     pub extrapolation: Extrapolation,
     /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`. Default
-    /// `None`: no filter. Protocol 5 begins with this and has a request to change it.
+    /// `None`: no filter. A robot of protocol 5 starts with this value and accepts a request to
+    /// change it.
     pub command_filter: Option<f64>,
-    /// Divisor of `control_command_success_rate` while a motion is younger than its window of 100
-    /// cycles.
+    /// Divisor of `control_command_success_rate` in the first 100 cycles of a motion, the length of
+    /// the averaging window.
     pub first_cycles: FirstCycles,
-    /// True if an accepted `Move` clears `reflex_reason`. Default yes.
+    /// True if an accepted `Move` clears `reflex_reason`. Default true.
     pub move_clears_reason: bool,
     /// True if fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
     /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
-    /// controllers. In motion nothing was recorded. Default yes.
+    /// controllers. No recording of a motion is known. Default true.
     pub zero_fields: bool,
-    /// Number of errors that a cycle latches if it breaks several bounds.
+    /// Number of errors that a cycle latches if its command violates several bounds.
     pub error_bits: ErrorBits,
-    /// The modes besides Idle in which the robot accepts setters.
+    /// Modes besides Idle in which the robot accepts setters (requests that change a setting).
     pub setters: Setters,
     /// The largest load and frames that setters accept.
     pub setter_bounds: SetterBounds,
-    /// Axes in which force thresholds are compared.
+    /// Axes in which the robot compares forces with their thresholds.
     pub force_axes: ForceAxes,
     /// Measured joint velocity above which no motion under an external controller may finish,
-    /// `[rad/s]`; infinite for a robot that permits it. Default 0.1: robots are known to refuse
-    /// motions under internal controllers that finish at speed.
+    /// `[rad/s]`. Infinity permits every velocity. Default 0.1. Real robots are known to refuse a
+    /// motion under an internal controller that finishes at speed.
     pub finish_velocity: f64,
     /// Stiffness of the internal joint impedance controller until a client sets another,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
     pub joint_stiffness: JointVector,
     /// Stiffness of the internal Cartesian impedance controller until a client sets another, in
-    /// stiffness-frame axes, `[N/m, N·m/rad]`. Default: from the same file.
+    /// stiffness-frame axes, `[N/m, N·m/rad]`. Default: the values of libfranka 0.21,
+    /// `examples_common.cpp`.
     pub cartesian_stiffness: Twist,
     /// Thresholds of contact and collision until a client sets others. Default for contact: near
     /// the values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25
     /// N·m). Default for collision: twice these values.
     pub thresholds: CollisionBehavior,
-    /// Joint acceleration from which the thresholds for acceleration phases hold, `[rad/s²]`: the
-    /// desired one under the robot's own controllers, the measured one under a client's. Default 1.
+    /// Joint acceleration above which the thresholds for acceleration phases apply, `[rad/s²]`.
+    /// Under the robot's own controllers it is the desired acceleration, under a client's
+    /// controller the measured acceleration. Default 1.
     pub accelerating: f64,
-    /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the
-    /// time constant with which it follows. Default 100, about 16 Hz.
+    /// Gain of the momentum observer that computes `tau_ext_hat_filtered`, `[1/s]`. It is the
+    /// inverse of the observer's time constant. Default 100, about 16 Hz.
     pub observer_gain: f64,
-    /// Bounds from which the arm counts as about to hit itself.
+    /// Bounds at which the robot reports that the arm is about to collide with itself.
     pub self_collision: SelfCollision,
-    /// Mechanical power of all joints together that raises `power_limit_violation`, `[W]`.
-    /// Default 600, more than any motion within the limits of a Franka Research 3 requires without
-    /// a load.
+    /// Total mechanical power of all joints above which the robot raises `power_limit_violation`,
+    /// `[W]`. Default 600. No motion of a Franka Research 3 without a load, within its limits,
+    /// requires as much.
     pub power: f64,
-    /// Condition for `instability_detected`.
+    /// Condition for the error `instability_detected`.
     pub instability: Instability,
-    /// Range of the torque sensors over the nominal torque. Default 1.1.
+    /// Range of the torque sensors, as a multiple of the nominal torque. Default 1.1.
     pub sensor_range: f64,
-    /// Stiffness between motor and link used to compute `theta` for an arm with rigid joints,
-    /// `[N·m/rad]`. Default 10 000, about the magnitude that is published for this kind of joint.
+    /// Stiffness between motor and link from which the simulator computes `theta` for an arm with
+    /// rigid joints, `[N·m/rad]`. Default 10 000, the published magnitude for joints of this kind.
     pub joint_elasticity: f64,
 }
 
@@ -112,18 +116,18 @@ impl Default for Unpublished {
     }
 }
 
-/// Largest distance of a first command from the published values. The defaults lie between the
-/// commands of clients that start from measured values and the commands that robots are known to
-/// refuse (0.2 rad on joint 1, 0.5 rad of elbow).
+/// Largest distance of the first command of a motion from the published values. The defaults permit
+/// the commands of clients that start from measured values. They are below the distances that
+/// robots are known to refuse: 0.2 rad on joint 1, 0.5 rad of the elbow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartTolerance {
-    /// Per joint, `[rad]`. Default 0.1.
+    /// Largest distance of each joint, `[rad]`. Default 0.1.
     pub joint: f64,
-    /// `[m]`. Default 0.05.
+    /// Largest distance of the end effector's position, `[m]`. Default 0.05.
     pub translation: f64,
-    /// `[rad]`. Default 0.1.
+    /// Largest angle between the orientations, `[rad]`. Default 0.1.
     pub rotation: f64,
-    /// `[rad]`. Default 0.1.
+    /// Largest distance of the elbow angle, `[rad]`. Default 0.1.
     pub elbow: f64,
 }
 
@@ -138,48 +142,48 @@ impl Default for StartTolerance {
     }
 }
 
-/// Extrapolation of the orientation of a lost Cartesian command.
+/// Extrapolation of the orientation in a cycle whose Cartesian command is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Extrapolation {
-    /// With constant angular acceleration in base axes, like the translation.
+    /// Constant angular acceleration in the axes of the base, as for the translation.
     #[default]
     BaseAxes,
-    /// With constant angular acceleration in the axes of the end effector.
+    /// Constant angular acceleration in the axes of the end effector.
     BodyAxes,
     /// The orientation stays.
     Held,
 }
 
-/// Divisor of the success rate before 100 cycles have passed.
+/// Divisor of the success rate before 100 cycles of a motion have passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FirstCycles {
-    /// The cycles since the first command.
+    /// Number of cycles since the first command.
     #[default]
     SoFar,
-    /// The whole window.
+    /// Length of the whole window, 100 cycles.
     Window,
 }
 
-/// Errors of a cycle that breaks several bounds.
+/// Errors that the robot latches in a cycle whose command violates several bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorBits {
-    /// All of them, as public reports of robots show.
+    /// All errors, as public reports of robots show.
     #[default]
     All,
-    /// The first in the order of the wire.
+    /// Only the first error, in the order of the protocol.
     First,
 }
 
 /// Modes besides Idle in which the robot accepts setters. It never accepts them in a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setters {
-    /// After a reflex. Default yes.
+    /// Accept setters after a reflex. Default true.
     pub reflex: bool,
-    /// While guided. Default yes.
+    /// Accept setters while a person guides the arm. Default true.
     pub guiding: bool,
-    /// With the user stop pressed. Default yes.
+    /// Accept setters while the user stop is pressed. Default true.
     pub user_stopped: bool,
-    /// With the brakes closed, and during a recovery. Default yes.
+    /// Accept setters with the brakes closed and during a recovery. Default true.
     pub other: bool,
 }
 
@@ -194,17 +198,17 @@ impl Default for Setters {
     }
 }
 
-/// Bounds of a setter's arguments; values beyond them are invalid. Larger values would be physical,
-/// but would drive the controllers of an arm at rest out of any range.
+/// Bounds of a setter's arguments. The robot refuses values beyond them as invalid. Larger values
+/// are physically possible, but the controllers could not hold such an arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetterBounds {
-    /// Mass of a declared load, `[kg]`. Default 10: three times the arms' payload.
+    /// Largest mass of a declared load, `[kg]`. Default 10: three times the arms' payload.
     pub mass: f64,
-    /// Distance of the load's centre of mass from the flange, `[m]`. Default 1.
+    /// Largest distance of the load's centre of mass from the flange, `[m]`. Default 1.
     pub com: f64,
     /// Largest principal moment of inertia of the load, `[kg·m²]`. Default 1.
     pub inertia: f64,
-    /// Translation of `NE_T_EE` and `EE_T_K`, `[m]`. Default 2.
+    /// Largest translation of `NE_T_EE` and `EE_T_K`, `[m]`. Default 2.
     pub translation: f64,
 }
 
@@ -219,8 +223,8 @@ impl Default for SetterBounds {
     }
 }
 
-/// Axes of the wrench that is compared with force thresholds. Its point is the origin of the
-/// stiffness frame in either case.
+/// Axes of the wrench that the robot compares with the force thresholds. The wrench refers to the
+/// origin of the stiffness frame with either value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceAxes {
     /// Axes of the base.
@@ -230,17 +234,17 @@ pub enum ForceAxes {
     Stiffness,
 }
 
-/// Collision of the arm with itself, by the vendor's capsules.
+/// Bounds of the robot's check for self-collision, which uses the vendor's capsules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfCollision {
-    /// Distance between two capsules below which they must not approach each other, `[m]`.
-    /// Default 0.05.
+    /// Distance `[m]` between two capsules below which the robot does not let them approach each
+    /// other. Default 0.05.
     pub margin: f64,
-    /// Distance that they may still approach, from their largest distance so far, `[m]`.
-    /// Default 0.001. A motion out of the margin is always possible.
+    /// Permitted approach of two capsules within the margin, measured from their largest distance
+    /// so far, `[m]`. Default 0.001. A motion out of the margin is always possible.
     pub closing: f64,
-    /// Least number of links between the two along the chain; a tool counts as link 8. Default 3:
-    /// closer links come near each other in everyday postures.
+    /// Least difference of the link numbers of a checked pair; a tool counts as link 8. Default 3,
+    /// because nearer links come close to each other in everyday postures.
     pub apart: u8,
 }
 
@@ -254,15 +258,15 @@ impl Default for SelfCollision {
     }
 }
 
-/// A joint that shakes: its velocity reverses again and again, faster and wider than any motion
-/// within the limits on acceleration.
+/// Condition for a joint that oscillates: its velocity reverses more often, and with a larger
+/// amplitude, than the acceleration limits permit in a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instability {
-    /// Velocity to either side that counts, `[rad/s]`. Default 0.15.
+    /// Least velocity to either side for a reversal to count, `[rad/s]`. Default 0.15.
     pub velocity: f64,
-    /// Reversals within [`window`](Self::window). Default 8. With 0.15 rad/s to each side, 8
-    /// reversals in 0.1 s require 24 rad/s² on average. Commands may have 20 rad/s² at most, on the
-    /// robot with the widest limits.
+    /// Number of reversals within [`window`](Self::window). Default 8. With 0.15 rad/s to each
+    /// side, 8 reversals in 0.1 s require 24 rad/s² on average. No robot permits commands above 20
+    /// rad/s².
     pub reversals: u32,
     /// Length of the window in milliseconds. Default 100.
     pub window: u32,

@@ -5,7 +5,7 @@ use franka_model::CYCLE;
 use super::towards;
 use crate::plant::FingerDrive;
 
-/// Width between the fingers, and the mechanism that moves them.
+/// Width between the fingers, and the part that moves the fingers.
 #[derive(Debug, Clone)]
 pub(super) struct FingerMotion {
     width: f64,
@@ -23,7 +23,7 @@ enum Means {
 /// The result of one millisecond of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Progress {
-    /// Under way, or not yet known to be blocked.
+    /// The fingers move, or may be blocked.
     Moving,
     /// An object stops the fingers.
     Blocked,
@@ -171,16 +171,16 @@ impl Stall {
     }
 }
 
-/// Fingers of a plant are at a width within this tolerance `[m]`. This constant and those below are
-/// choices of this simulator.
+/// Tolerance `[m]` within which a plant's fingers have reached a width. This constant and the
+/// constants below are choices of this simulator.
 const NEAR: f64 = 5e-4;
 
-/// Fingers have lost an object once they have closed by this much `[m]`. It exceeds the compliance
-/// of a contact.
+/// Fingers have lost an object once they have closed by this much `[m]`. The value exceeds the
+/// compliance of a contact.
 const SLIP: f64 = 2e-3;
 
-/// Fingers are blocked if they cover less than this part of the distance in this time. It is longer
-/// than the motor needs to build up the force of a grasp.
+/// Time after which fingers count as blocked if they have covered too little of the distance. The
+/// motor needs less time to build up the force of a grasp.
 const STALL_WINDOW_MS: u32 = 200;
 const STALLED: f64 = 0.05;
 

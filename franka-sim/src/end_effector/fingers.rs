@@ -7,17 +7,17 @@ use super::Mechanism;
 use super::finger_motion::{FingerMotion, Progress};
 use crate::plant::FingerDrive;
 
-/// Two fingers that move at the commanded speed and stop at an object. They have built-in
-/// kinematics, with an object of a given width. Or they belong to a plant that has fingers
-/// ([`Robot::couple`](crate::Robot::couple)), with the plant's objects.
+/// Two fingers that move at the commanded speed and stop at an object. Either they have built-in
+/// kinematics and an object of a given width. Or they belong to a plant (physics) with fingers and
+/// objects of its own: see [`Robot::couple`](crate::Robot::couple).
 ///
-/// The methods of libfranka document the known behaviour of real hands. The rest are choices made
-/// here, marked as such; none has been measured.
+/// libfranka documents the known behaviour of real hands. This simulator chooses the rest and marks
+/// each choice; none has been measured.
 ///
-/// * Until a homing, `max_width` is 0 and every width above it is refused.
+/// * Before the first homing, `max_width` is 0, and the hand refuses every larger width.
 /// * A move that an object blocks continues to try, and fails after [`Fingers::BLOCKED_MS`].
-/// * A grasp closes until something stops the fingers, and squeezes from then on, even if the width
-///   is not the requested one. A grasp that begins while an object is held is unsuccessful.
+/// * A grasp closes until something stops the fingers. It then squeezes, even at another width than
+///   the requested one. A grasp that begins while an object is held is unsuccessful.
 /// * After the loss of an object, the fingers close further.
 #[derive(Debug, Clone)]
 pub struct Fingers {
@@ -45,20 +45,20 @@ enum Activity {
 }
 
 impl Fingers {
-    /// [`FingerDrive::STROKE`].
+    /// Largest width, [`FingerDrive::STROKE`].
     pub const STROKE: f64 = FingerDrive::STROKE;
 
-    /// [`FingerDrive::MAX_SPEED`]. Faster requests are carried out at this speed, which is a choice
-    /// made here.
+    /// Highest speed, [`FingerDrive::MAX_SPEED`]. The hand executes faster requests at this speed,
+    /// which is a choice of this simulator.
     pub const MAX_SPEED: f64 = FingerDrive::MAX_SPEED;
 
-    /// Speed of the width during a homing `[m/s]`, a choice made here.
+    /// Speed of the width during a homing `[m/s]`, a choice of this simulator.
     pub const HOMING_SPEED: f64 = 0.05;
 
-    /// [`FingerDrive::FORCE`].
+    /// Range of the force, [`FingerDrive::FORCE`].
     pub const FORCE: [f64; 2] = FingerDrive::FORCE;
 
-    /// Time for which a move tries to pass an object `[ms]`. Users report 100 s to 120 s.
+    /// Time after which a move that an object blocks fails `[ms]`. Users report 100 s to 120 s.
     pub const BLOCKED_MS: u32 = 110_000;
 
     /// Open fingers with nothing between them, before their first homing.
@@ -72,7 +72,7 @@ impl Fingers {
         }
     }
 
-    /// With an object of this width between the fingers `[m]`.
+    /// Puts an object of this width `[m]` between the fingers.
     ///
     /// # Panics
     /// If the object does not fit: see [`place_object`](Self::place_object).
@@ -85,16 +85,16 @@ impl Fingers {
         self
     }
 
-    /// With this temperature `[deg C]`; 25 otherwise.
+    /// Sets the temperature `[deg C]`; the default is 25.
     #[must_use]
     pub fn with_temperature(mut self, temperature: u16) -> Self {
         self.temperature = temperature;
         self
     }
 
-    /// Puts an object between the fingers, in place of the current one. Returns false and changes
-    /// nothing if its width `[m]` is not positive or larger than the opening, or if the fingers
-    /// belong to a plant.
+    /// Puts an object of this width `[m]` between the fingers, in place of the current object.
+    /// Returns false and changes nothing if the width is not positive or exceeds the opening, or if
+    /// the fingers belong to a plant.
     pub fn place_object(&mut self, width: f64) -> bool {
         let fits = width > 0.0 && width <= self.finger_motion.width();
         match self.finger_motion.object() {
@@ -106,8 +106,8 @@ impl Fingers {
         }
     }
 
-    /// Removes the object and returns its width `[m]`, if an object is present that does not belong
-    /// to a plant. A grasp of it is lost.
+    /// Removes the object and returns its width `[m]`; `None` without an object, or if the object
+    /// belongs to a plant. A grasp of the object is lost.
     pub fn take_object(&mut self) -> Option<f64> {
         self.finger_motion.object()?.take()
     }

@@ -1,5 +1,5 @@
-//! The end effectors that have a separate server, as values: bytes in, bytes out, one millisecond
-//! per [`EndEffector::tick`].
+//! End effectors with a server of their own, as values: bytes go in, bytes come out, and each
+//! [`EndEffector::tick`] is one millisecond.
 //!
 //! ```text
 //! TCP bytes ── receive() ──> session ──> requests ──> Mechanism ──> take_reply(): when it is done
@@ -9,8 +9,8 @@
 //! This module has no clock, socket or thread. [`Hand`] and [`VacuumGripper`] differ only in their
 //! [`Mechanism`].
 //!
-//! One action runs at a time. A new one aborts it, and so does a stop; both answer it as aborted. A
-//! client that disconnects while its action runs stops it; a held object stays held.
+//! One action runs at a time. A new action or a stop aborts it; its request is then answered as
+//! aborted. The end effector stops an action when its client disconnects; a held object stays held.
 
 mod finger_motion;
 mod fingers;
@@ -35,31 +35,31 @@ pub type Hand = EndEffector<Fingers>;
 /// A vacuum gripper and its server.
 pub type VacuumGripper = EndEffector<Suction>;
 
-/// Default time between two states `[ms]`. The vendor publishes no rate; clients wait for a second
-/// at most.
+/// Default time between two states `[ms]`. The vendor publishes no rate; clients wait for at most a
+/// second.
 pub const STATE_PERIOD: u32 = 20;
 
 /// The mechanism behind an end effector's requests, independent of messages.
 pub trait Mechanism {
-    /// The protocol of its server.
+    /// Protocol of the end effector's server.
     type Protocol: for<'a> Protocol<Reply<'a> = Reply> + Default;
-    /// The reported state.
+    /// State that the end effector reports.
     type State;
 
-    /// True if a request only ends the running action.
+    /// True if a request only ends the running action, without a new action.
     fn is_stop(request: &<Self::Protocol as Protocol>::Request) -> bool;
 
-    /// Begins the requested action, in place of the running one. Returns the answer if the action
-    /// is already complete.
+    /// Begins the requested action, in place of the running action. Returns the answer if the
+    /// action is already complete.
     fn begin(&mut self, request: &<Self::Protocol as Protocol>::Request) -> Option<Status>;
 
     /// Ends the running action and releases the object.
     fn halt(&mut self);
 
-    /// Advances by one millisecond. Returns the answer if the action has ended with it.
+    /// Advances by one millisecond. Returns the answer if the action ends in this millisecond.
     fn tick(&mut self) -> Option<Status>;
 
-    /// The reported state at `message_id`, in milliseconds.
+    /// State to report with the number `message_id`, in milliseconds.
     fn state(&self, message_id: u32) -> Self::State;
 
     /// Encodes a state as a datagram.
@@ -95,14 +95,15 @@ impl<M: Mechanism> EndEffector<M> {
         }
     }
 
-    /// With this time between two states `[ms]`, at least 1, instead of [`STATE_PERIOD`].
+    /// Sets the time between two states `[ms]`, at least 1, instead of [`STATE_PERIOD`].
     #[must_use]
     pub fn with_state_period(mut self, milliseconds: u32) -> Self {
         self.state_period = milliseconds.max(1);
         self
     }
 
-    /// Connects a client. Returns false if another one is connected: only one is permitted.
+    /// Connects a client. Returns false if another client is connected: the server permits only
+    /// one.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -112,7 +113,8 @@ impl<M: Mechanism> EndEffector<M> {
         true
     }
 
-    /// Disconnects the client. Its action ends; the end effector continues to hold its object.
+    /// Disconnects the client. The client's action ends. The end effector continues to hold its
+    /// object.
     pub fn disconnect(&mut self) {
         if self.running.take().is_some() {
             self.mechanism.halt();
@@ -134,8 +136,8 @@ impl<M: Mechanism> EndEffector<M> {
     /// Accepts bytes of the client's stream, in any portions.
     ///
     /// # Errors
-    /// [`SessionError`] if the client left the protocol or speaks another version. It is then
-    /// disconnected, after the replies that are still to be sent.
+    /// [`SessionError`] if the client violated the protocol or speaks another version. Send the
+    /// remaining replies, then close the connection.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -153,13 +155,13 @@ impl<M: Mechanism> EndEffector<M> {
         result
     }
 
-    /// The next message for the client's stream, to be written whole.
+    /// Returns the next message to write to the client's stream.
     pub fn take_reply(&mut self) -> Option<Bytes> {
         self.replies.pop_front()
     }
 
-    /// Advances by one millisecond and returns the state to send, if a client is connected and a
-    /// state is due: once in a [state period](Self::with_state_period), and when an action has
+    /// Advances by one millisecond. Returns a state if a client is connected and a state is due.
+    /// States are due once per [state period](Self::with_state_period) and after an action has
     /// ended.
     pub fn tick(&mut self) -> Option<Datagram<'_>> {
         self.clock = self.clock.wrapping_add(1);
@@ -180,17 +182,17 @@ impl<M: Mechanism> EndEffector<M> {
         })
     }
 
-    /// The reported state now.
+    /// Returns the current state, as it would be reported.
     pub fn state(&self) -> M::State {
         self.mechanism.state(self.clock)
     }
 
-    /// The mechanism that the server serves.
+    /// Returns the mechanism behind the server.
     pub fn mechanism(&self) -> &M {
         &self.mechanism
     }
 
-    /// The mechanism that the server serves, mutable, to put objects in place.
+    /// Returns the mechanism behind the server, mutable, for example to put an object in place.
     pub fn mechanism_mut(&mut self) -> &mut M {
         &mut self.mechanism
     }
@@ -232,7 +234,7 @@ impl<M: Mechanism> EndEffector<M> {
     }
 }
 
-/// `value`, brought nearer to `target` by `step` at most; `target` itself once that is enough.
+/// Moves `value` towards `target` by `step` at most, and not beyond `target`.
 fn towards(value: f64, target: f64, step: f64) -> f64 {
     let way = target - value;
     if way.abs() <= step {

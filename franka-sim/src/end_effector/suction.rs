@@ -6,15 +6,16 @@ use franka_proto::vacuum::{DeviceStatus, Request, State, Status, Vacuum, Version
 
 use super::{Mechanism, towards};
 
-/// A pump that builds up a vacuum on an object, and a valve that lets air in again.
+/// Pump that builds up a vacuum on an object, and valve that lets air in again.
 ///
-/// All figures are choices made here; none has been measured. The four profiles of the device make
-/// no difference.
+/// All figures are choices of this simulator; none has been measured. The four profiles of the
+/// device have the same effect here.
 ///
-/// * A vacuum requires an object and reaches at most [`Suction::MAX_VACUUM`]; the request is
-///   unsuccessful when its time is up.
-/// * A vacuum that was reached is held. A stop turns the pump off, after which it leaks away.
-/// * An object that is lost takes the vacuum with it.
+/// * A vacuum requires an object and reaches at most [`Suction::MAX_VACUUM`]. A request that does
+///   not reach its vacuum in time is unsuccessful.
+/// * The pump holds a vacuum once it is reached. A stop turns the pump off; the vacuum then leaks
+///   away.
+/// * The loss of the object ends the vacuum.
 #[derive(Debug, Clone)]
 pub struct Suction {
     object: bool,
@@ -49,7 +50,7 @@ impl Suction {
     /// Leak rate on an object while the pump is off `[mbar/s]`.
     pub const LEAK_RATE: f64 = 20.0;
 
-    /// The vacuum above which an object counts as held `[mbar]`.
+    /// Vacuum above which the gripper reports that it holds an object `[mbar]`.
     pub const PART_PRESENT: f64 = 100.0;
 
     /// A gripper without an object in front of it.
@@ -62,7 +63,7 @@ impl Suction {
         }
     }
 
-    /// With an object in front of the cup.
+    /// Puts an object in front of the cup.
     #[must_use]
     pub fn with_object(mut self) -> Self {
         self.place_object();
@@ -74,7 +75,7 @@ impl Suction {
         self.object = true;
     }
 
-    /// Removes the object. Returns false if the gripper had none.
+    /// Removes the object. Returns false if the gripper had no object.
     pub fn take_object(&mut self) -> bool {
         std::mem::take(&mut self.object)
     }

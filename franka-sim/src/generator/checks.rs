@@ -22,7 +22,7 @@ impl Broken {
         self.velocity || self.acceleration || self.jerk
     }
 
-    /// Derivatives that both find.
+    /// Derivatives that both `self` and `other` mark.
     fn and(self, other: Self) -> Self {
         Self {
             velocity: self.velocity && other.velocity,
@@ -31,7 +31,7 @@ impl Broken {
         }
     }
 
-    /// Derivatives that either finds.
+    /// Derivatives that `self` or `other` marks.
     fn or(self, other: Self) -> Self {
         Self {
             velocity: self.velocity || other.velocity,
@@ -60,10 +60,10 @@ impl Broken {
 
 /// Checks a step against the exact history and, if that fails, against the published one.
 ///
-/// The state of some kinds carries the history in single precision. A client that limits its
-/// commands against the state is exact there; at 3 rad it is up to 240 rad/s³ off from the exact
-/// history. For a client with an internal generator it is the other way round. Robots refuse
-/// neither, so a bound counts as broken only if it is broken from both.
+/// Some kinds of robot publish the history in single precision. A client may limit its commands
+/// relative to the published state; at 3 rad its jerk is up to 240 rad/s³ off from the exact
+/// history. A client with a generator of its own is exact relative to the exact history. Robots
+/// refuse neither client, so a bound counts as violated only if both histories violate it.
 fn judge<S: Copy>(
     exact: &S,
     published: impl Fn(S) -> S,
@@ -77,7 +77,7 @@ fn judge<S: Copy>(
     (next, broken.and(from_published))
 }
 
-/// One cycle of a joint signal: the result of `step`, and the bounds that it breaks.
+/// One cycle of a joint signal: the result of `step`, and the bounds that the step violates.
 pub(super) fn joints(
     from: &JointSignal,
     arm: &ArmModel<'_>,
@@ -93,7 +93,7 @@ pub(super) fn joints(
     )
 }
 
-/// Returns the bounds that a step of the joints breaks.
+/// Returns the bounds that a step of the joints violates.
 ///
 /// The velocity envelope belongs to the position before the step, because a client can know no
 /// other position.
@@ -115,7 +115,7 @@ pub(super) fn joint_bounds(
     broken
 }
 
-/// One cycle of a Cartesian signal: the result of `step`, and the bounds that it breaks.
+/// One cycle of a Cartesian signal: the result of `step`, and the bounds that the step violates.
 pub(super) fn cartesian(
     from: &CartesianSignal,
     arm: &ArmModel<'_>,
@@ -137,7 +137,7 @@ pub(super) fn cartesian(
     )
 }
 
-/// One cycle of the elbow: the result of `step`, and the bounds that it breaks.
+/// One cycle of the elbow: the result of `step`, and the bounds that the step violates.
 pub(super) fn elbow(
     from: &ElbowSignal,
     arm: &ArmModel<'_>,

@@ -7,12 +7,13 @@ use nalgebra::{Isometry3, Matrix3, Matrix4, Vector3};
 use super::ArmModel;
 use crate::signal::stack;
 
-/// Joints near `from` that bring the end effector to `target`, with joint 3 at `elbow` if given.
+/// Returns joint positions near `from` that bring the end effector to `target`, with joint 3 at
+/// `elbow` if given.
 ///
 /// Newton's iteration on differential inverse kinematics: a millisecond of motion requires two or
 /// three steps to [`CLOSE`]. Without an elbow each step is the smallest possible, so the redundancy
-/// changes as little as the pose allows. Near a singularity, and for a target out of reach, the
-/// result does not reach the target. The caller must check the joints.
+/// changes as little as the pose allows. Near a singularity, or for a target out of reach, the
+/// returned joints do not reach the target. The caller must check them.
 pub(super) fn solve(
     arm: &ArmModel<'_>,
     target: &Isometry3<f64>,
@@ -50,8 +51,8 @@ fn step_bounds(elbow: Option<f64>) -> JointBox {
     JointBox::new(&lower, &upper)
 }
 
-/// Displacement and rotation vector from `pose` to `goal`, in base axes. The rotation blocks may
-/// differ from a rotation as the vendor's rounded constants do.
+/// Displacement and rotation vector from `pose` to `goal`, in base axes. The rotation blocks may be
+/// inexact, as the vendor's rounded constants are.
 fn difference(goal: &Matrix4<f64>, pose: &Matrix4<f64>) -> Twist {
     let block = |m: &Matrix4<f64>| -> Matrix3<f64> { m.fixed_view::<3, 3>(0, 0).into_owned() };
     let turn = block(goal) * block(pose).transpose();

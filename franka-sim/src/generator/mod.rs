@@ -6,7 +6,7 @@
 //! ```
 //!
 //! All violated bounds of a cycle are reported together, as robots report them. Thresholds are the
-//! nominal limits. The error for a bound depends on the order of its derivative against the
+//! nominal limits. The error for a bound depends on the order of the derivative relative to the
 //! commanded quantity (FCI documentation, control parameters and error list).
 
 mod checks;
@@ -34,7 +34,7 @@ pub(crate) struct Desired {
 }
 
 impl Desired {
-    /// At rest at `q`.
+    /// Returns desired values at rest at `q`.
     pub(crate) fn resting(arm: &ArmModel<'_>, q: JointVector) -> Self {
         let mut desired = Self {
             joints: JointSignal::resting(q),
@@ -45,7 +45,7 @@ impl Desired {
         desired
     }
 
-    /// At rest at the position of the last state, to the digit.
+    /// Returns desired values at rest at exactly the position of the last state.
     ///
     /// A motion begins here, because a client begins with the values that it has read. Otherwise
     /// the rounding of the state would count as acceleration (0.1 rad/s²), and extrapolation over
@@ -61,7 +61,7 @@ impl Desired {
         }
     }
 
-    /// Computes pose and elbow from the joints, without separate motion.
+    /// Computes pose and elbow, and their derivatives, from the joints.
     pub(crate) fn follow_joints(&mut self, arm: &ArmModel<'_>) {
         self.cartesian = CartesianSignal::resting(arm.pose(&self.joints.q));
         self.elbow = ElbowSignal::resting(self.joints.q[2]);
@@ -109,7 +109,8 @@ pub(crate) enum Input<'a> {
     Next(&'a RobotCommand),
     /// No command in time.
     Lost,
-    /// No further command: the last one applies from now on. It shows whether a motion may finish.
+    /// No further command: the last command applies from now on. This input shows whether a motion
+    /// may finish.
     Rest,
 }
 
@@ -131,7 +132,7 @@ impl<'a> Input<'a> {
 pub(crate) struct InvalidInput;
 
 /// Advances `before` by one cycle of `generator`. Returns the new desired values and the bounds
-/// that they break.
+/// that they violate.
 pub(crate) fn advance(
     generator: MoveGeneratorMode,
     input: Input<'_>,

@@ -1,10 +1,11 @@
-//! Asynchronous joint positions: the robot plans from its current position to rest at a target.
+//! Asynchronous joint positions: the robot plans a motion from its current position that ends at
+//! rest at a target.
 //!
-//! All joints share one duration and move along polynomials of fifth degree, which start with the
-//! present velocity and acceleration and end at rest. The duration is the shortest on a grid of
-//! five percent for which velocity, acceleration and jerk are within their bounds everywhere. Some
-//! states of motion (fast, away from the target) have no such duration; then the joints brake
-//! first.
+//! All joints share one duration and move along polynomials of fifth degree. The polynomials start
+//! with the present velocity and acceleration and end at rest. The duration is the shortest on a
+//! grid of five percent for which velocity, acceleration and jerk are within their bounds
+//! everywhere. For some states of motion (fast, away from the target) no such duration exists; then
+//! the joints brake first.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};

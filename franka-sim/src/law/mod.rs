@@ -1,8 +1,8 @@
 //! The robot's own controllers.
 //!
 //! A controller computes a [`Law`] once per millisecond. In between, its spring and damper follow
-//! the arm at the rate of the plant's steps, as a robot's joint loops do. That keeps all
-//! stiffnesses stable, up to the greatest (14 250 N·m/rad on 0.074 kg·m² swings with 70 Hz).
+//! the arm at the rate of the plant's steps, as a robot's joint loops do. This rate keeps every
+//! stiffness stable, even 14 250 N·m/rad on 0.074 kg·m², which oscillates at 70 Hz.
 
 mod cartesian_impedance;
 mod joint_impedance;
@@ -15,7 +15,7 @@ use franka_model::{JointVector, MassMatrix};
 /// Joint torques as a function of the arm's state, gravity excluded.
 #[derive(Debug, Clone)]
 pub(crate) struct Law {
-    /// `[N·m]`
+    /// Torques that do not depend on the arm's state, `[N·m]`.
     pub(crate) feedforward: JointVector,
     pub(crate) spring: Option<Spring>,
 }

@@ -2,25 +2,26 @@
 
 use std::time::Duration;
 
-/// Conditions for the datagrams of one direction. By default they arrive when they are sent.
+/// Conditions for the datagrams of one direction. By default, datagrams arrive at the time of
+/// sending.
 ///
 /// Probabilities are compared with a random number: 0 or less and NaN mean never, 1 or more means
 /// always.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Packets to lose. A datagram that requires several packets is lost with any of them.
+    /// Loss of packets. A datagram of several packets is lost if any of its packets is lost.
     pub loss: Loss,
     /// Time in transit.
     pub delay: Duration,
-    /// Largest delay before a datagram reaches the line, evenly distributed from zero. The order
-    /// stays.
+    /// Largest random delay before a datagram reaches the line. Delays are uniformly distributed
+    /// from zero. Datagrams keep their order.
     pub jitter: Duration,
-    /// Rate of the line, `[bit/s]`: datagrams that are sent together arrive one after the other.
-    /// Infinite for a line that needs no time.
+    /// Rate of the line, `[bit/s]`. Datagrams that are sent together arrive one after the other.
+    /// Infinity means that transmission takes no time.
     pub rate: f64,
     /// Stalls of the sender's interface.
     pub stalls: Option<Stalls>,
-    /// Datagrams that others overtake.
+    /// Reordering: some datagrams take longer, and others overtake them.
     pub reordering: Reordering,
     /// Probability that a datagram arrives twice, `[1]`.
     pub duplication: f64,
@@ -48,8 +49,8 @@ impl Conditions {
     ///
     /// Delay and jitter are half of the round trip of pings of 1200 bytes to three FERs: 0.114 ms
     /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is gigabit Ethernet, at which
-    /// a protocol 5 state (2497 bytes on the wire) requires 0.02 ms. Intervals between calls of
-    /// control loops have been as short (franka_ros, issue 322: 0.023 ms).
+    /// a protocol 5 state (2497 bytes on the wire) requires 0.02 ms. Control loops have seen
+    /// intervals as short as this between their calls (franka_ros, issue 322: 0.023 ms).
     pub const fn cable() -> Self {
         Self {
             loss: Loss::Never,
@@ -65,7 +66,7 @@ impl Conditions {
         }
     }
 
-    /// These conditions with this loss.
+    /// Returns these conditions with the given loss.
     #[must_use]
     pub const fn with_loss(mut self, loss: Loss) -> Self {
         self.loss = loss;
@@ -73,14 +74,14 @@ impl Conditions {
     }
 }
 
-/// Packets to lose.
+/// Model of the loss of packets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Loss {
-    /// No loss.
+    /// No packet is lost.
     Never,
-    /// Each packet with this probability, `[1]`, independently of the others.
+    /// Each packet is lost with this probability, `[1]`, independently of the others.
     Independent(f64),
-    /// Many packets at a time.
+    /// Packets are lost in bursts.
     Bursts(BurstLoss),
 }
 
@@ -100,8 +101,8 @@ pub struct BurstLoss {
 }
 
 impl BurstLoss {
-    /// Bursts of `length` packets on average, at least 1. All packets in a burst are lost, and none
-    /// between bursts, so that `fraction` of all packets is lost, less than 1.
+    /// Returns bursts of `length` packets on average, at least 1. All packets in a burst are lost,
+    /// and no packets between bursts. `fraction`, less than 1, is the lost fraction of all packets.
     pub fn of(fraction: f64, length: f64) -> Self {
         let end = 1.0 / length;
         Self {
@@ -113,52 +114,56 @@ impl BurstLoss {
     }
 }
 
-/// Datagrams that others overtake.
+/// Model of reordering: some datagrams take a longer path, and others overtake them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reordering {
     /// Probability that a datagram takes the longer path, `[1]`.
     pub probability: f64,
-    /// Additional delay of that path. Datagrams sent later overtake if they are sent within this
-    /// time.
+    /// Additional delay of the longer path. A datagram that is sent within this time overtakes.
     pub delay: Duration,
 }
 
-/// Times in which an interface sends nothing. Afterwards it sends the delayed datagrams in order.
+/// Model of times in which a network interface sends nothing. Afterwards it sends the delayed
+/// datagrams in order.
 ///
-/// A stall lasts the shortest time and an exponentially distributed excess, up to the longest. Some
-/// delay a single datagram only. Three of four come near a multiple of the period, if there are
-/// enough of these; pauses between the others are exponentially distributed.
+/// A stall lasts for the shortest time plus an exponentially distributed excess, up to the longest
+/// time. Some stalls delay only a single datagram. Three of four stalls come near a multiple of the
+/// period, if there are enough multiples. The pauses between the other stalls are exponentially
+/// distributed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stalls {
     /// Stalls that begin in a second, on average, `[1/s]`.
     pub per_second: f64,
-    /// The shortest duration.
+    /// Shortest duration of a stall.
     pub shortest: Duration,
-    /// The longest duration.
+    /// Longest duration of a stall.
     pub longest: Duration,
-    /// Mean of the duration beyond the shortest, without the bound of the longest.
+    /// Mean of the excess over the shortest duration, before the longest duration cuts it off.
     pub excess: Duration,
-    /// Fraction that delays only one datagram, by half a millisecond to a millisecond, 0 to 1.
+    /// Fraction of stalls that delay only one datagram, by half a millisecond to a millisecond, 0
+    /// to 1.
     pub single: f64,
-    /// Period of the times near which stalls come; zero if all come independently.
+    /// Period of the moments near which stalls come; zero if all stalls come independently.
     pub period: Duration,
 }
 
 impl Stalls {
     /// Stalls of the FER's network interface.
     ///
-    /// Measured on robots: seven a second, of 2 to 7 ms, with no state lost. The longest silence
-    /// between two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest
-    /// lasts 2 ms + `excess` (ln `n` + 0.577) on average. The silence is half a millisecond longer,
-    /// since the last state was before the stall. In the middle between 4.8 and 6.9 ms, the excess
-    /// is 0.57 ms if a measurement took 30 s, and 0.69 ms if it took 10 s. The value is between the
-    /// two and also leads to the loss measured in clients.
+    /// Measurements on robots show seven stalls a second, of 2 to 7 ms, with no state lost. The
+    /// longest silence between two states was 4.8 to 6.9 ms, which bounds the other parameters. Of
+    /// `n` stalls, the longest lasts 2 ms + `excess` (ln `n` + 0.577) on average. The silence is
+    /// half a millisecond longer, because the last state was sent before the stall. For a silence
+    /// in the middle of this range, the excess is 0.57 ms if a measurement took 30 s, and 0.69 ms
+    /// if it took 10 s. The value used is between these two. It also reproduces the loss that
+    /// clients measure.
     ///
-    /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms
-    /// (Rayleigh 0.70); the share on the grid and the spread around it are fitted to it. In that
-    /// capture 40 % are single late states, as [`single`](Self::single) makes them. With them,
-    /// clients would lose 16 states of 30 000, not the 28 that were measured on other robots, so
-    /// this value has none. The exponential distribution of lengths is a choice.
+    /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms (Rayleigh
+    /// 0.70). The share of stalls on the grid and their spread around it are fitted to this
+    /// capture. 40 % of its silences are single late states, as [`single`](Self::single) makes
+    /// them. With single late states, clients would lose 16 states of 30 000. Other robots lost 28,
+    /// so this value has no single late states. The exponential distribution of lengths is a
+    /// choice.
     pub const FER: Self = Self {
         per_second: 7.0,
         shortest: Duration::from_millis(2),
@@ -178,7 +183,7 @@ impl Stalls {
         self.shortest + Duration::from_secs_f64(excess - cut_off)
     }
 
-    /// Duration that is longer than this share of all stalls, `0 <= share < 1`.
+    /// Duration that exceeds the duration of this share of all stalls, `0 <= share < 1`.
     pub(super) fn quantile(&self, share: f64) -> Duration {
         let (range, excess) = (self.range(), self.excess.as_secs_f64());
         if range == 0.0 || excess == 0.0 {

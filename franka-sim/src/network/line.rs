@@ -10,7 +10,7 @@ use crate::noise::Random;
 pub(super) struct Line {
     /// `[bit/s]`
     rate: f64,
-    /// Time at which the line has sent everything.
+    /// Time at which the line is free again.
     free: Duration,
     stalls: Option<Schedule>,
 }
@@ -28,7 +28,7 @@ impl Line {
         }
     }
 
-    /// Returns the time at which `bytes`, ready at `ready`, have left.
+    /// Returns the time at which `bytes` have left, if they are ready at `ready`.
     pub(super) fn carry(&mut self, ready: Duration, bytes: usize) -> Duration {
         let mut begin = ready.max(self.free);
         if let Some(schedule) = &mut self.stalls {
@@ -128,10 +128,10 @@ const SPREAD: Duration = Duration::from_millis(6);
 /// The shortest delay of a single datagram; the longest is twice that.
 const LATE_LEAST: Duration = Duration::from_micros(500);
 
-/// A stall of a single datagram is forgotten if no datagram comes within this time.
+/// Time after which a stall of a single datagram is discarded if no datagram comes.
 const RECENT: Duration = Duration::from_millis(2);
 
-/// A year: never, for a robot.
+/// A year, which stands for never.
 const FAR: Duration = Duration::from_secs(365 * 24 * 3600);
 
 #[cfg(test)]

@@ -6,15 +6,16 @@
 //!                     (rate, stalls)   (per packet)                   (reordering)
 //! ```
 //!
-//! Datagrams and the time go in, and datagrams come out. A [`Network`] has no clock and no socket,
-//! and no randomness except its seed: the same datagrams at the same times always arrive in the
-//! same way. Its two directions are separate [`Path`]s with separate [`Conditions`].
+//! A [`Network`] takes datagrams and the time, and returns datagrams. It has no clock and no
+//! socket, and its seed determines all randomness. The same datagrams at the same times always
+//! arrive in the same way. The two directions are separate [`Path`]s with separate [`Conditions`].
 //!
-//! The caller's time counts from any moment and must not run backwards. The server feeds a network
-//! from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in virtual time.
+//! The caller's time starts at any moment and must not run backwards. The server passes the
+//! datagrams of its sockets to a network ([`Sim::network`](crate::Sim::network)). Tests use a
+//! network in virtual time.
 //!
-//! It models datagrams only. The command connection (TCP) repairs its own losses and bypasses the
-//! model.
+//! A network models datagrams only. The command connection (TCP) repairs its own losses and
+//! bypasses the network.
 
 mod conditions;
 mod line;
@@ -24,7 +25,7 @@ mod path;
 pub use conditions::{BurstLoss, Conditions, Loss, Reordering, Stalls};
 pub use path::{Delivery, Path, Tally};
 
-/// The path to the client and the path to the robot.
+/// Network between client and robot: one path to the client and one path to the robot.
 ///
 /// ```
 /// use std::time::Duration;
@@ -42,14 +43,14 @@ pub use path::{Delivery, Path, Tally};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Network {
-    /// States.
+    /// Path of the states.
     pub to_client: Path,
-    /// Commands.
+    /// Path of the commands.
     pub to_robot: Path,
 }
 
 impl Network {
-    /// A network under these conditions. All its randomness comes from `seed`.
+    /// Returns a network under these conditions. `seed` determines all randomness.
     pub fn new(seed: u64, to_client: Conditions, to_robot: Conditions) -> Self {
         Self {
             to_client: Path::new(to_client, seed),
@@ -62,13 +63,13 @@ impl Network {
         Self::new(0, Conditions::default(), Conditions::default())
     }
 
-    /// An FER on a separate cable. Its states wait for the end of the stalls of its network
-    /// interface ([`Stalls::FER`]); commands to it do not.
+    /// The network of an FER on a separate cable. States wait until a stall of the robot's network
+    /// interface ends ([`Stalls::FER`]); commands do not.
     pub fn fer(seed: u64) -> Self {
         Self::stalling(seed, Stalls::FER)
     }
 
-    /// [`fer`](Self::fer) with other stalls.
+    /// The network [`fer`](Self::fer) with the given stalls.
     pub fn stalling(seed: u64, stalls: Stalls) -> Self {
         let cable = Conditions::cable();
         let stalling = Conditions {
@@ -78,7 +79,7 @@ impl Network {
         Self::new(seed, stalling, cable)
     }
 
-    /// Discards the datagrams in transit, as when the client changes.
+    /// Discards the datagrams in transit, for example when the client changes.
     pub fn clear(&mut self) {
         self.to_client.clear();
         self.to_robot.clear();

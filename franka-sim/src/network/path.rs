@@ -1,5 +1,5 @@
-//! One direction of a network: datagrams are cut into packets (an FER's state into two IP
-//! fragments), and a datagram that loses a fragment is lost as a whole.
+//! One direction of a network. A path cuts datagrams into packets, for example an FER's state into
+//! two IP fragments. It loses a datagram as a whole if one fragment is lost.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -11,11 +11,11 @@ use super::line::Line;
 use super::packet_loss::Losses;
 use crate::noise::Random;
 
-/// One direction of a network: carries datagrams, and delays, loses or repeats them.
+/// One direction of a network. It delays, loses or repeats datagrams.
 ///
 /// [`send`](Self::send) is the input, [`take`](Self::take) the output;
 /// [`next_arrival`](Self::next_arrival) returns the time of the next output. [`cut`](Self::cut) and
-/// [`drop_next`](Self::drop_next) make a fault certain instead of likely.
+/// [`drop_next`](Self::drop_next) cause a loss that does not depend on chance.
 #[derive(Debug, Clone)]
 pub struct Path {
     conditions: Conditions,
@@ -35,25 +35,25 @@ pub struct Path {
 pub struct Delivery {
     /// Time of arrival.
     pub at: Duration,
-    /// The datagram as sent.
+    /// The datagram as it was sent.
     pub datagram: Vec<u8>,
 }
 
-/// Counts the datagrams of a [`Path`].
+/// Counts of the datagrams of a [`Path`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Tally {
-    /// The datagrams that were sent.
+    /// Number of datagrams sent.
     pub sent: u64,
-    /// The datagrams that do not arrive.
+    /// Number of datagrams that do not arrive.
     pub lost: u64,
-    /// The lost datagrams of which some packets (IP fragments) arrive and others do not. The host
-    /// cannot reassemble the datagram; programs see it as lost.
+    /// Number of lost datagrams of which some packets (IP fragments) arrive. The host cannot
+    /// reassemble such a datagram, so programs do not receive it.
     pub fragment_lost: u64,
 }
 
 impl Path {
-    /// A path under these conditions. All its randomness comes from `seed`.
+    /// Returns a path under these conditions. `seed` determines all randomness.
     pub fn new(conditions: Conditions, seed: u64) -> Self {
         // Separate streams: loss must not move the stalls.
         let mut seeds = Random::new(seed);
@@ -74,22 +74,22 @@ impl Path {
         &self.conditions
     }
 
-    /// Counts of datagrams so far.
+    /// Returns the counts of datagrams so far.
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Loses everything that leaves within `time`, its end excluded. Cuts add up.
+    /// Loses all datagrams that leave within `time`, end excluded. Several cuts can be active.
     pub fn cut(&mut self, time: Range<Duration>) {
         self.cuts.push(time);
     }
 
-    /// Loses the next `count` datagrams, instead of the rest of an earlier count.
+    /// Loses the next `count` datagrams. This count replaces what is left of an earlier count.
     pub fn drop_next(&mut self, count: u64) {
         self.drop_next = count;
     }
 
-    /// Sends a datagram at `now`, which must not be before the last one.
+    /// Sends a datagram at `now`, which must not be before the time of the previous datagram.
     pub fn send(&mut self, now: Duration, datagram: &[u8]) {
         self.tally.sent += 1;
         let ready = match self.conditions.jitter {
@@ -129,7 +129,7 @@ impl Path {
         }
     }
 
-    /// Returns the first datagram that has arrived by `now`.
+    /// Returns the first datagram that has arrived by `now`, and removes it from the path.
     pub fn take(&mut self, now: Duration) -> Option<Delivery> {
         if self.next_arrival()? > now {
             return None;
@@ -138,7 +138,7 @@ impl Path {
         Some(Delivery { at, datagram })
     }
 
-    /// Arrival time of the next datagram in transit.
+    /// Returns the arrival time of the next datagram in transit.
     pub fn next_arrival(&self) -> Option<Duration> {
         self.under_way.peek().map(|Reverse(first)| first.at)
     }

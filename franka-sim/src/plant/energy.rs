@@ -24,7 +24,8 @@ fn plants(kind: RobotKind, arm: &Arm, load: Load) -> Vec<Box<dyn Plant>> {
     ]
 }
 
-/// Every kind of arm on every plant, bare and with a Hand, with its description.
+/// Every kind of arm on every plant, without and with a Hand; `test` also gets a description of the
+/// case.
 fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
     for kind in RobotKind::ALL {
         let mut arm = Arm::ideal(kind);
@@ -57,9 +58,9 @@ struct Book {
     load: Load,
     train: DriveTrain,
     plant: Box<dyn Plant>,
-    /// Change since the beginning at rest.
+    /// Change of the potential energy since the beginning, when the arm was at rest.
     potential: f64,
-    /// Work of the motors.
+    /// Work that the motors have done.
     work: f64,
     /// The largest kinetic energy so far.
     turnover: f64,
@@ -92,7 +93,7 @@ impl Book {
             .gravity(self.plant.q(), &self.load, &GRAVITY_EARTH)
     }
 
-    /// True if the arm touches itself, which a rigid one cannot.
+    /// True if the arm touches itself, which a rigid arm cannot do.
     fn is_touching(&self) -> bool {
         #[cfg(feature = "mujoco")]
         {
@@ -104,14 +105,14 @@ impl Book {
         false
     }
 
-    /// Energy of the arm beyond the energy that it received.
+    /// Energy that the arm has in addition to the energy that it received.
     fn surplus(&self) -> f64 {
         self.kinetic() + self.potential - self.work
     }
 }
 
-/// Swings every joint, a little faster from joint to joint, on top of the torques that support the
-/// arm, and brings the motion back to the ready pose.
+/// Returns torques that support the arm and swing every joint about the ready pose, each joint a
+/// little faster than the joint before.
 fn swing(book: &Book, time: f64) -> JointVector {
     let strength = JointVector::from([6.0, 6.0, 6.0, 6.0, 1.0, 1.0, 0.5]);
     let phase = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).cos());

@@ -5,10 +5,11 @@ use franka_model::{JointVector, MassMatrix};
 /// External action on the links over one step: `torque − slope · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct External {
-    /// Positive torques push the joint towards positive angles, `[N·m]`.
+    /// Torques on the joints, `[N·m]`. Positive torques push the joint towards positive angles.
     pub torque: JointVector,
-    /// Resistance to the displacement and the velocity that the links gain in the step, as from
-    /// springs and dampers, `[kg·m²]`: symmetric, positive semidefinite. `None` for no resistance.
+    /// Resistance of springs and dampers to the displacement and velocity that the links gain in
+    /// the step, `[kg·m²]`. The matrix is symmetric and positive semidefinite; `None` for no
+    /// resistance.
     pub slope: Option<MassMatrix>,
 }
 
@@ -19,7 +20,7 @@ impl External {
         slope: None,
     };
 
-    /// The diagonal of a diagonal slope that resists every acceleration at least as much.
+    /// Diagonal matrix that resists every acceleration at least as much as the slope.
     #[cfg(feature = "mujoco")]
     pub(super) fn diagonal(&self) -> JointVector {
         let Some(slope) = self.slope else {

@@ -1,12 +1,12 @@
 //! The physics under the robot's controllers.
 //!
-//! A [`DriveTrain`] turns commanded torques into torques on the links, and a [`Plant`] turns those
-//! into motion. Both are independent of the protocol, of desired values and of the controllers'
-//! model. The plant may carry an undeclared load.
+//! A [`DriveTrain`] turns commanded torques into torques on the links, and a [`Plant`] turns
+//! torques on the links into motion. Both are independent of the protocol, of desired values and of
+//! the controllers' model. The plant may carry an undeclared load.
 //!
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
-//! `mujoco`) has surroundings that it touches, and fingers. Without contact both move in the same
-//! way.
+//! `mujoco`) adds fingers, and surroundings that the arm can touch. Without contact, both plants
+//! move in the same way.
 
 mod drive;
 #[cfg(test)]
@@ -36,8 +36,8 @@ pub(crate) const STEPS: u32 = 4;
 
 /// The links of an arm of seven joints, and their surroundings.
 ///
-/// The robot calls [`step`](Self::step) several times per millisecond, through a [`DriveTrain`],
-/// each time with the torques that its controllers compute from the newest positions and
+/// The robot calls [`step`](Self::step) several times per millisecond, through a [`DriveTrain`].
+/// Each step gets the torques that its controllers compute from the newest positions and
 /// velocities.
 ///
 /// The plant of a robot can be downcast through [`Any`]: see
@@ -56,7 +56,7 @@ pub trait Plant: Any + Debug + Send {
     /// adds contact with its own objects.
     fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64);
 
-    /// Puts the arm at rest at `q`, `[rad]`, and returns the torques that hold it there against
+    /// Puts the arm at rest at `q`, `[rad]`. Returns the torques that hold the arm there against
     /// gravity, `[N·m]`.
     fn place(&mut self, q: &JointVector) -> JointVector;
 

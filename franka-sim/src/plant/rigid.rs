@@ -14,11 +14,12 @@ use crate::arm::{Arm, EndStops};
 /// (M + inertia + slope + h·D + h²·K) a = torque + external − C dq − g − stops(q + h·dq, dq)
 /// ```
 ///
-/// The torque and the inertia come from the drives, the second torque and the slope from external
-/// action. `D` is the damping of drives and stops, and `K` the stops' stiffness. The velocity
-/// advances before the position. Stiff parts (friction at rest, end stops, springs of touches) thus
-/// follow the implicit Euler rule, and the rest follows the symplectic rule. The step stays stable
-/// for any stiffness, and a free arm keeps its energy (see the tests in `plant::energy`).
+/// The first torque and the inertia come from the drives. The second torque and the slope come from
+/// external action. `D` is the damping of drives and stops, and `K` the stops' stiffness. The
+/// velocity advances before the position. Stiff parts (friction at rest, end stops, springs of
+/// touches) thus follow the implicit Euler rule, and the rest follows the symplectic rule. The step
+/// stays stable for any stiffness, and a free arm keeps its energy (see the tests in
+/// `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: AsBuilt,

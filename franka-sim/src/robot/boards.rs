@@ -16,9 +16,9 @@ pub(super) struct Boards {
 struct Board {
     /// Rotation from the board's link to base axes.
     rotation: Matrix3<f64>,
-    /// `[m/s]`, in base axes.
+    /// Velocity of the board, `[m/s]`, in base axes.
     velocity: Vector3<f64>,
-    /// Acceleration less gravity, `[m/s²]`, in base axes.
+    /// Acceleration minus gravity, `[m/s²]`, in base axes.
     felt: Vector3<f64>,
 }
 
@@ -35,7 +35,8 @@ impl Boards {
         boards
     }
 
-    /// Advances by a millisecond, to `q`, `[rad]`, with `dq`, `[rad/s]`.
+    /// Advances by a millisecond, to the joint positions `q`, `[rad]`, and velocities `dq`,
+    /// `[rad/s]`.
     pub(super) fn advance(&mut self, model: &Model, q: &JointVector, dq: &JointVector) {
         let frames = EndEffector::default();
         // Board 0 does not move.
@@ -71,7 +72,7 @@ enum Turn {
 }
 
 impl Turn {
-    /// A vector of the link in the sensor's axes.
+    /// Expresses a vector of the link in the sensor's axes.
     fn read(self, v: &Vector3<f64>) -> [f32; 3] {
         let (x, y, z) = (v.x as f32, v.y as f32, v.z as f32);
         match self {

@@ -29,9 +29,9 @@ pub(super) struct Measurement {
     pub(super) torque_rate: JointVector,
     /// Mean joint acceleration, `[rad/s²]`.
     pub(super) ddq: JointVector,
-    /// Error of `q` against the arm's true position, `[rad]`.
+    /// Error of `q` relative to the arm's true position, `[rad]`.
     q_error: JointVector,
-    /// Error of `dq` against the arm's true velocity, `[rad/s]`.
+    /// Error of `dq` relative to the arm's true velocity, `[rad/s]`.
     dq_error: JointVector,
 }
 
@@ -53,9 +53,9 @@ impl Measurement {
 impl Robot {
     /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
     ///
-    /// An arm whose control or physics diverges is put back at rest in its last position, with
-    /// `instability_detected`. Otherwise a non-finite number would stay in it for all later
-    /// clients.
+    /// If control or physics diverges, this function puts the arm back at rest in its last
+    /// position, with `instability_detected`. Otherwise a non-finite number would remain for all
+    /// later clients.
     pub(super) fn control(&mut self) -> JointVector {
         let before = *self.plant.q();
         let torque = self.drive();
@@ -164,7 +164,7 @@ impl Robot {
         self.desired.follow_joints(&arm);
     }
 
-    /// True if the brakes hold the motors to the links: they close when the arm has stopped.
+    /// True if the brakes hold the motors to the links. The brakes close once the arm has stopped.
     fn are_brakes_holding(&self) -> bool {
         self.frozen.is_some()
             || self.lock.brakes_closed && matches!(self.activity, Activity::Holding)
@@ -218,7 +218,7 @@ impl Robot {
         }
     }
 
-    /// Gravity compensation with a light damper, and springs in the locked directions.
+    /// Returns gravity compensation with a light damper, and springs in the locked directions.
     fn guiding_law(&self, guidance: &Guidance) -> Law {
         let guiding = &self.settings.guiding;
         // The axes are the end effector's, not the stiffness frame's.
@@ -246,8 +246,9 @@ impl Robot {
         law
     }
 
-    /// The desired joints with derivatives that the arm can have. These differ only if limits are
-    /// not enforced: then a jump in position must not become a blow of feedforward torque.
+    /// The desired joints with derivatives that the arm can have. They differ from the desired
+    /// derivatives only if limits are not enforced. A jump in position must then not cause a jump
+    /// of the feedforward torque.
     fn attainable(&self) -> JointSignal {
         let limits = self.model.joint_limits();
         let within =
@@ -297,8 +298,8 @@ impl Robot {
         }
     }
 
-    /// The reference from which a stop begins: the desired motion if the arm follows it, otherwise
-    /// the arm's own motion.
+    /// State from which a stop begins: the desired motion if the arm follows it, otherwise the
+    /// arm's own motion.
     pub(super) fn brake_start(&self, follows_desired: bool) -> JointSignal {
         let measured = self.measured_signal();
         let desired = &self.desired.joints;
@@ -310,13 +311,13 @@ impl Robot {
     }
 }
 
-/// Joint velocity that no arm reaches, `[rad/s]`. Beyond it physics has diverged.
+/// Joint velocity that no arm reaches, `[rad/s]`. Above this velocity, the physics has diverged.
 const VELOCITY_MAX: f64 = 1e3;
 
 /// Stiffness of closed brakes, `[N·m/rad]`: the highest stiffness of the internal controller.
 const BRAKE_STIFFNESS: JointVector = joint_vector([14_250.0; 7]);
 
-/// Damping of a guided arm, `[N·m·s/rad]`, so that it stops when nothing pushes it: a choice.
+/// Damping of a guided arm, `[N·m·s/rad]`, chosen here. It stops the arm when nothing pushes it.
 const GUIDING_DAMPING: JointVector = joint_vector([2.0, 2.0, 2.0, 2.0, 0.5, 0.5, 0.5]);
 
 /// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the highest setting of the
@@ -326,5 +327,5 @@ const LOCKED: [f64; 6] = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
 /// Stiffness of a locked elbow, `[N·m/rad]`.
 const LOCKED_ELBOW: f64 = 300.0;
 
-/// Up to this tracking error a stop continues the desired motion, `[rad]`.
+/// Largest tracking error at which a stop continues from the desired motion, `[rad]`.
 const FOLLOWING: f64 = 0.02;

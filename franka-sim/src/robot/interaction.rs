@@ -1,5 +1,5 @@
-//! Actions of a person next to the robot on the arm: pushing, holding, adding a load. The stop,
-//! brakes and buttons are in [`operation`](super::operation).
+//! Actions on the arm by a person next to the robot: push, hold, add a load. The stop, brakes and
+//! buttons are in [`operation`](super::operation).
 
 use franka_model::{Frame, JointVector, Load, Wrench, transform};
 use franka_proto::MoveStatus;
@@ -17,7 +17,7 @@ use crate::observer::MomentumObserver;
 use crate::plant::DriveTrain;
 
 impl Robot {
-    /// Starts an external action on the arm; see [`Touch`].
+    /// Starts an external action on the arm, a [`Touch`], and returns its identifier.
     pub fn touch(&mut self, touch: Touch) -> TouchId {
         self.touches.add(touch, self.clock)
     }
@@ -27,9 +27,9 @@ impl Robot {
         self.touches.remove(touch)
     }
 
-    /// Mean effect of a touch on the arm in the last millisecond: a wrench `[force; torque]` about
-    /// the touched point, base axes, `[N, N·m]`. `None` once the touch has ended. It is zero for
-    /// torques on joints.
+    /// Mean wrench of a touch on the arm in the last millisecond: `[force; torque]` about the
+    /// touched point, in base axes, `[N, N·m]`. `None` once the touch has ended. The wrench is zero
+    /// for torques on joints.
     pub fn felt(&self, touch: TouchId) -> Option<Wrench> {
         self.touches.felt(touch)
     }
@@ -49,8 +49,8 @@ impl Robot {
         self.touch(Touch::wrench(wrench).lasting(duration));
     }
 
-    /// Puts the arm at rest at `q`, `[rad]`, as if a person had guided it there. A motion under way
-    /// ends as by a stop.
+    /// Puts the arm at rest at `q`, `[rad]`, as if a person had guided it there. A running motion
+    /// ends as if the client had stopped it.
     pub fn place(&mut self, q: &JointVector) {
         self.forget_motion(MoveStatus::Preempted);
         let holding = self.plant.place(q);
@@ -68,19 +68,20 @@ impl Robot {
         self.boards = Boards::resting(&self.model, q);
     }
 
-    /// Adds a load to the flange, besides the tool and in place of any earlier one, without
-    /// informing the robot. [`Load::NONE`] removes it.
+    /// Adds a load to the flange, in addition to the tool and in place of any earlier load. The
+    /// robot is not informed. [`Load::NONE`] removes it.
     pub fn attach(&mut self, load: Load) {
         self.load = load;
         self.plant
             .attach(self.arm.body.load(&self.config.tool.load, &load));
     }
 
-    /// Puts another arm in place of this one, at rest in the position of this one and with its
-    /// load, as [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the
-    /// joint limits and the geometry of the states, which clients have read. The
-    /// [stalls](Arm::stalls) of its network interface do not change here: see
-    /// [`Running::with_network`](crate::Running::with_network).
+    /// Replaces the arm by another arm, at rest in the same position and with the same load, as
+    /// [`place`](Self::place) does.
+    ///
+    /// Tool, settings, client and errors stay. The joint limits and the geometry of the states also
+    /// stay, because clients have read them. The [stalls](Arm::stalls) of the robot's network
+    /// interface do not change here: see [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
         let limits = self.arm.limits;
         let mut arm = Arm { limits, ..arm };
@@ -97,9 +98,9 @@ impl Robot {
         self.place(&q);
     }
 
-    /// Passes the command of `hand` to the fingers of the plant, if it has any, and their width to
-    /// `hand`. Call it once per millisecond, between this robot's [`tick`](Self::tick) and the
-    /// hand's.
+    /// Passes the command of `hand` to the fingers of the plant, if the plant has fingers, and the
+    /// width of these fingers to `hand`. Call this once per millisecond, between
+    /// [`tick`](Self::tick) of this robot and `tick` of the hand.
     pub fn couple(&mut self, hand: &mut Hand) {
         let fingers = hand.mechanism_mut();
         if let Some(width) = self.plant.drive_fingers(&fingers.drive()) {
@@ -107,8 +108,8 @@ impl Robot {
         }
     }
 
-    /// True pose of the end effector in the base frame. It uses the arm as built, unknown to
-    /// `O_T_EE`.
+    /// True pose of the end effector in the base frame. It includes the errors of the arm as built,
+    /// which `O_T_EE` does not show.
     pub fn true_pose(&self) -> Isometry3<f64> {
         let frames = &self.settings.frames;
         let pose = self

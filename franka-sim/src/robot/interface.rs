@@ -7,15 +7,15 @@ use franka_model::JointVector;
 use crate::arm::Drive;
 
 /// Delay and lag of the torque interface. The robot's own controllers close their loops around the
-/// motors and have neither.
+/// motors and have neither delay nor lag.
 #[derive(Debug, Clone)]
 pub(super) struct TorqueInterface {
-    /// Commands that do not act yet, the oldest first. Their number is the delay in cycles beyond
-    /// the protocol's single cycle.
+    /// Commands that do not act yet, the oldest first. Their number is the delay in cycles, in
+    /// addition to the one cycle of the protocol.
     pending: VecDeque<JointVector>,
-    /// `[s]`
+    /// Time constant of the lag, `[s]`.
     lag: f64,
-    /// `[N·m]`
+    /// Torque that the drives follow now, `[N·m]`.
     torque: JointVector,
 }
 
@@ -35,13 +35,14 @@ impl TorqueInterface {
         self.torque = JointVector::zeros();
     }
 
-    /// Accepts the command of a cycle, and returns the command that acts in it, `[N·m]`.
+    /// Accepts the command of a cycle. Returns the command that acts in this cycle, `[N·m]`.
     pub(super) fn delayed(&mut self, command: JointVector) -> JointVector {
         self.pending.push_back(command);
         self.pending.pop_front().unwrap_or(command)
     }
 
-    /// The torque that the drives follow over the next `dt` seconds under this command, `[N·m]`.
+    /// Returns the torque that the drives follow over the next `dt` seconds under this command,
+    /// `[N·m]`.
     pub(super) fn lagged(&mut self, command: &JointVector, dt: f64) -> JointVector {
         if self.lag > 0.0 {
             self.torque += (command - self.torque) * -(-dt / self.lag).exp_m1();

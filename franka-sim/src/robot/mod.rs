@@ -1,4 +1,5 @@
-//! The whole simulated robot as a value: bytes in, bytes out, one millisecond per [`Robot::tick`].
+//! The whole simulated robot as a value: bytes go in, bytes come out, and each [`Robot::tick`] is
+//! one millisecond.
 //!
 //! ```text
 //! TCP bytes ── receive() ──> session ──> requests ──┐                     ┌──> take_reply()
@@ -81,7 +82,7 @@ pub struct Robot {
 
     client: Option<Connection<Version>>,
     replies: VecDeque<Bytes>,
-    /// The command for the cycle that the last state opened.
+    /// Command for the cycle that began with the last state.
     command: Option<RobotCommand>,
     /// `message_id` of the last state.
     clock: u64,
@@ -89,7 +90,7 @@ pub struct Robot {
     activity: Activity,
     /// A `Move` that begins as soon as the arm has stopped.
     waiting: Option<(CommandId, MoveRequest)>,
-    /// `StopMove`s to answer as soon as the arm has stopped.
+    /// Ids of the `StopMove` requests to answer as soon as the arm has stopped.
     stops: Vec<CommandId>,
     recovery: Option<Recovery>,
     lock: Lock,
@@ -133,9 +134,9 @@ impl Robot {
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot that moves `plant`, and whose controllers' model belongs to `config.kind`. The plant
-    /// receives the configured arm and is placed at rest in the configured position, with the
-    /// configured tool and payload.
+    /// A robot that moves `plant` (the physics of the arm). Its controllers use the model of
+    /// `config.kind`. The plant receives the configured arm, tool and payload, at rest in the
+    /// configured position.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
         let arm = config.chosen_arm();
         plant.fit(config.kind, &arm);
@@ -196,9 +197,10 @@ impl Robot {
 
     /// Accepts a UDP datagram of the client.
     ///
-    /// A command counts if it is the first answer to the newest state. All other datagrams, and
-    /// invalid ones, are dropped. Losses count from the first command on, even if it is late. The
-    /// targets of an asynchronous motion do not answer a state; the last one counts.
+    /// A command counts if it is valid and the first answer to the newest state. The robot drops
+    /// all other datagrams. It counts lost commands from the first command on, even if that command
+    /// is late. The targets of an asynchronous motion do not answer a state; the last target
+    /// counts.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
@@ -217,7 +219,7 @@ impl Robot {
         }
     }
 
-    /// The command for the newest state, if it has not come.
+    /// The kind of command that the newest state requires, unless the command has arrived.
     pub(crate) fn awaits(&self) -> Awaited {
         match &self.activity {
             Activity::Moving(motion) if self.command.is_none() => motion.awaits(),
@@ -243,22 +245,23 @@ impl Robot {
         })
     }
 
-    /// The UDP port that the client announced, for its states and its commands.
+    /// The UDP port that the client announced. It receives states and sends commands there.
     pub fn udp_port(&self) -> Option<u16> {
         self.client.as_ref()?.udp_port()
     }
 
-    /// The last state, as the client sees it except for the wire's rounding.
+    /// The last state. The client sees the same state, rounded to the precision of the protocol.
     pub fn state(&self) -> &RobotState {
         &self.state
     }
 
-    /// The robot's configuration, without an arm that was [fitted](Self::fit) later.
+    /// The configuration with which the robot started. It does not show an arm that was
+    /// [fitted](Self::fit) later.
     pub fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The plant; downcast through `Any`:
+    /// The plant (the physics of the arm). It can be downcast through `Any`:
     ///
     /// ```
     /// # use std::any::Any;
@@ -271,13 +274,13 @@ impl Robot {
         self.plant.as_ref()
     }
 
-    /// The plant, to change its surroundings. Changes of the arm itself bypass the controllers and
-    /// act as disturbances.
+    /// The plant (the physics of the arm), mutable, to change its surroundings. A change of the arm
+    /// itself bypasses the controllers and acts as a disturbance.
     pub fn plant_mut(&mut self) -> &mut dyn Plant {
         self.plant.as_mut()
     }
 
-    /// The model of the robot's controllers, with the joint limits that it enforces.
+    /// The model that the robot's controllers use, with the joint limits that the robot enforces.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -287,7 +290,8 @@ impl Robot {
         self.kind.version
     }
 
-    /// The description that clients fetch, a URDF text; `None` for a kind that serves none.
+    /// The description that clients fetch, a URDF text; `None` if robots of this kind serve no
+    /// description.
     pub fn description(&self) -> Option<&str> {
         std::str::from_utf8(self.description.as_ref()?).ok()
     }

@@ -1,5 +1,4 @@
-//! A motion under way: the commands that count (late ones do not), the effect of a lost one, and
-//! the end of the motion.
+//! A running motion: which commands count, the effect of a lost command, and the end of the motion.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};
@@ -23,11 +22,11 @@ pub(super) struct ActiveMotion {
     /// belong to the previous motion.
     first_state: u64,
     success_rate: SuccessRate,
-    /// True if a command has come, in time or not.
+    /// True if a command has arrived, in time or late.
     is_answered: bool,
-    /// True if a command has come in time.
+    /// True if a command has arrived in time.
     is_begun: bool,
-    /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
+    /// `tau_J_d`: the last accepted torques, `[N·m]`; zero before the first command.
     torque: JointVector,
     /// True if the last cycle had no command, so that the generator did not advance.
     paused: bool,
@@ -38,12 +37,12 @@ pub(super) struct ActiveMotion {
 /// The command that the newest state requires of the client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// No command, or it has already come.
+    /// No command, or the command has already arrived.
     Nothing,
-    /// The first command of a motion. A client may look at several states before, and none of them
-    /// is lost.
+    /// The first command of a motion. A client may read several states before this command, and
+    /// none of them counts as lost.
     First,
-    /// A later command. Without it the cycle is lost.
+    /// A later command. Without this command the cycle counts as lost.
     Next,
 }
 
@@ -62,11 +61,11 @@ pub(super) struct Rules {
 pub(super) enum Verdict {
     /// The motion continues.
     Continues,
-    /// The client finished it.
+    /// The client finished the motion.
     Finished,
-    /// A command broke these rules; it had no effect.
+    /// A command violated the rules and had no effect. The value names the errors.
     Broken(Errors),
-    /// A command holds non-finite numbers.
+    /// A command contains non-finite numbers.
     Invalid,
 }
 
@@ -114,7 +113,7 @@ impl ActiveMotion {
         self.request.controller == MoveControllerMode::ExternalController
     }
 
-    /// True if the robot itself moves to targets that arrive irregularly.
+    /// True if the robot itself plans the motion to targets that arrive irregularly.
     pub(super) fn is_asynchronous(&self) -> bool {
         self.asynchronous.is_some()
     }
@@ -139,8 +138,8 @@ impl ActiveMotion {
         self.success_rate.rate(first)
     }
 
-    /// True if a command that answers state `answers` counts while `newest` is the last published
-    /// state. A late command does not count: the cycle has been extrapolated already.
+    /// True if a command counts that answers state `answers`, while `newest` is the last published
+    /// state. A late command does not count, because the robot has already extrapolated its cycle.
     pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
         answers >= self.first_state
             && (answers == newest || (self.asynchronous.is_some() && answers < newest))
@@ -155,8 +154,8 @@ impl ActiveMotion {
         }
     }
 
-    /// Records a command that answers state `answers` and does not count, while `newest` is the
-    /// last state. A late command shows that the client has begun, so that later losses count.
+    /// Records a command that does not count. It answers state `answers`, and `newest` is the last
+    /// state. A late command shows that the client has begun, so that later losses count.
     pub(super) fn refuse(&mut self, answers: u64, newest: u64) {
         self.is_answered |= (self.first_state..newest).contains(&answers);
     }
@@ -164,7 +163,7 @@ impl ActiveMotion {
     /// Processes the input of one cycle, and advances `desired`. The joints have the measured
     /// velocities `dq`, `[rad/s]`.
     ///
-    /// A lost cycle repeats the torques of the previous one (FCI documentation), with or without
+    /// A lost cycle repeats the torques of the previous cycle (FCI documentation), with or without
     /// [`Rules::communication`].
     pub(super) fn cycle(
         &mut self,
@@ -276,8 +275,8 @@ impl ActiveMotion {
         }
     }
 
-    /// A motion may only finish at rest. Its last command then applies unchanged, and is checked
-    /// like any other command. Under an external controller the arm must also be at rest.
+    /// Checks that a motion finishes at rest. The last command then applies unchanged, and is
+    /// checked like any other command. Under an external controller the arm must also be at rest.
     fn finish(
         &self,
         desired: &mut Desired,
@@ -308,7 +307,7 @@ impl ActiveMotion {
     }
 }
 
-/// Returns the errors that count. An invalid pose always does.
+/// Returns the errors that count. An invalid pose always counts.
 fn enforced(errors: Errors, rules: Rules) -> Errors {
     if rules.limits {
         return errors;

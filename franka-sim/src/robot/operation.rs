@@ -16,9 +16,9 @@ use crate::brake::Brake;
 /// An arm that is guided by hand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Guidance {
-    /// Joint positions at the start, where locked directions stay, `[rad]`.
+    /// Joint positions at the start, `[rad]`. Locked directions stay at these positions.
     pub(super) start: JointVector,
-    /// Ratchet of each joint towards the ends of its range.
+    /// Check of each joint against the ends of its range.
     ends: [Ratchet; 7],
 }
 
@@ -30,13 +30,14 @@ pub(super) struct Lock {
     pub(super) brakes_closed: bool,
 }
 
-/// Ways in which an arm ignores its commands, while its robot reports the motion and no error.
+/// Ways in which an arm ignores its commands. The robot reports the motion and no error meanwhile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freeze {
-    /// As with closed brakes: the robot accepts torques and setpoints, and the joints do not move.
+    /// The joints do not move, as with closed brakes. The robot still accepts torques and
+    /// setpoints.
     Joints,
-    /// As with controllers that have stopped: the torques are zero, and setpoints and joints do not
-    /// move.
+    /// The torques are zero, and setpoints and joints do not move, as if the controllers had
+    /// stopped.
     Controllers,
 }
 
@@ -49,8 +50,8 @@ pub(super) struct Frozen {
 }
 
 impl Robot {
-    /// Makes the arm ignore its commands from now on, or with `None` obey them again. No manual of
-    /// the vendor describes this; users have reported robots with this behaviour.
+    /// Makes the arm ignore its commands from now on; `None` makes it obey commands again. No
+    /// manual of the vendor describes this; users have reported robots with this behaviour.
     pub fn freeze(&mut self, freeze: Option<Freeze>) {
         let q = *self.plant.q();
         self.frozen = freeze.map(|freeze| Frozen { freeze, q });
@@ -67,8 +68,8 @@ impl Robot {
         frozen == Some(Freeze::Controllers)
     }
 
-    /// Presses or releases the user stop. Pressed, it ends any motion and recovery, and allows no
-    /// other; the arm can be guided.
+    /// Presses or releases the user stop. While pressed, it ends any motion or recovery and permits
+    /// no new one. A person can then guide the arm.
     pub fn press_user_stop(&mut self, pressed: bool) {
         self.lock.user_stop = pressed;
         if pressed {
@@ -80,8 +81,8 @@ impl Robot {
     }
 
     /// Activates or deactivates a safety function that forbids motion, as set up in Desk. A Franka
-    /// Research 3 answers with separate statuses; an FER has none and acts as if the user stop were
-    /// pressed.
+    /// Research 3 answers with separate statuses; an FER has no such statuses and acts as if the
+    /// user stop were pressed.
     pub fn activate_safety_function(&mut self, active: bool) {
         self.lock.safety_function = active;
         if active {
@@ -103,12 +104,12 @@ impl Robot {
         self.lock.brakes_closed = false;
     }
 
-    /// Presses or releases the guiding buttons; returns true if the arm is then guided.
+    /// Presses or releases the guiding buttons. Returns true if a person can then guide the arm.
     ///
-    /// A guided arm supports itself and its declared load, and moves where it is pushed, within the
-    /// directions of `SetGuidingMode`. Guiding is possible with the brakes open while nothing
-    /// moves, also after a reflex and with the user stop pressed. After the release the arm stops
-    /// and stays.
+    /// A guided arm supports itself and its declared load. It moves where a person pushes it, in
+    /// the directions of `SetGuidingMode`. Guiding requires open brakes and an arm without a
+    /// motion. It is also possible after a reflex and with the user stop pressed. After the release
+    /// of the buttons the arm stops and holds its position.
     pub fn guide(&mut self, pressed: bool) -> bool {
         match (&self.activity, pressed) {
             (Activity::Guided(_), true) => {}
@@ -148,7 +149,7 @@ impl Robot {
         out
     }
 
-    /// Ends motion, waiting motion and recovery, and answers their clients.
+    /// Ends the current motion, a waiting motion and a recovery, and answers their requests.
     fn end_everything(&mut self, moves: MoveStatus, recovery: RecoveryStatus) {
         self.end_motion(moves);
         if let Some((id, _)) = self.waiting.take() {

@@ -1,4 +1,4 @@
-//! The state of one millisecond, as the robot publishes it.
+//! The state that the robot publishes each millisecond.
 
 use franka_model::{Frame, JointVector, Load, Twist, elbow, transform};
 use franka_proto::MotionGeneratorMode;

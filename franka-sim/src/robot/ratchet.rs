@@ -1,8 +1,8 @@
-//! Bounds for a clearance that may start beyond the bound and may return, but must not go further
-//! beyond.
+//! Watch of a clearance that may start below its bound. The clearance may grow again, but it must
+//! not shrink further.
 
-/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from its largest
-/// value there.
+/// Watches a clearance. Below `bound`, the clearance must not shrink by more than `allowed` from
+/// its largest value since it fell below.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ratchet {
     best: f64,
@@ -16,7 +16,7 @@ impl Ratchet {
         }
     }
 
-    /// Begins with a clearance beyond the bound.
+    /// Begins with a clearance above the bound.
     pub(super) fn outside(bound: f64) -> Self {
         Self { best: bound }
     }

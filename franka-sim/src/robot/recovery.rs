@@ -6,7 +6,7 @@ use franka_proto::{CommandId, Errors, RecoveryStatus, Reply, RobotMode};
 use super::{Activity, Robot};
 use crate::generator::PointToPoint;
 
-/// A recovery under way.
+/// A recovery in progress.
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
     /// The request to answer, if its client is still connected.
@@ -17,7 +17,7 @@ pub(super) struct Recovery {
 }
 
 impl Recovery {
-    /// Continues without its client.
+    /// Continues the recovery without its client.
     pub(super) fn forget_client(&mut self) {
         self.id = None;
     }
@@ -29,7 +29,7 @@ impl Recovery {
 }
 
 impl Robot {
-    /// Answers an `AutomaticErrorRecovery`, immediately or when it is over.
+    /// Answers an `AutomaticErrorRecovery`, immediately or when the recovery is over.
     pub(super) fn request_recovery(&mut self, id: CommandId) {
         let status = match self.robot_mode() {
             _ if self.lock.safety_function => self.kind.safety.recovery,
@@ -50,7 +50,7 @@ impl Robot {
         self.reply(id, Reply::Recovery(status));
     }
 
-    /// True if a joint is further out than the automatic recovery brings it back.
+    /// True if a joint is too far outside its range for the automatic recovery.
     pub(super) fn is_outside(&self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;
@@ -61,9 +61,9 @@ impl Robot {
     }
 
     /// Performs the recovery that requires a person, as Desk offers it. Joints outside their range
-    /// move slowly back into it, then errors are cleared. If no joint is outside, it acts as the
-    /// automatic recovery. It does nothing without an error, before the arm has stopped, and while
-    /// the robot is locked.
+    /// move slowly back into it; then the robot clears its errors. If no joint is outside its
+    /// range, this acts as the automatic recovery. It has no effect if the robot has no error, is
+    /// locked, or still moves.
     pub fn recover_manually(&mut self) {
         let at_rest = matches!(self.activity, Activity::Holding);
         if self.robot_mode() != RobotMode::Reflex || !at_rest {
@@ -88,7 +88,7 @@ impl Robot {
         });
     }
 
-    /// Clears the errors when the arm is at rest and, if necessary, back in its range.
+    /// Clears the errors once the arm is at rest. Joints outside their range must be back inside.
     pub(super) fn end_recovery(&mut self) {
         let Some(recovery) = &self.recovery else {
             return;
@@ -121,7 +121,7 @@ impl Robot {
 /// Tolerance of measured positions outside the range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.01;
 
-/// Distance inside its range at which a returned joint stops, `[rad]`.
+/// Distance from the end of its range at which a returning joint stops, `[rad]`.
 const INSIDE: f64 = 0.02;
 
 /// Velocity of the return, `[rad/s]`.
@@ -133,5 +133,6 @@ const STILL: f64 = 0.01;
 /// Least number of cycles of a recovery, so that its mode is visible.
 const RECOVERY_MIN: u64 = 100;
 
-/// Largest number of cycles beyond the brake's: something may shake the arm indefinitely.
+/// Largest number of cycles of a recovery, not counting the cycles of its brake. An external force
+/// might shake the arm forever.
 const RECOVERY_MAX: u64 = 2000;

@@ -90,8 +90,8 @@ impl Robot {
         positive && combination && asynchronous
     }
 
-    /// Begins the waiting motion, if the arm is at rest; state `first_state` is the first to show
-    /// it.
+    /// Begins the waiting motion, if the arm is at rest. The state `first_state` is the first that
+    /// shows the motion.
     fn start_waiting(&mut self, first_state: u64) {
         if !matches!(self.activity, Activity::Holding) {
             return;
@@ -166,7 +166,7 @@ impl Robot {
         }
     }
 
-    /// Ends the motion under way, if any: sends the final reply and brakes the arm.
+    /// Ends the current motion, if any: sends the final reply and brakes the arm.
     pub(super) fn end_motion(&mut self, status: MoveStatus) {
         let Activity::Moving(motion) = &self.activity else {
             return;
@@ -187,7 +187,7 @@ impl Robot {
         self.reply(id, Reply::Move(status));
     }
 
-    /// The motion's part of a cycle.
+    /// Runs the current motion for one cycle.
     pub(super) fn run_motion(&mut self) {
         let command = self.command.take();
         let takes_none = self.takes_no_commands();
@@ -286,7 +286,7 @@ impl Robot {
         .collect()
     }
 
-    /// True if the arm is further from a generated motion than the client allowed.
+    /// True if the arm deviates from a generated motion by more than the client allowed.
     fn leaves_path(&self) -> bool {
         match &self.activity {
             Activity::Moving(motion) if !motion.is_external() => {

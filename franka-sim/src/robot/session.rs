@@ -1,5 +1,5 @@
-//! The robot's session with its client: it accepts one, answers each of its requests, and
-//! disconnects it. `connection` handles the handshake, `serve::sessions` a second client on
+//! The robot's session with its client: it accepts one client, answers the client's requests, and
+//! disconnects the client. `connection` handles the handshake, `serve::sessions` a second client on
 //! sockets.
 
 use bytes::Bytes;
@@ -17,7 +17,8 @@ pub(crate) fn next_request(received: &[u8]) -> Result<Option<Message<'_>>, Frame
 }
 
 impl Robot {
-    /// Connects a client. Returns false if another one is connected: the robot has one at a time.
+    /// Connects a client. Returns false if another client is connected: the robot accepts one at a
+    /// time.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -27,7 +28,7 @@ impl Robot {
         true
     }
 
-    /// Disconnects the client. Its motion ends: the arm brakes and holds.
+    /// Disconnects the client. The client's motion ends: the arm brakes and holds its position.
     pub fn disconnect(&mut self) {
         if self.client.is_some() {
             self.forget_client();
@@ -44,8 +45,9 @@ impl Robot {
     /// Accepts bytes from the client's stream, in any portions.
     ///
     /// # Errors
-    /// [`SessionError`] if the client left the protocol or speaks another version. It is then
-    /// disconnected, after the replies that are still to be sent.
+    /// [`SessionError`] if the client violated the protocol or speaks another version. The robot
+    /// then has no client. Send the replies that remain in [`take_reply`](Self::take_reply), and
+    /// close the stream.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), SessionError> {
         let Some(client) = &mut self.client else {
             return Ok(());
@@ -59,7 +61,7 @@ impl Robot {
         result
     }
 
-    /// The next bytes for the client's stream: a message, or the first or second part of one.
+    /// Returns the next bytes for the client's stream: a message, or one of its two parts.
     pub fn take_reply(&mut self) -> Option<Bytes> {
         self.replies.pop_front()
     }
@@ -117,7 +119,7 @@ impl Robot {
         }
     }
 
-    /// Queues a reply for the client. A disconnected client gets none.
+    /// Queues a reply for the client. A disconnected client gets no reply.
     pub(super) fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let Some(client) = &mut self.client else {
             return;
@@ -129,7 +131,8 @@ impl Robot {
         }
     }
 
-    /// Answers with the wall of this number. A wall that was not set up is inactive.
+    /// Answers with the wall of this number. The answer is an inactive wall if no such wall was set
+    /// up.
     fn send_wall(&mut self, id: CommandId, number: i32) {
         let known = self.config.walls.iter().find(|(known, _)| *known == number);
         let wall = known.map_or(NO_WALL, |(_, wall)| *wall);
@@ -167,7 +170,8 @@ impl Robot {
         }
     }
 
-    /// Ends a motion with this status and without a brake, for an arm that is about to be placed.
+    /// Ends a motion with this status and without braking. Used before the arm is placed at another
+    /// position.
     pub(super) fn forget_motion(&mut self, status: MoveStatus) {
         if let Activity::Moving(motion) = &self.activity {
             let id = motion.id();
@@ -187,7 +191,7 @@ const NO_WALL: VirtualWall = VirtualWall {
     object_activation: false,
 };
 
-/// The robot has no model library to load.
+/// Answer of a robot without a model library.
 const NO_LIBRARY: Reply<'static> = Reply::ModelLibrary {
     status: LibraryStatus::Error,
     library: &[],

@@ -10,7 +10,7 @@ pub(super) struct Shaking {
     joints: [Reversals; 7],
 }
 
-/// The reversals of one joint in the last 128 milliseconds, newest in the lowest bit.
+/// Reversals of one joint in the last 128 milliseconds, with the newest in the lowest bit.
 #[derive(Debug, Clone, Copy, Default)]
 struct Reversals {
     history: u128,
@@ -25,7 +25,7 @@ impl Shaking {
         }
     }
 
-    /// Records the velocities of a millisecond, `[rad/s]`; true if a joint shakes.
+    /// Records the velocities of a millisecond, `[rad/s]`. Returns true if a joint shakes.
     pub(super) fn is_seen(&mut self, dq: &JointVector, what: &Instability) -> bool {
         let window = u128::MAX >> (128 - what.window.clamp(1, 128));
         let mut shakes = false;
@@ -52,8 +52,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns the milliseconds until a joint that swings with this frequency, `[Hz]`, is found to
-    /// shake.
+    /// Returns the milliseconds after which a joint counts as shaking if it swings with this
+    /// frequency, `[Hz]`.
     fn swing(frequency: f64, velocity: f64) -> Option<usize> {
         let mut shaking = Shaking::new();
         (0..2000).find(|k| {

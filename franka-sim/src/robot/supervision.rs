@@ -1,5 +1,5 @@
-//! Supervision of a motion besides joint limits and contact: self-collision, walls, power,
-//! stability.
+//! Supervision of a motion: self-collision, virtual walls, power, stability. Joint limits and
+//! contact are checked elsewhere.
 
 use franka_model::JointVector;
 use franka_model::collision::Shape;
@@ -10,13 +10,13 @@ use super::ratchet::Ratchet;
 use super::shaking::Shaking;
 use crate::config::Config;
 
-/// Self-collision, virtual walls, power and stability.
+/// Supervision of self-collision, virtual walls, power and stability.
 #[derive(Debug, Clone)]
 pub(super) struct Watch {
     shape: Shape<'static>,
     pairs: Vec<Ratchet>,
-    /// Joint positions at which the arm was last clear of itself, `[rad]`, and the distance beyond
-    /// the margin, `[m]`.
+    /// Joint positions at the last check that found the arm clear of itself, `[rad]`, and its
+    /// distance beyond the margin then, `[m]`.
     clear: Option<(JointVector, f64)>,
     walls: Vec<Ratchet>,
     shaking: Shaking,
@@ -25,9 +25,9 @@ pub(super) struct Watch {
 /// The arm at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight<'a> {
-    /// `[rad]`
+    /// Joint positions, `[rad]`.
     pub(super) q: &'a JointVector,
-    /// `[rad/s]`
+    /// Joint velocities, `[rad/s]`.
     pub(super) dq: &'a JointVector,
     /// Torques between motors and links, `[N·m]`.
     pub(super) torque: &'a JointVector,
@@ -52,7 +52,7 @@ impl Watch {
         }
     }
 
-    /// Begins a motion: the arm may leave any position.
+    /// Begins the supervision of a motion. The motion may start at any position.
     pub(super) fn begin(&mut self) {
         self.pairs.fill(Ratchet::new());
         self.clear = None;
@@ -143,7 +143,7 @@ const WALL_ALLOWANCE: f64 = 0.001;
 
 /// Largest distance of a point of arm and Hand from the axis of a joint, `[m]`, rounded up: the
 /// lengths and offsets from the shoulder outwards are 1.18 m. A joint that turns by an angle brings
-/// two bodies nearer by no more than this times the angle.
+/// two bodies nearer by at most this length times the angle.
 const LEVER: f64 = 1.25;
 
 #[cfg(test)]

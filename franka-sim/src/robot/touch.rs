@@ -12,8 +12,8 @@ pub(super) use present::Touches;
 /// An external action on the arm, at one place and for a limited time.
 ///
 /// Positive torques push joints towards positive angles; forces, positions and velocities are in
-/// base axes. All touches add up, and springs and dampers act as at the end of each step of the
-/// plant. Pass a touch to [`Robot::touch`](super::Robot::touch):
+/// base axes. All touches add up. Springs and dampers are integrated implicitly. Pass a touch to
+/// [`Robot::touch`](super::Robot::touch):
 ///
 /// ```
 /// use franka_model::{Frame, Wrench};
@@ -34,12 +34,12 @@ pub(super) use present::Touches;
 pub struct Touch {
     effort: Effort,
     frame: Frame,
-    /// Offset in the axes of the frame.
+    /// Offset of the touched point in the axes of the frame.
     offset: Vector3<f64>,
     lasts: Option<u64>,
 }
 
-/// Identifies a touch, to end it.
+/// Identifier of a touch, to read its effect and to end it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TouchId(u64);
 
@@ -51,22 +51,21 @@ enum Effort {
         to: Vector3<f64>,
         spring: Spring,
     },
-    /// A spring whose point moves.
+    /// A spring to a point that moves.
     Carry {
         path: Box<dyn FnMut(f64) -> Vector3<f64> + Send>,
-        /// Position of the point at the beginning of this millisecond, and its velocity, `[m]`,
-        /// `[m/s]`.
+        /// Position and velocity of the point at the beginning of this millisecond, `[m]`, `[m/s]`.
         point: Vector3<f64>,
         velocity: Vector3<f64>,
         spring: Spring,
     },
-    /// Holds the pose of the place at the beginning of the touch.
+    /// Holds the pose that the touched frame had at the beginning of the touch.
     Hold {
         pose: Option<Isometry3<f64>>,
         linear: Spring,
         angular: Spring,
     },
-    /// Holds the angle of a joint at the beginning of the touch.
+    /// Holds the angle that a joint had at the beginning of the touch.
     Block {
         index: usize,
         angle: Option<f64>,
@@ -78,7 +77,7 @@ enum Effort {
     },
 }
 
-/// `[N/m]`, `[N·s/m]`, or the rotational units.
+/// Stiffness and damping, `[N/m]` and `[N·s/m]`, or in rotational units.
 #[derive(Debug, Clone, Copy)]
 struct Spring {
     stiffness: f64,
@@ -86,7 +85,7 @@ struct Spring {
 }
 
 impl Touch {
-    /// Torques on the joints, `[N·m]`.
+    /// Constant torques on the joints, `[N·m]`.
     pub fn torque(torque: JointVector) -> Self {
         Self::new(Effort::Torque(torque))
     }
@@ -96,19 +95,19 @@ impl Touch {
         Self::wrench(stack(&force, &Vector3::zeros()))
     }
 
-    /// A constant wrench `[force; torque]` about the touched place, `[N, N·m]`.
+    /// A constant wrench `[force; torque]` about the touched point, `[N, N·m]`.
     pub fn wrench(wrench: Wrench) -> Self {
         Self::new(Effort::Wrench(wrench))
     }
 
-    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. The function
-    /// is called once per millisecond.
+    /// A wrench `[N, N·m]` as a function of the time since the touch began, `[s]`. The simulator
+    /// calls the function once per millisecond.
     pub fn over_time(wrench: impl FnMut(f64) -> Wrench + Send + 'static) -> Self {
         Self::new(Effort::OverTime(Box::new(wrench)))
     }
 
-    /// A spring to the point `to`, `[m]`, of this stiffness, `[N/m]`, with a damper that is about
-    /// critical for the mass of the end of an arm.
+    /// A spring to the point `to`, `[m]`, of this stiffness, `[N/m]`. Its damping is about critical
+    /// for the apparent mass of the end of an arm.
     pub fn spring(to: Vector3<f64>, stiffness: f64) -> Self {
         Self::new(Effort::Spring {
             to,
@@ -117,9 +116,9 @@ impl Touch {
     }
 
     /// A spring of this stiffness, `[N/m]`, to a moving point: a hand that leads the arm, or an
-    /// object that hits it and stays in contact. `path` is a function of the time since the touch
-    /// began, `[s]` to `[m]`; it is called once per millisecond. The damper acts on the velocity
-    /// relative to the point.
+    /// object that hits the arm and stays in contact. `path` returns the point `[m]` for the time
+    /// since the touch began, `[s]`. The simulator calls it once per millisecond. The damper acts
+    /// on the velocity relative to the point.
     pub fn carry(path: impl FnMut(f64) -> Vector3<f64> + Send + 'static, stiffness: f64) -> Self {
         Self::new(Effort::Carry {
             path: Box::new(path),
@@ -129,7 +128,7 @@ impl Touch {
         })
     }
 
-    /// A firm grip that keeps the current position and orientation of the place.
+    /// A firm grip that keeps the current position and orientation of the touched frame.
     pub fn hold() -> Self {
         Self::new(Effort::Hold {
             pose: None,
@@ -150,9 +149,9 @@ impl Touch {
         })
     }
 
-    /// A wall or table: the place cannot move behind the plane through `point`, `[m]`, whose
-    /// `normal` points to the free side. The wall yields by a millimetre under 20 N, and is smooth.
-    /// An arm that is pulled off it feels an additional 0.1 kg for a quarter of a millisecond.
+    /// A wall or table: the touched point cannot move behind the plane through `point`, `[m]`.
+    /// `normal` points to the free side. The wall has no friction and yields by a millimetre at 20
+    /// N. An arm that leaves the wall feels an additional 0.1 kg for a quarter of a millisecond.
     ///
     /// # Panics
     /// If the normal has no length.
@@ -166,9 +165,9 @@ impl Touch {
         })
     }
 
-    /// Sets the stiffness, `[N/m]`, with a matching damper, of a spring, a grip's translation or a
-    /// wall. Other touches have none. Any stiffness is stable, but a touch that begins far from its
-    /// point is a blow of stiffness times distance.
+    /// Sets the stiffness, `[N/m]`, and a matching damping of a spring, a wall, or the translation
+    /// of a grip. Other touches have no stiffness. Any stiffness is stable. A touch that begins far
+    /// from its point starts with a force of stiffness times distance.
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         match &mut self.effort {
             Effort::Spring { spring, .. }
@@ -182,19 +181,20 @@ impl Touch {
         self
     }
 
-    /// Acts on this frame. Default: the end effector.
+    /// Selects the frame on which the touch acts. Default: the end effector.
     pub fn at(mut self, frame: Frame) -> Self {
         self.frame = frame;
         self
     }
 
-    /// Acts at `offset` from the frame's origin, in the frame's axes, `[m]`.
+    /// Moves the touched point by `offset` from the frame's origin, in the frame's axes, `[m]`.
     pub fn offset(mut self, offset: Vector3<f64>) -> Self {
         self.offset = offset;
         self
     }
 
-    /// Lasts this many milliseconds. Default: until it is released.
+    /// Limits the touch to this many milliseconds. Default: until
+    /// [`Robot::release`](super::Robot::release).
     pub fn lasting(mut self, milliseconds: u64) -> Self {
         self.lasts = Some(milliseconds);
         self
@@ -231,7 +231,7 @@ impl core::fmt::Debug for Touch {
 }
 
 impl Spring {
-    /// Critically damped with a mass or inertia.
+    /// A spring that is critically damped for a mass or inertia.
     fn damped(stiffness: f64, inertia: f64) -> Self {
         Self {
             stiffness,
@@ -239,8 +239,8 @@ impl Spring {
         }
     }
 
-    /// Force at this stretch, where velocity shortens it, at the end of a step of `dt` seconds
-    /// without acceleration.
+    /// Force at the end of a step of `dt` seconds without acceleration. `stretch` is the spring's
+    /// stretch at the start, which `velocity` shortens.
     fn pull(&self, stretch: Vector3<f64>, velocity: &Vector3<f64>, dt: f64) -> Vector3<f64> {
         (stretch - velocity * dt) * self.stiffness - velocity * self.damping
     }
@@ -263,12 +263,12 @@ const FIRM_TURN: f64 = 500.0;
 /// Stiffness of a blocked joint, `[N·m/rad]`.
 const FIRM_JOINT: f64 = 20_000.0;
 
-/// Apparent mass of the end of an arm for a hand, `[kg]`.
+/// Apparent mass of the end of an arm, as felt by a hand, `[kg]`.
 const FELT_MASS: f64 = 3.0;
 
 /// Apparent inertia of the end of an arm, `[kg·m²]`.
 const FELT_INERTIA: f64 = 0.05;
 
 /// Inertia of a joint with its rotor, `[kg·m²]`, for the damper of a blocked joint. The lightest
-/// has 0.075.
+/// joint has 0.075.
 const JOINT_INERTIA: f64 = 0.075;

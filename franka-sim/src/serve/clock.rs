@@ -1,47 +1,48 @@
-//! The clock of the thread that serves the devices. It schedules the states, and handles the
-//! lateness of the thread that the host causes.
+//! The clock of the thread that serves the devices. It schedules the states and handles delays that
+//! the host causes.
 
 use std::time::{Duration, Instant};
 
 /// Timing record of a simulation's milliseconds.
 ///
-/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) requests
-/// another, so the host lets it miss deadlines now and then. A real robot's clock never stops, so
-/// its clients never lose commands in this way. The clock here therefore slips: a state that is
-/// late by more than [`Pace::TOLERANCE`] moves all later ones by the same time. `message_id`
-/// advances by one per state in any case; robot time then lags behind the wall clock.
+/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) requests a
+/// higher one. The host therefore delays the thread now and then, which no real robot does. By
+/// default the clock then slips: a state that is late by more than [`Pace::TOLERANCE`] delays all
+/// later states by the same time. Clients thus lose no commands because of the host. `message_id`
+/// advances by one per state in any case, and robot time lags behind the wall clock.
 ///
-/// With a [strict clock](super::Sim::strict_clock) the states that are due are published in a burst
-/// instead, as a robot's network does after a stall. When more than [`Pace::BURST`] are due, the
-/// rest of the lost time is skipped.
+/// With a [strict clock](super::Sim::strict_clock) the simulator instead publishes the due states
+/// in a burst, as a robot's network does after a stall. If more than [`Pace::BURST`] states are
+/// due, the simulator skips the rest of the lost time.
 ///
-/// In [virtual time](super::Sim::virtual_time) no such clock exists, and nothing is late.
+/// In [virtual time](super::Sim::virtual_time) this clock does not exist, and no state is late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Pace {
-    /// States due so far.
+    /// Number of states due so far.
     pub cycles: u64,
     /// Number of slips of the clock.
     pub slips: u64,
     /// Total time of the slips.
     pub slipped: Duration,
-    /// With a strict clock: states that followed another one in a burst. The client had no time to
-    /// answer the state before.
+    /// With a strict clock: number of states that directly followed another state in a burst. The
+    /// client had no time to answer the preceding state.
     pub burst: u64,
-    /// With a strict clock: milliseconds skipped.
+    /// With a strict clock: number of milliseconds skipped.
     pub skipped: u64,
 }
 
 impl Pace {
-    /// The most states published at once by a strict clock.
+    /// Largest number of states that a strict clock publishes at once.
     pub const BURST: u32 = 4;
 
-    /// Lateness of a state up to which the next one keeps to the schedule. It is half a period:
-    /// ordinary wake-ups are below it. Clients never receive states less than half a period apart
-    /// unless they have answered the first of them.
+    /// Lateness of a state up to which the next state keeps to the schedule. It is half a period,
+    /// which ordinary wake-ups do not exceed. Clients never receive two states less than half a
+    /// period apart, unless they have answered the first.
     pub const TOLERANCE: Duration = Duration::from_micros(500);
 
-    /// Cycles in which the host, not the client, was late: slips, bursts and skipped states.
+    /// Number of cycles in which the host, not the client, was late: slips, bursts and skipped
+    /// states.
     pub fn late(&self) -> u64 {
         self.slips + self.burst + self.skipped
     }
@@ -71,8 +72,8 @@ impl Pace {
 /// Time from one state to the next.
 pub(super) const PERIOD: Duration = Duration::from_millis(1);
 
-/// A clock that runs with the wall clock, less the time of its slips. All instants are on this
-/// clock, except those named `wall`.
+/// A clock that runs with the wall clock, minus the time of its slips. Instants named `wall` are on
+/// the wall clock; all others are on this clock.
 #[derive(Debug)]
 pub(super) struct Clock {
     strict: bool,
@@ -108,9 +109,9 @@ impl Clock {
         self.due
     }
 
-    /// Gives the client a whole period to answer the last state, even if that state left late: the
-    /// next state is due after it. Returns that time. A strict clock gives the client only the rest
-    /// of the period.
+    /// Gives the client a whole period to answer the last state, even if that state left late.
+    /// Returns the time at which the next state is then due. A strict clock gives the client only
+    /// the rest of the period.
     pub(super) fn wait_for_answer(&mut self) -> Instant {
         if !self.strict {
             self.due = self.due.max(self.at(self.published_wall) + PERIOD);
@@ -118,12 +119,13 @@ impl Clock {
         self.due
     }
 
-    /// Records that a command was awaited until `wall`: no state is due earlier.
+    /// Records that the thread awaited a command until `wall`. No state is due earlier.
     pub(super) fn waited(&mut self, wall: Instant) {
         self.due = self.due.max(self.at(wall));
     }
 
-    /// Records that the thread woke at `wall` instead of `meant`, and slips if it is late.
+    /// Records that the thread woke at `wall` instead of `meant`. The clock slips if this is too
+    /// late.
     pub(super) fn woke(&mut self, wall: Instant, meant: Instant) {
         let late = self.at(wall).saturating_duration_since(meant);
         if late > Pace::TOLERANCE && !self.strict {
@@ -166,12 +168,12 @@ mod tests {
     struct Host {
         wall: Instant,
         random: Random,
-        /// Probability of a delay, each time that the host could delay the thread.
+        /// Probability of a delay at each moment at which the host could delay the thread.
         likelihood: f64,
     }
 
     impl Host {
-        /// Time in which the thread computes, or less, with a delay now and then.
+        /// Lets the thread compute for a short random time, with a delay now and then.
         fn compute(&mut self) -> Instant {
             self.wall += Duration::from_micros(50);
             if self.random.uniform() < self.likelihood {
@@ -191,7 +193,7 @@ mod tests {
     }
 
     /// Runs the thread's loop with a client that answers each state after `turnaround`. Returns the
-    /// number of late answers, the clock's record, and the time on the wall clock.
+    /// number of late answers, the clock's record, and the duration on the wall clock.
     fn late_answers(strict: bool, likelihood: f64, turnaround: Duration) -> (u64, Pace, Duration) {
         let begun = Instant::now();
         let mut host = Host {

@@ -10,18 +10,18 @@ use super::speed::{Pacer, Speed};
 use crate::end_effector::{Hand, VacuumGripper};
 use crate::robot::{Awaited, Robot};
 
-/// Real time between two states that need no answer, in virtual time: enough for a client to read
-/// them.
+/// Real time between two states that need no answer, in virtual time. A client can read the states
+/// at this rate.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
-/// Time for which the first state of a motion waits for a first command. A shared host keeps a
-/// thread of the client from its processor for some 10 ms now and then.
+/// Time for which the first state of a motion waits for a first command. A shared host may keep a
+/// thread of the client from its processor for some 10 ms.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
 /// Result of waiting for the answer to a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// The answer was available, or none is due.
+    /// The answer was available, or no answer was due.
     NotAwaited,
     /// The simulator waited for the answer.
     Awaited,
@@ -77,8 +77,8 @@ impl Cycle {
         }
     }
 
-    /// Runs in virtual time, in which each state waits for the client's answer, until the same end;
-    /// see [`Sim::virtual_time`](super::Sim::virtual_time).
+    /// Runs in virtual timeuntil no client or task remains. Each state waits for the client's
+    /// answer; see [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration, speed: Speed) {
         // Nothing is late in virtual time, so nothing slips.
         let mut clock = Clock::new(Instant::now(), true);
@@ -115,8 +115,8 @@ impl Cycle {
         }
     }
 
-    /// Waits for the client's answer, if the newest state requires one. A client may look at
-    /// several states before its first command. The wait for that command starts short
+    /// Waits for the client's answer, if the newest state requires one. A client may read several
+    /// states before its first command. The wait for the first command starts short
     /// ([`FIRST_WAIT`]) and doubles with each of the `attempts`, up to `patience`.
     fn await_answer(
         &mut self,
@@ -150,7 +150,7 @@ impl Cycle {
         self.robot.has_client() || hand || vacuum
     }
 
-    /// Sleeps until `end` by the clock, and relays datagrams of a network meanwhile.
+    /// Sleeps until the clock reaches `end`. Relays datagrams of a simulated network meanwhile.
     fn sleep_until(&mut self, end: Instant, clock: &mut Clock) {
         loop {
             let now = clock.at(Instant::now());

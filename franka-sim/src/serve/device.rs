@@ -9,12 +9,12 @@ use crate::connection::{Datagram, Framing, SessionError};
 use crate::end_effector::{EndEffector, Mechanism};
 use crate::robot::{Awaited, Robot, next_request};
 
-/// A device as a value, with one client at a time. [`Robot`] documents the methods.
+/// A device as a value, with one client at a time. The methods are documented at [`Robot`].
 pub(super) trait Device: Send + 'static {
-    /// Reason why it disconnects a client.
+    /// Reason why the device disconnects a client.
     type Error: Display;
 
-    /// Division of its stream into messages.
+    /// Function that splits the client's stream into messages.
     const FRAMING: Framing;
 
     fn name(&self) -> &'static str;
@@ -28,7 +28,7 @@ pub(super) trait Device: Send + 'static {
     fn tick(&mut self) -> Option<Datagram<'_>>;
 }
 
-/// The methods that the devices have under the same names.
+/// Implements the methods that all devices have under the same names.
 macro_rules! inherent {
     () => {
         fn connect(&mut self) -> bool {

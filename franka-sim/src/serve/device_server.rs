@@ -41,30 +41,30 @@ pub(super) enum Order {
 /// Largest number of datagrams read per cycle: a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
-/// Largest number of orders per cycle, for the same reason.
+/// Largest number of orders per cycle, for the same reason as the limit on datagrams.
 const ORDERS: usize = 32;
 
-/// Longest delay of orders and jobs by the wait for a command.
+/// Longest time for which the wait for a command may delay orders and jobs.
 const JOB_POLL: Duration = Duration::from_millis(1);
 
 /// Longest counted time of one wait for a datagram. The kernel rounds such waits up to a few
 /// milliseconds. A longer wait means that the host delayed this process, and maybe the client.
 const WAIT_MAX: Duration = Duration::from_millis(10);
 
-/// Longest time of one such wait that counts as silence. A longer wait means that this process was
-/// stopped.
+/// Longest time of one wait for a datagram that counts as silence. A longer wait means that this
+/// process was stopped.
 const HELD_UP_MAX: Duration = Duration::from_millis(100);
 
-/// The longest silence, unless the patience is greater. A client that receives nothing for a second
+/// Longest silence, unless the patience is longer. A client that receives nothing for a second
 /// considers the link lost, and on a busy machine the waits for one answer may add up to a second.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
 
 /// Time for which an answer has been awaited.
 #[derive(Debug, Default)]
 struct Wait {
-    /// Without the time for which this process was stopped.
+    /// Time of silence. The time for which this process was stopped is excluded.
     silence: Duration,
-    /// Also without most of the time for which it waited for a processor.
+    /// Like `silence`, and without most of the time for which this process waited for a processor.
     counted: Duration,
 }
 
@@ -81,16 +81,16 @@ impl Wait {
     }
 }
 
-/// Number of replies that may wait for a client. A request is read only if the queue has room for
-/// the answers to all open requests and to one more, which may require two replies.
+/// Number of replies that may wait for a client. The server reads a request only if the queue has
+/// room for the answers to it and to all open requests. An answer may consist of two replies.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
 const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 
 /// A device, its UDP socket, the queues from its listener, and the simulated network, if any.
 ///
 /// The queues are Tokio's, because one end is a task and the other is this thread. The task waits
-/// for room or for a reply without blocking a worker, and the thread only tries. A queue between
-/// threads (crossbeam) has no end that a task can await.
+/// for room or for a reply without blocking a worker, and the thread only tries. A task cannot
+/// await a queue between threads (crossbeam).
 pub(super) struct DeviceServer<D> {
     device: Box<D>,
     socket: UdpSocket,
@@ -123,12 +123,13 @@ impl<D: Device> DeviceServer<D> {
         self
     }
 
-    /// The device, between two milliseconds.
+    /// The device, for changes between two milliseconds.
     pub(super) fn device_mut(&mut self) -> &mut D {
         &mut self.device
     }
 
-    /// One millisecond, at `now`: commands, orders, jobs, state, replies. Returns false at the end.
+    /// Runs one millisecond, at `now`: commands, orders, jobs, state, replies. Returns false once
+    /// the simulation must end.
     pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         self.take_commands(now);
         self.take_orders();
@@ -159,12 +160,13 @@ impl<D: Device> DeviceServer<D> {
         self.relay.as_ref().map(|relay| relay.pause(now))
     }
 
-    /// The command for the newest state, if it has not come.
+    /// The command that the newest state requires, unless it has arrived.
     pub(super) fn awaits(&self) -> Awaited {
         self.device.awaits()
     }
 
-    /// The same command, if the client has not answered the states that have reached it.
+    /// The command that [`awaits`](Self::awaits) returns, unless the client has answered the states
+    /// that have reached it.
     pub(super) fn awaits_answer(&self) -> Awaited {
         match &self.relay {
             Some(relay) if !relay.is_unanswered() => Awaited::Nothing,
@@ -172,7 +174,8 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// Time at which a network delivers the awaited command to the device, if it is in transit.
+    /// Time at which a network delivers the awaited command to the device, if the command is in
+    /// transit.
     pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
         let awaited = self.awaits() != Awaited::Nothing;
         let relay = self.relay.as_mut().filter(|_| awaited)?;
@@ -186,7 +189,7 @@ impl<D: Device> DeviceServer<D> {
 
     /// Waits, at the device's time `now`, for the [awaited answer](Self::awaits_answer), at most
     /// for `patience` ([`Wait`]). Meanwhile it processes orders and jobs as between two
-    /// milliseconds. Returns false at the end.
+    /// milliseconds. Returns false once the simulation must end.
     pub(super) fn await_command(&mut self, now: Instant, patience: Duration, pace: Pace) -> bool {
         let mut wait = Wait::default();
         loop {
@@ -291,7 +294,7 @@ impl<D: Device> DeviceServer<D> {
     }
 
     /// True if the client has room for all answers to one more order. A disconnected client needs
-    /// none.
+    /// no room.
     fn has_room(&self) -> bool {
         let full =
             |replies: &mpsc::Sender<Bytes>| !replies.is_closed() && replies.capacity() < ANSWERS;
@@ -301,7 +304,7 @@ impl<D: Device> DeviceServer<D> {
             .is_some_and(|(_, replies)| full(replies))
     }
 
-    /// Runs the waiting jobs. Returns false if no more can come: the simulation must end.
+    /// Runs the waiting jobs. Returns false if no more jobs can come; the simulation must then end.
     fn run_jobs(&mut self, now: Instant, pace: Pace) -> bool {
         for _ in 0..ORDERS {
             match self.jobs.try_recv() {
@@ -345,7 +348,8 @@ impl<D: Device> DeviceServer<D> {
     }
 }
 
-/// A client that does not listen loses states; TCP reports when it has disconnected.
+/// Sends a state to the client. A client that does not read loses states; TCP reports a client that
+/// has disconnected.
 fn publish(socket: &UdpSocket, state: &[u8], listener: SocketAddr) {
     let _ = socket.send_to(state, listener);
 }

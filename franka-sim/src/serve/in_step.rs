@@ -15,16 +15,16 @@ struct State {
     members: usize,
     /// Number of members that wait for the others.
     waiting: usize,
-    /// Counts the milliseconds that have begun.
+    /// Number of milliseconds that have begun.
     begun: u64,
 }
 
-/// The part of one robot. It is dropped when the robot ends; from then on no other robot waits for
-/// it.
+/// Membership of one robot in the meeting. Dropping it ends the membership, so no other robot waits
+/// for this robot any longer.
 #[derive(Debug)]
 pub(super) struct InStep(Arc<Meeting>);
 
-/// The parts of `N` robots.
+/// Returns the memberships of `N` robots.
 pub(super) fn in_step<const N: usize>() -> [InStep; N] {
     let state = State {
         members: N,
@@ -39,7 +39,7 @@ pub(super) fn in_step<const N: usize>() -> [InStep; N] {
 }
 
 impl InStep {
-    /// Returns when all other robots that have not ended have arrived.
+    /// Waits until all other robots that have not ended have also called this.
     pub(super) fn meet(&self) {
         let mut state = self.0.state();
         state.waiting += 1;

@@ -5,9 +5,9 @@
 //!            └──────── replies <───── queue <──────┘           (and Hand, VacuumGripper)
 //! ```
 //!
-//! The thread owns robot and UDP socket and keeps the millisecond. A blocked Tokio runtime delays
-//! requests and replies, but no state. A hand and a vacuum gripper have separate listeners, queues
-//! and sockets, and share thread and clock.
+//! The thread owns robot and UDP socket and runs one cycle per millisecond. A blocked Tokio runtime
+//! delays requests and replies, but no state. A hand and a vacuum gripper have separate listeners,
+//! queues and sockets, and share the thread and the clock with the robot.
 //!
 //! | module | content |
 //! |---|---|
@@ -59,7 +59,7 @@ use cycle::Cycle;
 use in_step::InStep;
 use speed::Speed;
 
-/// A robot to simulate: configure it, then [`start`](Self::start).
+/// Builder of a simulated robot. Configure it, then call [`start`](Self::start).
 ///
 /// ```
 /// # #[tokio::main(flavor = "current_thread")]
@@ -72,10 +72,10 @@ use speed::Speed;
 /// ```
 #[derive(Debug)]
 pub struct Sim {
-    /// On the heap, as all large values: builds without optimisation copy moved values, and stacks
-    /// of threads are small.
+    /// On the heap, because builds without optimisation copy moved values, and stacks of threads
+    /// are small.
     config: Box<Config>,
-    /// `None` for the rigid-body plant.
+    /// The physics; `None` for the rigid-body plant.
     plant: Option<Box<dyn Plant>>,
     bind: SocketAddr,
     hand: Option<(Fingers, u16)>,
@@ -86,7 +86,7 @@ pub struct Sim {
     virtual_time: bool,
     /// Longest wait for a late command.
     patience: Duration,
-    /// The network of the arm's interface; `None` is the host's own.
+    /// Network between socket and robot; `None` is the network of the host.
     network: Option<Network>,
     every_millisecond: Option<Hook>,
     after_each_state: Option<Hook>,
@@ -110,7 +110,7 @@ impl Sim {
     }
 
     /// A Franka Emika Robot (Panda) with a [realistic](Arm::realistic) arm and a bare flange in the
-    /// ready pose, on a free port of 127.0.0.1. Its states are as late as a Panda's.
+    /// ready pose, on a free port of 127.0.0.1. Its states arrive with the delays of a real Panda.
     pub fn fer() -> Self {
         Self::realistic(RobotKind::Fer)
     }
@@ -123,8 +123,8 @@ impl Sim {
         })
     }
 
-    /// A robot of this configuration, on a free port of 127.0.0.1. Its arm is ideal if the
-    /// configuration names none.
+    /// A robot of this configuration, on a free port of 127.0.0.1. The arm is ideal if the
+    /// configuration names no arm.
     pub fn new(config: Config) -> Self {
         Self {
             config: Box::new(config),
@@ -163,7 +163,7 @@ impl Sim {
         self
     }
 
-    /// Moves this plant instead of the rigid-body one: see [`Robot::with_plant`].
+    /// Uses this plant instead of the rigid-body plant (the physics): see [`Robot::with_plant`].
     pub fn plant(mut self, plant: impl Plant) -> Self {
         self.plant = Some(Box::new(plant));
         self
@@ -182,14 +182,15 @@ impl Sim {
         self
     }
 
-    /// Simulates the [ideal](Arm::ideal) arm, unlike any real one: for tests that need exactness.
+    /// Simulates the [ideal](Arm::ideal) arm, for tests that need exact results. No real arm is
+    /// like this.
     pub fn ideal(self) -> Self {
         let kind = self.config.kind;
         self.arm(Arm::ideal(kind))
     }
 
-    /// Enforces and serves the joint limits of this system, in place of the arm's own (Franka
-    /// Research 3 only).
+    /// Enforces and serves the joint limits of this system version, in place of the arm's own
+    /// (Franka Research 3 only).
     pub fn limits(mut self, limits: SystemLimits) -> Self {
         let mut arm = self.config.chosen_arm();
         arm.limits = limits;
@@ -215,7 +216,7 @@ impl Sim {
     /// Serves a Franka Hand in addition to the robot, on this TCP port; 0 takes a free one.
     ///
     /// Hands listen on 1338. [`Tool::hand`] has the mass and frame of the hand; mount it with
-    /// [`tool`](Self::tool). If the [plant](Self::plant) has fingers, they are the hand's.
+    /// [`tool`](Self::tool). If the [plant](Self::plant) has fingers, the hand moves them.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self
@@ -228,87 +229,87 @@ impl Sim {
         self
     }
 
-    /// Requests a real-time priority (SCHED_FIFO) for the thread that keeps the millisecond.
-    /// Without the right to one, or on systems other than Linux, the thread logs that and continues
+    /// Requests a real-time priority (SCHED_FIFO) for the simulator's thread. If the user has no
+    /// right to it, or on systems other than Linux, the thread logs a warning and continues
     /// without.
     pub fn realtime(mut self, realtime: bool) -> Self {
         self.realtime = realtime;
         self
     }
 
-    /// Follows the wall clock even if the host delays the simulator. States that are due then come
-    /// in a burst, and answers that come too late for them count as lost. By default the clock
-    /// slips instead: see [`Pace`].
+    /// Follows the wall clock even if the host delays the simulator. Due states then arrive in a
+    /// burst, and answers that come too late count as lost. By default the clock slips instead: see
+    /// [`Pace`].
     pub fn strict_clock(mut self, strict: bool) -> Self {
         self.strict_clock = strict;
         self
     }
 
-    /// Advances robot time as fast as the client answers, instead of by the wall clock: for tests
-    /// and for programs that learn.
+    /// Advances robot time as fast as the client answers, instead of by the wall clock. Use it for
+    /// tests and for programs that learn.
     ///
     /// * In a motion in which every state requires an answer, the next millisecond begins as soon
-    ///   as the answer to the last state arrives. No command is late, up to `patience`. After that
-    ///   the cycle counts as lost, so a silent client is detected after 20 times that time. Time
-    ///   for which the host delays the simulator hardly counts, unless the client has received
-    ///   nothing for half a second. Half a second is a good choice for `patience`. A client that
-    ///   reads two states in a row, and so skips an answer, waits that long for the second.
-    ///   libfranka considers a connection lost after a second without a state.
+    ///   as the answer to the last state arrives. No command is late, up to `patience`. After
+    ///   `patience`, the cycle counts as lost; a silent client is thus detected after 20 times
+    ///   `patience`. Time for which the host delays the simulator hardly counts, unless the client
+    ///   has received nothing for half a second. Half a second is a good choice for `patience`. A
+    ///   client that skips an answer and reads a second state waits for `patience`. libfranka
+    ///   considers a connection lost after a second without a state.
     /// * Otherwise up to ten states come per millisecond on the wall clock: at rest, while braking,
     ///   in a recovery, while a hand grasps, and in an asynchronous motion. A client that is too
     ///   slow misses some of them.
     ///
     /// The times of a [`network`](Self::network) are in robot time, in which the client needs no
-    /// time to answer. If a client counts seconds by a separate clock instead of the states, they
-    /// differ from the robot's seconds. [`Running::set_speed`] slows robot time down, and pauses
-    /// it.
+    /// time to answer. A client that measures time by another clock than the states sees other
+    /// times than the robot. [`Running::set_speed`] slows robot time down, and pauses it.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;
         self
     }
 
-    /// Waits for late commands, each up to `patience`, and stops the clock meanwhile: for clients
-    /// on a busy machine, or on the simulator's machine. Devices that require no command continue
-    /// by the wall clock, and nothing is faster than the wall clock.
+    /// Waits for late commands, each up to `patience`, and stops the clock meanwhile. Use it for
+    /// clients on a busy machine, or on the simulator's machine. Devices that require no command
+    /// follow the wall clock, and no device runs faster.
     pub fn wait_for_commands(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
     }
 
     /// Passes states and commands through this network, in addition to the network between the
-    /// sockets. Its time begins with the robot's start.
+    /// sockets. The network's time begins with the robot's start.
     ///
-    /// Datagrams arrive up to 0.2 ms later than in the network, because of the host's precision of
-    /// sleeping, but not in [virtual time](Self::virtual_time). The thread then checks them ten
-    /// times a millisecond. The command connections of the robot and of a hand are not affected.
+    /// Datagrams arrive up to 0.2 ms later than the network prescribes, because the host's sleep is
+    /// not exact. The thread checks the network ten times a millisecond. [Virtual
+    /// time](Self::virtual_time) has no such delay. The command connections of the robot and of a
+    /// hand are not affected.
     pub fn network(mut self, network: Network) -> Self {
         self.network = Some(network);
         self
     }
 
-    /// Runs `job` on the robot before each of its milliseconds, including the first, with any
-    /// clock: to observe and disturb it in its own time. The thread that keeps the millisecond runs
-    /// it, so it should not take long.
+    /// Runs `job` on the robot before each of the robot's milliseconds, including the first. Use it
+    /// to observe or disturb the robot in robot time, with any clock. The simulator's thread runs
+    /// `job`, so `job` must be short.
     pub fn every_millisecond(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.every_millisecond = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Runs `job` on the robot each time that one of its states has been handed to the kernel, or
-    /// would have been with a client: to record the time. It runs on the same thread as
+    /// Runs `job` on the robot each time that a state has been passed to the kernel, or would have
+    /// been with a client. Use it to record the time. `job` runs on the same thread as in
     /// [`Self::every_millisecond`].
     pub fn after_each_state(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.after_each_state = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Makes these robots begin each of their milliseconds together, with any clock: if one waits
-    /// for a command, all wait for it. For arms in one world, and for programs that compare robots.
-    /// The robots do not wait for a robot that has stopped, or whose `Sim` was dropped.
+    /// Makes these robots begin each of their milliseconds together, with any clock. If one robot
+    /// waits for a command, all wait. Use it for arms in one world, and for programs that compare
+    /// robots. The robots do not wait for a robot that has stopped, or whose `Sim` was dropped.
     ///
-    /// Start all of them before you connect to one or stop one: until then their time does not
-    /// advance.
+    /// Start all robots before you connect to one or stop one. Their time does not advance before
+    /// all have started.
     pub fn in_step<const N: usize>(mut sims: [Self; N]) -> [Self; N] {
         for (sim, part) in sims.iter_mut().zip(in_step::in_step::<N>()) {
             sim.in_step = Some(part);
@@ -316,15 +317,15 @@ impl Sim {
         sims
     }
 
-    /// Starts the robot. Must be called within a Tokio runtime with I/O and time enabled; any
-    /// number of robots may run in one process.
+    /// Starts the robot. Call this within a Tokio runtime with I/O and time enabled. Any number of
+    /// robots may run in one process.
     ///
     /// # Errors
-    /// If a socket cannot be bound or the thread cannot be started. Also for virtual time without
-    /// patience, in which every command would be late.
+    /// An error if a socket cannot be bound or the thread cannot be started. Virtual time with a
+    /// `patience` of zero is also an error, because every command would be late.
     ///
     /// # Cancel safety
-    /// Dropping the future before it completes leaves nothing behind.
+    /// Dropping the future before it completes closes all sockets and starts no robot.
     pub async fn start(self) -> io::Result<Running> {
         if self.virtual_time && self.patience.is_zero() {
             let what = "the patience of virtual time is 0 s, expected more than 0 s";
@@ -390,8 +391,8 @@ impl Sim {
     }
 }
 
-/// The robot of this configuration, with the rigid-body plant by default. An async function would
-/// hold the robot in its future.
+/// Builds the robot of this configuration, with the rigid-body plant by default. This is not an
+/// async function, because that would hold the robot in its future.
 fn robot(config: Box<Config>, plant: Option<Box<dyn Plant>>) -> Box<Robot> {
     Box::new(match plant {
         Some(plant) => Robot::with_plant(*config, plant),

@@ -13,7 +13,7 @@ use tokio::time::sleep;
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// Largest number of connections that may be pending. The next one closes the oldest, so that
+/// Largest number of connections that may be pending. A further connection closes the oldest, so
 /// silent connections never block a client.
 const MAX_PENDING: usize = 64;
 
@@ -21,15 +21,15 @@ const MAX_PENDING: usize = 64;
 const RETRY: Duration = Duration::from_millis(100);
 
 /// Silence after which the client's host is probed, and the number of probes before it counts as
-/// gone. The figures are libfranka's, which probes the robot.
+/// gone. The figures are those with which libfranka probes the robot.
 const KEEPALIVE: (Duration, u32) = (Duration::from_secs(1), 3);
 
 /// A connection whose first message has arrived.
 pub(super) struct Handshake {
     pub(super) stream: TcpStream,
     pub(super) peer: SocketAddr,
-    /// Bytes read from the stream: the message, or a prefix that can never become one, and possibly
-    /// more.
+    /// Bytes read from the stream. They begin with a message, or with bytes that can never become
+    /// one; more bytes may follow.
     pub(super) received: BytesMut,
 }
 

@@ -3,7 +3,7 @@
 /// Raises the calling thread to a real-time priority.
 ///
 /// # Errors
-/// The host's error: in practice, the user has no right to real-time priority.
+/// The host's error. In practice, the user has no right to real-time priority.
 #[cfg(target_os = "linux")]
 pub(super) fn raise() -> std::io::Result<()> {
     // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value. musl
@@ -25,13 +25,13 @@ pub(super) fn raise() -> std::io::Result<()> {
     }
 }
 
-/// Other systems have no such priority.
+/// Fails: systems other than Linux have no such priority.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn raise() -> std::io::Result<()> {
     Err(std::io::ErrorKind::Unsupported.into())
 }
 
-/// In the middle of the range (1 to 99), so that a client on the same host may have a higher
+/// Priority in the middle of the range (1 to 99). A client on the same host may thus have a higher
 /// priority.
 #[cfg(target_os = "linux")]
 const PRIORITY: i32 = 50;

@@ -5,13 +5,14 @@ use std::time::{Duration, Instant};
 
 use crate::network::Network;
 
-/// A network in the time of the thread's clock, and its destination.
+/// A network that runs on the time of the thread's clock, and the client to which it delivers
+/// states.
 #[derive(Debug)]
 pub(super) struct Relay {
     network: Network,
     /// Start of the network's time.
     origin: Instant,
-    /// The latest time seen, since the network's time must not run backwards.
+    /// Latest time seen. The network's time must not run backwards.
     latest: Duration,
     /// Address of the client, once a state has been sent to it.
     listener: Option<SocketAddr>,
@@ -21,7 +22,7 @@ pub(super) struct Relay {
     asking: Option<u64>,
     /// `message_id` of the newest state that has reached the client.
     newest: Option<u64>,
-    /// True if a command that answers that state has been read from the socket.
+    /// True if a command that answers the newest state has been read from the socket.
     answered: bool,
 }
 
@@ -39,8 +40,8 @@ impl Relay {
         }
     }
 
-    /// Runs `job` on the network of a relay, if any, at that network's time. A relay begins and
-    /// ends with its network.
+    /// Runs `job` on the network of a relay, if any, at that network's time. `job` may add or
+    /// remove the network; the relay begins and ends with it.
     pub(super) fn change<R>(
         relay: &mut Option<Self>,
         now: Instant,
@@ -78,7 +79,7 @@ impl Relay {
         self.network.to_client.send(time, datagram);
     }
 
-    /// Records if the last state requires a command.
+    /// Records whether the last state requires a command.
     pub(super) fn note_asking(&mut self, asks: bool) {
         self.asking = if asks {
             self.asking.or(self.sent)
@@ -87,7 +88,7 @@ impl Relay {
         };
     }
 
-    /// The next state that has arrived, and its destination.
+    /// Returns the next state that has arrived, and its destination.
     pub(super) fn take_state(&mut self, now: Instant) -> Option<(Vec<u8>, SocketAddr)> {
         let time = self.time(now);
         let delivery = self.network.to_client.take(time)?;
@@ -105,7 +106,7 @@ impl Relay {
         self.network.to_robot.send(time, datagram);
     }
 
-    /// The next command that has arrived.
+    /// Returns the next command that has arrived.
     pub(super) fn take_command(&mut self, now: Instant) -> Option<Vec<u8>> {
         let time = self.time(now);
         let delivery = self.network.to_robot.take(time)?;
@@ -119,13 +120,14 @@ impl Relay {
         (self.newest, self.answered) = (None, false);
     }
 
-    /// True if the client has a state that requires a command and has not answered its newest
-    /// state.
+    /// True if the client has received a state that requires a command and has not answered its
+    /// newest state.
     pub(super) fn is_unanswered(&self) -> bool {
         self.asking.is_some() && self.newest >= self.asking && !self.answered
     }
 
-    /// Time at which the answer to that state arrives, if it is in transit and soon to arrive.
+    /// Time at which the answer to the client's newest state arrives, if the answer is in transit
+    /// and arrives soon.
     pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
         let soon = self.time(now) + ON_ITS_WAY_MAX;
         let next = self
@@ -142,8 +144,8 @@ impl Relay {
         next.map(|at| self.origin + at)
     }
 
-    /// Time until the relay must run again: until the next state arrives, and only briefly, since
-    /// the arrival of a command counts from its reading.
+    /// Time until the relay must run again. It ends when the next state arrives. It is always
+    /// short, because a command's transit time begins when the relay reads the command.
     pub(super) fn pause(&self, now: Instant) -> Duration {
         let next = self.next_arrival();
         let left = next.map(|at| at.saturating_duration_since(now));
@@ -160,5 +162,5 @@ fn message_id(datagram: &[u8]) -> Option<u64> {
 /// network, not because of the client.
 const ON_ITS_WAY_MAX: Duration = Duration::from_micros(500);
 
-/// Time between two checks of the socket, which is about the additional delay of datagrams.
+/// Time between two checks of the socket. Datagrams are delayed by about this time.
 const RELAY_POLL: Duration = Duration::from_micros(100);

@@ -14,16 +14,16 @@ use crate::end_effector::{Hand, VacuumGripper};
 use crate::network::Network;
 use crate::robot::Robot;
 
-/// A running simulated robot. Dropping it stops the simulation within a cycle or two and closes its
-/// sockets.
+/// A running simulated robot. Dropping this value stops the simulation within a cycle or two and
+/// closes its sockets.
 #[derive(Debug)]
 pub struct Running {
     pub(super) robot: Service<Robot>,
     pub(super) hand: Option<Service<Hand>>,
     pub(super) vacuum_gripper: Option<Service<VacuumGripper>>,
-    /// `None` without virtual time.
+    /// Speed of robot time; `None` without virtual time.
     pub(super) speed: Option<Speed>,
-    /// Closed by any end of the thread.
+    /// Closed when the thread ends for any reason.
     pub(super) finished: watch::Receiver<()>,
 }
 
@@ -43,8 +43,8 @@ impl Running {
         self.vacuum_gripper.as_ref()
     }
 
-    /// Runs `job` on the robot between two milliseconds, as [`Service::with`] does: push it, press
-    /// its stop, close its brakes, read it.
+    /// Runs `job` on the robot between two milliseconds, as [`Service::with`] does. For example,
+    /// `job` can push the arm, press the user stop, close the brakes, or read the robot.
     ///
     /// ```
     /// # use franka_sim::{Sim, Touch};
@@ -69,10 +69,10 @@ impl Running {
         self.robot.with(job).await
     }
 
-    /// Runs `job` between two milliseconds on the network that states and commands pass: see
-    /// [`Sim::network`]. `None` is the host's own network. `job` also receives the network's time,
-    /// which begins with the robot's start, or with the first network. Replacing a network loses
-    /// the datagrams in transit.
+    /// Runs `job` between two milliseconds on the simulated network that states and commands pass:
+    /// see [`Sim::network`]. `None` means no simulated network, only the host's own. `job` also
+    /// receives the network's time. This time begins with the robot's start, or with the first
+    /// network. Replacing a network loses the datagrams in transit.
     ///
     /// ```
     /// # use std::time::Duration;
@@ -114,7 +114,7 @@ impl Running {
         self.with(|robot| *robot.state()).await
     }
 
-    /// Timing record of the thread so far.
+    /// Timing record of the simulator's thread so far.
     ///
     /// # Errors
     /// See [`with`](Self::with).
@@ -125,8 +125,8 @@ impl Running {
         self.robot.pace().await
     }
 
-    /// Completes when the simulation has ended without a request. Only a panic causes that: in the
-    /// simulator, or in a function passed to [`with`](Self::with) or [`Sim::every_millisecond`].
+    /// Completes when the simulation has ended by itself. Only a panic causes this, in the
+    /// simulator or in a function passed to [`with`](Self::with) or [`Sim::every_millisecond`].
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.

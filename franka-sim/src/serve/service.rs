@@ -23,13 +23,13 @@ pub struct Service<D> {
     server: JoinHandle<()>,
 }
 
-/// The simulation has ended.
+/// Error: the simulation has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the simulated robot has stopped")]
 pub struct Stopped;
 
 /// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name
-/// the address, since several exist.
+/// the address, because a simulation has several.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
     device: Box<D>,
@@ -59,8 +59,8 @@ impl<D: 'static> Service<D> {
         self.address
     }
 
-    /// Runs `job` on the device between two milliseconds. It runs on the thread that keeps the
-    /// cycle, so it should not take long.
+    /// Runs `job` on the device between two milliseconds. `job` runs on the simulator's thread, so
+    /// it must be short.
     ///
     /// # Errors
     /// [`Stopped`] if the simulation has ended, which only a panic in another `job` causes.
@@ -123,6 +123,6 @@ impl<D> Drop for Service<D> {
     }
 }
 
-/// Number of messages of the client, and of jobs, that may wait for the thread, which processes
-/// some of them every millisecond.
+/// Number of client messages, and of jobs, that may wait for the thread. The thread processes some
+/// of them every millisecond.
 const QUEUE: usize = 64;

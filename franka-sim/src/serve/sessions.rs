@@ -1,4 +1,4 @@
-//! Sessions of clients: one at a time, and a second client is refused.
+//! Sessions of clients. A device has one client at a time and refuses a second.
 //!
 //! ```text
 //! pending ── handshake is whole ──> waits a moment ── device is free ──> session
@@ -21,12 +21,12 @@ use super::pending::{Handshake, PendingConnections};
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// Longest time for which a client may leave no room for a reply. A client that does not read must
-/// not block others.
+/// Longest time for which a client may leave no room for a reply in its queue. A client that does
+/// not read must not block others.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Time that a second client waits for the first to disconnect. A client that reconnects arrives a
-/// moment before its old connection is closed.
+/// Time that a second client waits for the first to disconnect. A client that reconnects may arrive
+/// before its old connection is closed.
 const HANDOVER: Duration = Duration::from_millis(50);
 
 /// Serves clients until the thread has ended or the task is aborted.
@@ -67,8 +67,8 @@ pub(super) async fn serve(
     }
 }
 
-/// Refuses a second client by a reset, which every client accepts as the end of the connection.
-/// After an orderly end, libfranka 0.21 waits indefinitely for its first answer.
+/// Refuses a second client by resetting its connection. Every client accepts a reset as the end.
+/// After an orderly close, libfranka 0.21 waits indefinitely for its first answer.
 fn refuse(second: Handshake, name: &str) {
     let peer = second.peer;
     tracing::warn!(%peer, "refused: the {name} already has a client");
@@ -101,7 +101,7 @@ async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, 
     tracing::info!(%peer, "client of the {name} disconnected");
 }
 
-/// Moves messages in both directions until either side is done.
+/// Moves messages in both directions until the client or the device ends the session.
 async fn transfer(
     handshake: Handshake,
     orders: &mpsc::Sender<Order>,

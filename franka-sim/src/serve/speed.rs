@@ -7,27 +7,27 @@ use std::time::{Duration, Instant};
 use super::Running;
 use super::clock::PERIOD;
 
-/// Duration of a millisecond of the paused robot, on the wall clock. Clients consider a connection
-/// lost after a second without a state.
+/// Duration of one robot millisecond while the robot is paused, on the wall clock. Clients consider
+/// a connection lost after a second without a state.
 const PAUSED_PERIOD: Duration = Duration::from_millis(400);
 
-/// The longest sleep: a new speed takes effect after it.
+/// Longest sleep. A new speed takes effect at the latest after this time.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Largest lag of robot time behind its speed that it still catches up.
+/// Largest lag of robot time that the simulator still makes up for.
 const BEHIND_MAX: Duration = Duration::from_millis(20);
 
 /// Reason why the speed of robot time was not set.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpeedError {
-    /// Robot time follows the wall clock.
+    /// Robot time follows the wall clock, because the robot was not started in virtual time.
     #[error(
         "the simulated robot runs in wall-clock time, expected virtual time: start it with \
          virtual time to change its speed"
     )]
     WallClock,
-    /// The speed is not possible.
+    /// The requested speed is neither 0 nor in the range of possible speeds.
     #[error(
         "the speed is {got}, expected 0 (a pause) or {} to {}",
         Running::SPEED_MIN,
@@ -40,16 +40,17 @@ pub enum SpeedError {
 }
 
 impl Running {
-    /// The slowest speed of robot time except a pause.
+    /// Slowest speed of robot time except a pause, as a factor of the wall clock.
     pub const SPEED_MIN: f64 = 0.01;
 
-    /// The fastest speed of robot time that can be set, except the client's own speed.
+    /// Fastest speed of robot time that can be set, as a factor of the wall clock. `None` may be
+    /// faster.
     pub const SPEED_MAX: f64 = 10.0;
 
-    /// In [virtual time](super::Sim::virtual_time), makes robot time pass `speed` times as fast as
-    /// the wall clock, if host and client are fast enough. `None`, as at the start, makes it pass
-    /// as fast as the client answers. 0 is a pause: a millisecond of the robot lasts 400 ms, so
-    /// that no client considers the connection lost.
+    /// Sets the speed of robot time in [virtual time](super::Sim::virtual_time), as a factor of the
+    /// wall clock. Host and client may be slower. With `None`, the default, robot time advances as
+    /// fast as the client answers. 0 is a pause: a millisecond of the robot lasts 400 ms, so no
+    /// client considers the connection lost.
     ///
     /// # Errors
     /// [`SpeedError`]: the speed is unchanged.
@@ -68,14 +69,14 @@ impl Running {
         self.speed.as_ref().and_then(Speed::get)
     }
 
-    /// True if it runs in [virtual time](super::Sim::virtual_time), in which
+    /// True if the robot runs in [virtual time](super::Sim::virtual_time), in which
     /// [`Self::set_speed`] can be called.
     pub fn is_in_virtual_time(&self) -> bool {
         self.speed.is_some()
     }
 }
 
-/// The bits of the speed; infinite for the client's own speed. Clones share the value.
+/// Bits of the speed; infinity stands for the speed of the client. Clones share the value.
 #[derive(Clone, Debug)]
 pub(super) struct Speed(Arc<AtomicU64>);
 
@@ -119,8 +120,8 @@ impl Pacer {
         Self { speed, begun }
     }
 
-    /// Sleeps until the next millisecond of the robot is due. Returns false at once if it is due as
-    /// soon as the client has answered.
+    /// Sleeps until the next millisecond of the robot is due. Returns false immediately if the next
+    /// millisecond begins as soon as the client has answered.
     pub(super) fn wait(&mut self) -> bool {
         loop {
             let now = Instant::now();

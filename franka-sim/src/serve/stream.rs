@@ -10,7 +10,7 @@ use tokio::time::{Instant, timeout_at};
 use crate::connection::Framing;
 
 /// Time limits for a message. Clients write each message in one piece. A message that stops in the
-/// middle must not block other clients, and one on a slow network must not be interrupted.
+/// middle must not block other clients. A message on a slow network must not be interrupted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patience {
     /// Longest time to the first byte of a message; no limit if absent.
@@ -22,31 +22,31 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// Limits for the requests of a session, between which a client may rest.
+    /// Limits for the requests of a session. A client may pause between requests.
     pub(super) const SESSION: Self = Self {
         first: None,
         gap: Duration::from_millis(300),
         total: Duration::from_secs(5),
     };
 
-    /// Limits for the handshake, which clients send at once.
+    /// Limits for the handshake. Clients send it immediately.
     pub(super) const HANDSHAKE: Self = Self {
         first: Some(Duration::from_secs(1)),
         ..Self::SESSION
     };
 }
 
-/// Reason why no more messages come.
+/// Reason why no more messages arrive.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum StreamEnd {
     /// The stream has ended.
     Closed,
-    /// The stream was slower than the patience.
+    /// The stream was slower than the time limits.
     TooSlow,
 }
 
-/// Waits until `received` begins with a whole message, or with bytes that can never become one, so
-/// that the device has input. Returns its length.
+/// Waits until `received` begins with a whole message, or with bytes that can never become a
+/// message. Returns the length of this input for the device.
 ///
 /// # Cancel safety
 /// Dropping the future loses nothing: the bytes read stay in `received`.

@@ -17,12 +17,12 @@ pub enum Distribution {
     /// Uniform, from `low` to `high`.
     #[allow(missing_docs)] // the fields are the ends
     Uniform { low: Values, high: Values },
-    /// Gaussian, with a root mean square of `rms` about `mean`.
+    /// Gaussian distribution with mean `mean` and standard deviation `rms`.
     #[allow(missing_docs)] // the fields are in the text
     Normal { mean: Values, rms: Values },
 }
 
-/// A number for all joints, or one for each.
+/// One number for all joints, or one number per joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
 pub enum Values {
@@ -70,7 +70,7 @@ impl fmt::Display for Bounds {
 }
 
 impl Distribution {
-    /// The two numbers of a distribution, or one of them twice.
+    /// The two numbers of a distribution; a constant is returned twice.
     fn numbers(&self) -> [Values; 2] {
         match *self {
             Self::Constant(value) => [value, value],
@@ -79,7 +79,7 @@ impl Distribution {
         }
     }
 
-    /// Checks that all its possible values are within the bounds.
+    /// Checks that all possible values of the distribution are within the bounds.
     pub(super) fn check(&self, field: &'static str, bounds: Bounds) -> Result<(), FamilyError> {
         let invalid = |got: String, expected: &dyn fmt::Display| {
             Err(FamilyError::Invalid {
@@ -122,7 +122,7 @@ impl Distribution {
         Ok(())
     }
 
-    /// Refuses values per joint for a parameter that an arm has once.
+    /// Refuses a distribution per joint for a parameter that an arm has only once.
     pub(super) fn check_single(&self, field: &'static str) -> Result<(), FamilyError> {
         let seven = |values: &Values| matches!(values, Values::Seven(_));
         match self.numbers().iter().any(seven) {

@@ -26,8 +26,8 @@ struct Bristle {
     deflection: f64,
 }
 
-/// A friction torque that is taken implicitly: at a velocity that is `a` higher at the end of the
-/// step, it is `slope · a` higher.
+/// A friction torque for an implicit step. If the velocity at the end of the step rises by `a`, the
+/// torque rises by `slope · a`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tangent {
     /// `[N·m]`
@@ -37,7 +37,8 @@ pub(super) struct Tangent {
 }
 
 impl Contact {
-    /// This share of the friction of joint `i`, with unloaded bristles; `None` for no share.
+    /// Returns this share of the friction of joint `i`, with unloaded bristles; `None` if the share
+    /// is zero.
     pub(super) fn new(friction: &Friction, i: usize, share: f64) -> Option<Self> {
         (share > 0.0).then(|| Self {
             static_torque: friction.static_torque[i] * share,
@@ -58,12 +59,12 @@ impl Contact {
         }
     }
 
-    /// The torque over a step of `dt` seconds that begins at the velocity `v`, for a side with at
-    /// least the inertia `inertia`.
+    /// Returns the torque over a step of `dt` seconds that begins at the velocity `v`, for a side
+    /// with at least the inertia `inertia`.
     ///
-    /// In a stuck side, the torque is the bristles' torque at the end of the step. In a sliding
-    /// side, it follows the Stribeck curve. The slope keeps a side that stops within the step
-    /// inside the range in which it sticks.
+    /// While a side sticks, its torque is the bristles' torque at the end of the step. While it
+    /// slides, its torque follows the Stribeck curve. The slope keeps a side that stops within the
+    /// step inside the range in which it sticks.
     pub(super) fn tangent(&self, v: f64, inertia: f64, dt: f64) -> Tangent {
         let Some(bristle) = &self.bristle else {
             let shape = (v / self.stribeck_speed).tanh();

@@ -8,21 +8,21 @@
 //! The plant solves `(M + inertia + dt·damping + slope) q̈ = torque + external − bias − stops` with
 //! the torque, inertia and damping of [`LinkTorque`], and the torque and slope of [`External`].
 //!
-//! With rigid joints the apparent rotor inertia `B` and all friction act on the link. With elastic
-//! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with
-//! `s = h·D + h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and
-//! link is
+//! With rigid joints, the apparent rotor inertia `B` and all friction act on the link. With elastic
+//! joints of stiffness `K` and damping `D`, the step is implicit. Over `h` seconds, with `s = h·D +
+//! h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and link is
 //!
 //! ```text
 //! T = T0 + s (τ − f − T0)/(B + s) − (s B/(B + s)) q̈
 //! ```
 //!
-//! for a motor torque `τ` less its friction `f`: a known torque and an inertia, which is `B` for a
-//! stiff spring. The plant's acceleration then determines the rotor's acceleration.
+//! for a motor torque `τ` minus its friction `f`. The plant thus sees a known torque and an
+//! inertia, which is `B` for a stiff spring. The plant's acceleration then determines the rotor's
+//! acceleration.
 //!
 //! The torque loop makes `T` follow the command with a proportional gain `k` from a sensor without
 //! delay. The apparent rotor inertia is then `B/(1 + k)`, and disturbances of the rotor shrink by
-//! the same factor. Friction and ripple are given as they oppose a command, after this reduction.
+//! the same factor. The parameters of friction and ripple already include this reduction.
 
 mod contact;
 #[cfg(test)]
@@ -34,10 +34,10 @@ use super::{External, Plant};
 use crate::arm::{Arm, Drive};
 use contact::{Contact, Tangent};
 
-/// Effect of the drives on the links over one step: `torque − (inertia + dt·damping) · q̈`.
+/// Effect of the drives on the links in one step: `torque − (inertia + dt·damping) · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkTorque {
-    /// `[N·m]`
+    /// Torque on the links, `[N·m]`.
     pub torque: JointVector,
     /// Inertia that turns with the links, `[kg·m²]`.
     pub inertia: JointVector,
@@ -54,7 +54,7 @@ pub struct DriveTrain {
     motor_contacts: [Option<Contact>; 7],
     link_contacts: [Option<Contact>; 7],
     /// Angle and velocity of the motors, as angles of the joints. With rigid joints they equal the
-    /// links'.
+    /// values of the links.
     theta: JointVector,
     dtheta: JointVector,
     /// Torques between gears and links over the last step.
@@ -62,8 +62,8 @@ pub struct DriveTrain {
 }
 
 impl DriveTrain {
-    /// The drives of `arm` at rest, with links at `q`, `[rad]`, supported by the torques `holding`,
-    /// `[N·m]`.
+    /// Returns the drives of `arm` at rest, with links at `q`, `[rad]`. The torques `holding`,
+    /// `[N·m]`, support the links.
     pub fn new(arm: &Arm, q: &JointVector, holding: &JointVector) -> Self {
         let contacts = |share: &dyn Fn(f64) -> f64| {
             std::array::from_fn(|i| {
@@ -84,7 +84,7 @@ impl DriveTrain {
         train
     }
 
-    /// Puts the drives at rest, with unloaded bristles.
+    /// Sets the drives to rest at `q`, with unloaded bristles.
     pub fn rest(&mut self, q: &JointVector, holding: &JointVector) {
         self.theta = q + self.deflection(holding);
         self.dtheta = JointVector::zeros();
@@ -101,8 +101,8 @@ impl DriveTrain {
         &self.torque
     }
 
-    /// Angles of the motors as angles of the joints, `[rad]`: the links' angles plus the deflection
-    /// of elastic joints.
+    /// Angles of the motors as angles of the joints, `[rad]`: the angles of the links plus the
+    /// deflection of elastic joints.
     pub fn theta(&self) -> &JointVector {
         &self.theta
     }
@@ -112,8 +112,8 @@ impl DriveTrain {
         &self.dtheta
     }
 
-    /// Apparent rotor inertia at the joints, `[kg·m²]`, which controllers must accelerate together
-    /// with the links.
+    /// Apparent rotor inertia at the joints, `[kg·m²]`. Controllers must accelerate this inertia
+    /// together with the links.
     pub fn felt_inertia(&self) -> &JointVector {
         &self.felt_inertia
     }
@@ -130,8 +130,8 @@ impl DriveTrain {
             .map_or(rigid, |stiffness| torque.component_div(&stiffness))
     }
 
-    /// Advances drives and plant by `dt` seconds under the commanded torques, gravity included,
-    /// `[N·m]`, and under external torques.
+    /// Advances drives and plant (the physics of the links) by `dt` seconds. The commanded torques,
+    /// `[N·m]`, include gravity; external torques act in addition.
     pub fn step(
         &mut self,
         plant: &mut dyn Plant,
@@ -171,8 +171,8 @@ impl DriveTrain {
         }
     }
 
-    /// The step of joint `i` under the motor torque `motor`, to the extent known before the plant's
-    /// step.
+    /// The step of joint `i` under the motor torque `motor`, as far as it is known before the
+    /// plant's step.
     fn joint(&self, i: usize, motor: f64, q: f64, dq: f64, dt: f64) -> JointStep {
         let rotor = self.felt_inertia[i];
         let tangent = |contact: &Option<Contact>, v: f64, inertia: f64| {
@@ -219,7 +219,7 @@ impl DriveTrain {
     }
 }
 
-/// One step of one joint: the torque between gear and link is `torque − sensed_inertia · q̈`.
+/// One step of one joint. The torque between gear and link is `torque − sensed_inertia · q̈`.
 #[derive(Debug, Clone, Copy, Default)]
 struct JointStep {
     /// `[N·m]`

@@ -10,8 +10,8 @@ use super::scene::{SceneError, joint};
 use crate::plant::FingerDrive;
 
 /// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh
-/// (`franka_description` 1.0.1, `hand`); the mesh protrudes by up to 15 mm, which is not added
-/// here, because the fingers leave the body below that.
+/// (`franka_description` 1.0.1, `hand`). The mesh protrudes by up to 15 mm. The capsule does not
+/// include this, because the fingers leave the body closer to it.
 pub(super) const HAND: Capsule =
     Capsule::new([-0.0007, -0.0702, 0.0228], [0.0001, 0.0673, 0.0254], 0.0363);
 
@@ -126,7 +126,7 @@ const FINGER_HEIGHT: f64 = 0.0584;
 
 /// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: the least that MuJoCo
 /// accepts. The load of [`Tool::hand`](crate::Tool::hand) includes the fingers' weight, and nearly
-/// all their inertia against sliding is the motor's.
+/// all the inertia against their sliding comes from the motor.
 const NEXT_TO_NOTHING: f64 = 1e-12;
 
 /// Inertia of the motor at each finger, `[kg]`. A choice of this simulator, without a source.
@@ -143,9 +143,9 @@ const BOXES: &str = "\
     <geom type='box' size='0.00875 0.0076 0.00925' pos='0 0.00758 0.04525' condim='4' \
     friction='0 0.005 0.0001' solref='0.005 1' solimp='0.95 0.99 0.001' solmix='100'/>";
 
-/// Gains of the motor's speed controller; choices of this simulator: desired speed per remaining
-/// distance, `[1/s]`; force per speed error, `[N·s/m]`, and per position error, `[N/m]`. A blocked
-/// finger has built up 70 N after 0.2 s.
+/// Gains of the motor's speed controller, chosen for this simulator. They are the desired speed per
+/// remaining distance, `[1/s]`, and the force per speed error, `[N·s/m]`, and per position error,
+/// `[N/m]`. The force on a blocked finger reaches 70 N after 0.2 s.
 const APPROACH: f64 = 30.0;
 const PROPORTIONAL: f64 = 100.0;
 const INTEGRAL: f64 = 6000.0;

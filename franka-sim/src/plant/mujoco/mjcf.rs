@@ -83,7 +83,7 @@ pub(super) fn arm(
 /// The capsules of the links, each in the frame of its link.
 struct Shapes {
     capsules: Vec<(Body, Capsule)>,
-    /// Links that can meet.
+    /// Pairs of links that can touch each other.
     pairs: BTreeSet<(Body, Body)>,
 }
 
@@ -173,8 +173,8 @@ pub(super) fn write_capsule(text: &mut String, name: &str, capsule: &Capsule) {
     );
 }
 
-/// Mass and principal moments. MuJoCo's own search for the principal axes is accurate to eight
-/// digits only.
+/// Writes mass and principal moments. MuJoCo's own search for the principal axes is accurate to
+/// eight digits only.
 fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>) {
     let symmetric = (inertia + inertia.transpose()) / 2.0;
     let principal = symmetric.symmetric_eigen();

@@ -1,4 +1,4 @@
-//! The arm in MuJoCo: among objects that it touches, with fingers that grasp by friction.
+//! The arm in MuJoCo, with objects that it touches and fingers that grasp by friction.
 
 mod fingers;
 mod mjcf;
@@ -24,15 +24,16 @@ use scene::{JOINT, Places};
 /// MuJoCo, with the end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a
 /// [`Scene`].
 ///
-/// Without contact it is the same arm: each step solves the same equation in the same way, with
-/// MuJoCo's own inertia and bias forces. Drives and end stops enter as forces, and their slopes as
-/// dampers that the integrator treats implicitly. External action enters in the same way, but a
-/// greater, diagonal slope replaces its slope. While something firm touches the arm, the inertia of
-/// the joints is therefore up to 0.2 kg·m² higher.
+/// Without contact, this arm moves as a `RigidArm`. Each step solves the same equation in the same
+/// way, with MuJoCo's own inertia and bias forces. Drives and end stops enter as forces, and their
+/// slopes enter as dampers that the integrator treats implicitly. External action enters in the
+/// same way, but a larger diagonal matrix replaces its slope. While something firm touches the arm,
+/// the inertia of the joints is therefore up to 0.2 kg·m² higher.
 ///
-/// The links touch their surroundings, and the outer links the inner ones, with the capsules of
-/// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.5 cm thicker
-/// than the links. The Hand and its fingers have separate shapes (see [`Scene::with_hand`]).
+/// Links touch their surroundings, and outer links touch inner links, with the capsules of
+/// [`Shape::covering`](franka_model::collision::Shape::covering). These capsules are up to 3.5 cm
+/// thicker than the links. The Hand and its fingers have separate shapes (see
+/// [`Scene::with_hand`]).
 #[derive(Debug)]
 pub struct MujocoArm {
     kind: RobotKind,
@@ -49,7 +50,7 @@ pub struct MujocoArm {
 
 impl MujocoArm {
     /// An ideal arm of this kind at rest in the ready pose, with a bare flange. The robot that owns
-    /// it [fits](Plant::fit) it with the robot's arm.
+    /// this plant [fits](Plant::fit) it with the parameters of the robot's arm.
     ///
     /// # Errors
     /// [`SceneError`] if MuJoCo cannot make the scene.
@@ -83,8 +84,9 @@ impl MujocoArm {
         body_pose(&self.data, name)
     }
 
-    /// Moves a body of the scene that has a free joint to this pose in the base frame, at rest.
-    /// Returns false if no such body exists. Objects that overlap it there push it out.
+    /// Moves a body of the scene to this pose in the base frame, at rest. The body must have a free
+    /// joint. Returns false if no such body exists. Objects that overlap the body at its new pose
+    /// push it away.
     ///
     /// ```no_run
     /// # use std::any::Any;
@@ -109,8 +111,8 @@ impl MujocoArm {
         true
     }
 
-    /// Torques of contact on the joints in the last step, `[N·m]`; positive torques push towards
-    /// positive angles.
+    /// Torques that contacts exert on the joints in the last step, `[N·m]`; positive torques push
+    /// towards positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let force = self.data.qfrc_constraint();
         self.places.dof.map(|dof| force[dof]).into()
@@ -152,7 +154,7 @@ impl Plant for MujocoArm {
         &self.dq
     }
 
-    /// Rebuilds the scene if the arm is another, which takes milliseconds.
+    /// Rebuilds the scene if the arm has changed, which takes milliseconds.
     ///
     /// # Panics
     /// See [`attach`](Self::attach).
@@ -192,7 +194,7 @@ impl Plant for MujocoArm {
         self.places.dof.map(|dof| bias[dof]).into()
     }
 
-    /// Rebuilds the scene, which takes milliseconds.
+    /// Replaces the load and rebuilds the scene, which takes milliseconds.
     ///
     /// # Panics
     /// If no body can have this load (a non-finite number, a negative mass), or if the file of the
@@ -251,7 +253,7 @@ fn apply(
     }
 }
 
-/// The least inertia that the drives add to the links, `[kg·m²]`.
+/// Least inertia that the drives add to the links, `[kg·m²]`.
 fn link_inertia(arm: &Arm) -> JointVector {
     arm.drive.link_inertia(CYCLE / f64::from(STEPS))
 }

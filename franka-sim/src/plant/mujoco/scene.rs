@@ -14,10 +14,11 @@ use crate::arm;
 
 /// The surroundings of the arm, and optionally a Franka Hand on its flange.
 ///
-/// Surroundings are MJCF, the format of MuJoCo's models. Its world is the robot's base frame: x
-/// forwards, z up, in metres. Bodies with a free joint are objects that the arm can push and grasp.
-/// Everything in MJCF can be used. In `<option>`, the simulator overrides `timestep`, `integrator`,
-/// `gravity`, `cone` and `impratio`. Names that begin with `franka_` are reserved for the robot.
+/// Surroundings are written in MJCF, the format of MuJoCo's models. The world of the MJCF is the
+/// robot's base frame: x forwards, z up, in metres. Bodies with a free joint are objects that the
+/// arm can push and grasp. All of MJCF is available. In `<option>`, the simulator overrides
+/// `timestep`, `integrator`, `gravity`, `cone` and `impratio`. Names that begin with `franka_` are
+/// reserved for the robot.
 ///
 /// ```xml
 /// <mujoco>
@@ -44,7 +45,7 @@ enum Surroundings {
     File(PathBuf),
 }
 
-/// Reason why a scene cannot be built. The text is MuJoCo's, with the line of the error.
+/// Reason why a scene cannot be built. The text comes from MuJoCo and names the line of the error.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -57,7 +58,7 @@ pub enum SceneError {
     /// MuJoCo cannot simulate the surroundings.
     #[error("cannot make the scene: {0}")]
     Impossible(String),
-    /// A part of the robot is missing. Surroundings cannot cause this.
+    /// A part of the robot is missing. Surroundings cannot cause this error.
     #[error("the scene lacks {0}")]
     Lacks(String),
 }
@@ -82,7 +83,7 @@ impl Scene {
         }
     }
 
-    /// Surroundings from this MJCF file. Files that it names are resolved relative to it.
+    /// Surroundings from this MJCF file. Paths in this file are relative to the file's folder.
     pub fn file(path: impl AsRef<Path>) -> Self {
         Self {
             surroundings: Surroundings::File(path.as_ref().to_owned()),
@@ -90,12 +91,12 @@ impl Scene {
         }
     }
 
-    /// With the body and the two fingers of a Franka Hand on the flange, which a
-    /// [`Hand`](crate::Hand) then moves. The mass of the Hand is not included: it is the load of
-    /// [`Tool::hand`](crate::Tool::hand).
+    /// Adds the body and the two fingers of a Franka Hand to the flange. A [`Hand`](crate::Hand)
+    /// then moves the fingers. The mass of the Hand is not included, because
+    /// [`Tool::hand`](crate::Tool::hand) contains it.
     ///
-    /// In MuJoCo the larger friction of two surfaces counts, and the fingers have none. The
-    /// `friction` of an object alone therefore decides how well it is held.
+    /// MuJoCo uses the larger friction of two surfaces, and the fingers have no friction. Therefore
+    /// only the `friction` of an object decides how firmly the fingers hold it.
     #[must_use]
     pub fn with_hand(mut self) -> Self {
         self.has_hand = true;
@@ -117,8 +118,8 @@ impl Scene {
         Ok((model, places))
     }
 
-    /// Compiles surroundings and these arms as one model. Each arm is an MJCF text with the prefix
-    /// of its names.
+    /// Compiles surroundings and these arms as one model. Each arm is given as an MJCF text and the
+    /// prefix of its names.
     pub(super) fn compile_around(
         &self,
         arms: &[(&str, String)],
@@ -220,8 +221,8 @@ fn find(model: &MjModel, kind: MjtObjBase, prefix: &str, name: &str) -> Result<u
     model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
 }
 
-/// Prefix of the names of the robot's parts, and, after it, prefix of the names of joints and their
-/// dampers.
+/// Prefix of the names of the robot's parts. The constants after it are the prefixes of the names
+/// of joints and of their dampers.
 const PREFIX: &str = "franka_";
 pub(super) const JOINT: &str = "joint";
 

@@ -1,11 +1,11 @@
-//! Several arms in one world: each is moved by a separate robot, and all share the same objects.
+//! Several arms in one world. A separate robot moves each arm, and all arms share the same objects.
 //!
-//! The world takes a step when the drives of all arms have reported their torques. Robots are
-//! advanced one after the other, a millisecond at a time. An arm whose robot comes first runs ahead
-//! of the world, on a copy in which the other arms keep their last torques. When the last robot has
-//! come, the world catches up with the true torques of all, and every arm takes its position from
-//! it. The first robot sees the others with a delay of a millisecond at most, if the robots are in
-//! step.
+//! The world takes a step once the drives of all arms have reported their torques. Robots advance
+//! one after the other, a millisecond at a time. An arm whose robot comes first runs ahead of the
+//! world, on a copy in which the other arms keep their last torques. After the last robot, the
+//! world catches up with the true torques of all arms, and every arm takes its position from the
+//! world. If the robots are in step, the first robot sees the other arms with a delay of a
+//! millisecond at most.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -25,18 +25,18 @@ use crate::plant::{External, LinkTorque, Plant, STEPS};
 pub struct Mount {
     /// Kind of the arm.
     pub kind: RobotKind,
-    /// Prefix of the names of its bodies: its flange is the body `{name}_flange`.
+    /// Prefix of the names of the arm's bodies. The arm's flange is the body `{name}_flange`.
     pub name: String,
-    /// Its base frame in the world. The world uses the gravity of the first arm, in the axes of the
-    /// world.
+    /// Base frame of the arm in the world. The world uses the gravity of the first arm, in the axes
+    /// of the world.
     pub base: Isometry3<f64>,
 }
 
 /// One of several arms in one world of MuJoCo; see [`shared_world`]. It is a plant like
 /// [`MujocoArm`](super::MujocoArm), without a hand.
 ///
-/// The robots that move the arms must be in step, within 10 ms. A robot that is later misses
-/// milliseconds of the world, in which its drives keep their last torques.
+/// The robots that move the arms must be in step to within 10 ms. A robot that is later misses
+/// milliseconds of the world; its drives keep their last torques meanwhile.
 /// [`Sim::in_step`](crate::Sim::in_step) keeps the robots in step.
 pub struct SharedArm {
     world: Arc<Mutex<World>>,
@@ -45,12 +45,12 @@ pub struct SharedArm {
     dq: JointVector,
 }
 
-/// A world with `N` arms, ideal and at rest in the ready pose until their robots fit and place
-/// them. Names in the MJCF of the scene may refer to the bodies of the arms: a `<weld>` between a
-/// flange and an object is a grasp.
+/// Returns `N` arms in one world. They are ideal arms at rest in the ready pose until their robots
+/// fit and place them. Names in the MJCF of the scene may refer to the bodies of the arms: a
+/// `<weld>` between a flange and an object is a grasp.
 ///
 /// # Errors
-/// [`SceneError`] if MuJoCo cannot make the scene, or if it has a hand.
+/// [`SceneError`] if MuJoCo cannot make the scene, or if the scene has a hand.
 pub fn shared_world<const N: usize>(
     scene: Scene,
     mounts: [Mount; N],
@@ -82,12 +82,13 @@ pub fn shared_world<const N: usize>(
 }
 
 impl SharedArm {
-    /// Pose of a body in the world, at the start of its last step; `None` if no body has this name.
+    /// Pose of a body in the world, at the start of the world's last step; `None` if no body has
+    /// this name.
     pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
         body_pose(&self.world().data, name)
     }
 
-    /// Torques of contacts and grasps on the joints in the last step of the world, `[N·m]`;
+    /// Torques that contacts and grasps exert on the joints in the last step of the world, `[N·m]`;
     /// positive torques push towards positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let world = self.world();
@@ -110,7 +111,7 @@ impl Plant for SharedArm {
         &self.dq
     }
 
-    /// Rebuilds the world if the arm is another, which takes milliseconds.
+    /// Rebuilds the world if the arm has changed, which takes milliseconds.
     ///
     /// # Panics
     /// See [`attach`](Self::attach).
@@ -141,7 +142,7 @@ impl Plant for SharedArm {
         holding
     }
 
-    /// Rebuilds the world, which takes milliseconds.
+    /// Replaces the load and rebuilds the world, which takes milliseconds.
     ///
     /// # Panics
     /// See [`MujocoArm`](super::MujocoArm).
@@ -171,7 +172,7 @@ struct World {
     data: MjData<Box<MjModel>>,
     /// A copy that runs ahead of `data`.
     ahead: MjData<Box<MjModel>>,
-    /// The arm to which the copy belongs, if it is up to date.
+    /// Number of the arm to which the copy belongs, if the copy is up to date.
     ahead_is_of: Option<usize>,
 }
 
@@ -183,9 +184,9 @@ struct Standing {
     arm: arm::Arm,
     armature: JointVector,
     load: Load,
-    /// Torques of its drives in the steps that the world has not taken.
+    /// Torques of the arm's drives in the steps that the world has not taken yet.
     pending: VecDeque<Push>,
-    /// Torques of its drives in the newest known step.
+    /// Torques of the arm's drives in the newest known step.
     newest: Push,
     /// Steps that the world has taken without this arm.
     missed: usize,
@@ -238,7 +239,8 @@ impl World {
         read(&self.ahead, &self.places[number])
     }
 
-    /// Takes a step with the pending torques; arms without pending torques have missed it.
+    /// Takes a step of the world with the pending torques. An arm without pending torques misses
+    /// this step.
     fn catch_up(&mut self, dt: f64) {
         for (arm, places) in self.arms.iter_mut().zip(&self.places) {
             let push = arm.pending.pop_front().unwrap_or_else(|| {
@@ -304,7 +306,7 @@ impl World {
 }
 
 impl Standing {
-    /// Torques of its drives, `step` steps after the world's newest step.
+    /// Torques of the arm's drives, `step` steps after the world's newest step.
     fn push_at(&self, step: usize) -> Push {
         self.pending.get(step).copied().unwrap_or(self.newest)
     }
@@ -344,8 +346,8 @@ fn copy(data: &MjData<Box<MjModel>>) -> MjData<Box<MjModel>> {
     MjData::new(Box::new(data.model().clone()))
 }
 
-/// All inputs of a step.
+/// Parts of MuJoCo's state that are inputs of a step.
 const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;
 
-/// Steps by which an arm may be ahead of the world: 10 ms.
+/// Number of steps by which an arm may be ahead of the world: 10 ms.
 const AHEAD_MAX: usize = 10 * STEPS as usize;

@@ -24,11 +24,11 @@ struct Present {
     since: u64,
     /// Wrench of a touch as a function of time, in this millisecond.
     wrench: Wrench,
-    /// The wrench in the newest step about its place, base axes, and its reduction per unit of
-    /// joint acceleration.
+    /// Wrench in the newest step, about the touched point, in base axes; and the reduction of this
+    /// wrench per unit of joint acceleration.
     step: (Wrench, Option<Jacobian>),
-    /// Effect on the arm in this millisecond: the mean of the last `steps` steps, about its place,
-    /// base axes.
+    /// Wrench on the arm in this millisecond: the mean of the last `steps` steps, about the touched
+    /// point, in base axes.
     felt: Wrench,
     steps: u32,
 }
@@ -65,8 +65,8 @@ impl Touches {
         self.touches.clear();
     }
 
-    /// Begins the millisecond that ends at `now`: ends the touches that are over, and calls the
-    /// functions of time.
+    /// Begins the millisecond that ends at `now`: ends touches whose duration is over, and calls
+    /// the users' functions of time.
     pub(in crate::robot) fn advance(&mut self, now: u64) {
         self.touches.retain(|present| {
             let end = present
@@ -226,7 +226,7 @@ impl Present {
     }
 }
 
-/// Holds the joint of this index at an angle `ahead` of it.
+/// Holds the joint of this index at the angle that is `ahead` of its current angle.
 fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
     let mut torque = JointVector::zeros();
@@ -239,7 +239,7 @@ fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     }
 }
 
-/// The Jacobian of a place displaced by `arm` from the place of the given Jacobian.
+/// The Jacobian of the point that is displaced by `arm` from the point of the given Jacobian.
 fn displaced(mut jacobian: Jacobian, arm: &Vector3<f64>) -> Jacobian {
     for mut joint in jacobian.column_iter_mut() {
         let turning = joint.fixed_rows::<3>(3).cross(arm);
