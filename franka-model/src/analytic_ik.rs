@@ -1,7 +1,7 @@
 //! All joint positions for a pose of the flange and one redundancy parameter.
 //!
-//! The arm has one joint more than a pose has coordinates. With one additional number
-//! ([`Redundancy`]), finitely many postures remain. All of them are found:
+//! The arm has one joint more than a pose has coordinates. One additional number, a [`Redundancy`],
+//! leaves finitely many postures. This module finds all of them:
 //!
 //! ```text
 //! joint 7 ──────────────┐
@@ -10,17 +10,17 @@
 //! ```
 //!
 //! With joint 7 given, the flange's pose fixes the wrist W, where axes 5 and 6 meet. Shoulder S,
-//! elbow E and wrist form a triangle, whose sides determine joint 4. The direction of the forearm
-//! in the hand's axes determines joints 6 and 5. The remaining rotation determines joints 1 to 3.
-//! Every step is an equivalence with at most two answers, so no solution is lost. Fixing joint 7 is
-//! the idea of He and Liu (2021). The enumeration and the other two parameters come from
-//! López-Custodio, Gong and Figueredo (GeoFIK, 2025).
+//! elbow E and wrist form a triangle, whose sides determine joint 4. In the hand's axes, the
+//! direction of the forearm determines joints 6 and 5. The remaining rotation determines joints 1
+//! to 3. Every step is an exact equivalence with at most two answers, so no solution is lost.
+//! Fixing joint 7 is the idea of He and Liu (2021). The enumeration and the other two parameters
+//! come from López-Custodio, Gong and Figueredo (GeoFIK, 2025).
 //!
 //! | given | method | solutions, at most |
 //! |---|---|---|
 //! | [`Joint7`](Redundancy::Joint7) | closed form | 8 |
 //! | [`Joint4`](Redundancy::Joint4) | closed form: the distance of W from S gives two angles of joint 7 | 8 |
-//! | [`Swivel`](Redundancy::Swivel) | one equation in joint 7, whose roots are bracketed and refined | 32 listed; 12 within limits seen |
+//! | [`Swivel`](Redundancy::Swivel) | one equation in joint 7, whose roots are bracketed and refined | 32 in the list; 12 within the limits were seen |
 //!
 //! | module | content |
 //! |---|---|
@@ -40,21 +40,22 @@
 //!
 //! - **Stretched elbow** (joint 4 at its [flip angle](Lengths::flip_angle)) and **wrist** (joint 5
 //!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and
-//!   coincide. The common solution is listed twice. A pose outside by less than 1e-12 in the cosine
-//!   counts as on the boundary. Both solutions are continuous up to the boundary; beyond it no
-//!   solution exists.
+//!   coincide. The list then contains the common solution twice. A pose that is beyond the boundary
+//!   by less than 1e-12 in the cosine counts as on it. Both solutions are continuous up to the
+//!   boundary; beyond it no solution exists.
 //! - **Shoulder** (joint 2 at zero): axes 1 and 3 coincide, and the pose fixes only the sum of
-//!   their angles. Each joint then takes half. [`Solution::slide`] gives the range in which joint 1
-//!   may turn while joint 3 turns back. [`Solutions::nearest`] slides to the posture nearest to the
-//!   given one, so the posture continues through the singularity: joint 2 changes sign, joints 1
-//!   and 3 do not move. Solutions near the singularity also meet their pose. A path that passes
-//!   *beside* the singularity must turn joint 1 by up to half a turn, within a length that shrinks
-//!   with the distance. This is a property of the arm, not of the solver;
-//!   [`differential_ik`](crate::differential_ik) passes it with bounded velocities.
-//! - Joint 4 given: the two angles of joint 7 coincide where they pass each other. If the shoulder
-//!   is on axis 7, the angle of joint 7 is free, and zero represents all angles.
-//! - Swivel given: the angle is undefined if the wrist is straight above or below the shoulder. No
-//!   solution is sought within a nanometre of that line.
+//!   their angles. Each of the two joints then gets half of the sum. [`Solution::slide`] gives the
+//!   range in which joint 1 may turn while joint 3 turns back. [`Solutions::nearest`] slides to the
+//!   posture nearest to the given posture. The posture is thus continuous through the singularity:
+//!   joint 2 changes sign, and joints 1 and 3 do not move. Solutions near the singularity are
+//!   accurate, too. A path that passes *beside* the singularity must turn joint 1 by up to half a
+//!   turn, on a length of path that shrinks with its distance from the singularity. This large turn
+//!   is a property of the arm, not of the solver; [`differential_ik`](crate::differential_ik)
+//!   passes it with bounded velocities.
+//! - Joint 4 given: the two angles of joint 7 may coincide. If the shoulder is on axis 7, the angle
+//!   of joint 7 is free, and zero represents all angles.
+//! - Swivel given: the angle is undefined if the wrist is straight above or below the shoulder. The
+//!   solver seeks no solution within a nanometre of the line straight above or below the shoulder.
 
 use core::f64::consts::PI;
 
@@ -77,12 +78,12 @@ mod swivel;
 pub use nearest::nearest;
 pub use solutions::{Branch, Singularity, Solution, Solutions};
 
-/// The parameter that selects one self-motion of a pose.
+/// Parameter that selects one posture among the self-motions of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Redundancy {
     /// The angle of joint 7, `[rad]`.
     Joint7(f64),
-    /// The angle of joint 4, `[rad]`: the distance between shoulder and wrist.
+    /// The angle of joint 4, `[rad]`. It determines the distance between shoulder and wrist.
     Joint4(f64),
     /// The [swivel angle](crate::elbow::swivel), `[rad]`: the position of the elbow on its circle
     /// about the line from shoulder to wrist. It is zero with the elbow on top.
@@ -99,8 +100,8 @@ impl Redundancy {
 /// Returns the solutions within the joint limits that bring the end effector to `target`. The list
 /// may be empty.
 ///
-/// A slightly non-rigid end-effector frame is replaced by the nearest rigid one. The benchmarks
-/// measure the cost (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
+/// The nearest rigid frame replaces an end-effector frame that is slightly non-rigid. The
+/// benchmarks measure the cost (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
@@ -122,8 +123,8 @@ pub fn solve(
 
 /// Returns all solutions for a pose of the flange in the base frame, regardless of the limits.
 ///
-/// Angles are in `(−π, π]`; given angles are returned unchanged. The result is the same for both
-/// kinds of robot with the same lengths. It is empty if a number is non-finite.
+/// Angles are in `(−π, π]`, and a given angle is returned unchanged. The result depends on the
+/// lengths, not on the kind of robot. The list is empty if an argument is non-finite.
 pub fn all(lengths: &Lengths, flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
     let flip = lengths.flip_angle();
     find(lengths, flange, given, [flip - PI, flip + PI])
@@ -154,7 +155,7 @@ fn flange_of(target: &Isometry3<f64>, ee: &EndEffector) -> Result<Isometry3<f64>
     finite.then_some(flange).ok_or(IkError::NotFinite)
 }
 
-/// Returns all postures of a sweep of joint 7 through its range, within the limits.
+/// Sweeps joint 7 through its range and returns all postures within the limits.
 fn sweep(model: &Model, flange: &Isometry3<f64>, steps: u32) -> impl Iterator<Item = Solution> {
     let limits = model.joint_limits();
     let (lower, upper) = (&limits.lower, &limits.upper);
@@ -168,7 +169,7 @@ fn sweep(model: &Model, flange: &Isometry3<f64>, steps: u32) -> impl Iterator<It
     })
 }
 
-/// Returns the angle moved by whole turns into `(−π, π]`.
+/// Returns the angle, shifted by whole turns into `(−π, π]`.
 fn wrapped(angle: f64) -> f64 {
     let (sin, cos) = crate::scalar::sin_cos(angle);
     crate::scalar::atan2(sin, cos)

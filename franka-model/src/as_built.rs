@@ -11,8 +11,8 @@ use crate::load::Load;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, MassMatrix};
 
-/// A [`Model`] whose links and joint axes may deviate: the true arm behind the model of a robot's
-/// controllers. For simulation; control uses [`Model`].
+/// True arm of a simulated robot. Its links and joint axes may deviate from the [`Model`] of the
+/// robot's controllers. Control uses [`Model`].
 ///
 /// Units, frames and loads are the same as in [`Model`].
 #[derive(Debug, Clone, PartialEq)]

@@ -29,7 +29,7 @@ pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f6
         )
 }
 
-/// Several bodies as one rigid body, described about the shoulder.
+/// Several bodies combined into one rigid body, described about the shoulder.
 pub(crate) struct Composite {
     pub(crate) mass: f64,
     /// Mass times centre of mass.
@@ -52,8 +52,8 @@ impl Composite {
         self.inertia += body.inertia + Symmetric3::of_point(body.mass, &body.com);
     }
 
-    /// Returns linear momentum, and angular momentum about the shoulder, of the composite turning
-    /// about an axis at unit rate.
+    /// Returns linear momentum, and angular momentum about the shoulder, of the composite if it
+    /// turns about an axis at unit rate.
     #[inline(always)]
     pub(crate) fn momentum(
         &self,

@@ -6,20 +6,20 @@
 //!
 //! The search guesses the set of active bounds and corrects the guess:
 //!
-//! 1. hold the active variables on their bounds, and minimise over the others;
+//! 1. hold the active variables on their bounds, and minimise over the other variables;
 //! 2. hold the variables that are then beyond a bound, and free the variables whose gradient points
 //!    inside;
 //! 3. stop if nothing changed. After [`GUESSES`] passes, change one bound at a time.
 //!
-//! The first method (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as a
-//! Semismooth Newton Method, 2003) takes two or three passes and may, rarely, cycle. The second
-//! (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section 16.5) descends
-//! with every iterate inside the box, so it terminates.
+//! Steps 1 and 2 alone (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as a
+//! Semismooth Newton Method, 2003) take two or three passes and may, rarely, cycle. Changing one
+//! bound at a time (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section
+//! 16.5) descends with every iterate inside the box, so it terminates.
 //!
 //! `A` has six rows, so only `d` makes the minimum unique, and `d` may be 1e-11 of the rest. The
-//! normal equations `AᵀA + d` resolve that direction to five digits. A refinement step with a
-//! residual computed from `A` itself gives ten digits, and another step gives all. Guesses do not
-//! need the refinement.
+//! normal equations `AᵀA + d` resolve the remaining direction to five digits. A refinement step
+//! with a residual computed from `A` itself gives ten digits, and another step gives full
+//! precision. Guesses do not need the refinement.
 
 mod joint_box;
 mod problem;
@@ -35,18 +35,18 @@ pub(crate) use problem::Problem;
 pub enum Outcome {
     /// The minimum was found.
     Optimal,
-    /// The search stopped after [`PASSES_MAX`] passes: the result is inside the box, but may not be
+    /// The search stopped after [`PASSES_MAX`] passes. The result is inside the box, but may not be
     /// the minimum.
     PassLimit,
-    /// A number was non-finite: the result is inside the box, and has no other guarantee.
+    /// An argument was non-finite. The result is inside the box, and has no other guarantee.
     Degenerate,
 }
 
 /// Number of passes after which a search stops.
 ///
 /// Each pass costs one factorisation. Two million random problems of differential IK were solved,
-/// most of them with several variables on their bounds. Half took seven passes or fewer, and none
-/// more than 25.
+/// most of them with several variables on their bounds. Half of the problems took seven passes or
+/// fewer, and none took more than 25.
 pub const PASSES_MAX: usize = 32;
 
 /// Number of passes that correct the whole guess at once.
@@ -184,7 +184,7 @@ impl Search<'_> {
         (crate::joint_vector(goal), gradient)
     }
 
-    /// Refines that minimum to full precision; returns its gradient.
+    /// Refines the result of `minimum_of_free` to full precision, and returns its gradient.
     #[inline(always)]
     fn refine(&self, factor: &Ldl<7>, goal: &mut JointVector) -> [f64; 7] {
         let mut gradient = self.problem.gradient(goal);
@@ -212,7 +212,7 @@ impl Search<'_> {
     }
 
     /// Activates the bounds that `goal` exceeds, and frees the variables whose gradient points
-    /// inside; true if nothing changed.
+    /// inside. Returns true if nothing changed.
     fn mend(&mut self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         let mut done = true;
         for i in 0..7 {
@@ -236,9 +236,9 @@ impl Search<'_> {
         done
     }
 
-    /// Moves towards `goal` and along the bounds on the path, which become active, while the
-    /// function decreases. If no bound was met, frees the variable with the steepest descent into
-    /// the box. True if no variable can be freed.
+    /// Moves towards `goal` while the function decreases. Bounds on the path become active, and the
+    /// path continues along them. If the path met no bound, this frees the variable with the
+    /// steepest descent into the box. Returns true if no variable can be freed.
     fn descend(&mut self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         if self.walk(goal) {
             return false;
@@ -258,7 +258,7 @@ impl Search<'_> {
         steepest.is_none()
     }
 
-    /// Moves to `goal`, bending at every bound; true if a bound was met.
+    /// Moves to `goal`, and changes direction at every bound. Returns true if the path met a bound.
     fn walk(&mut self, goal: &JointVector) -> bool {
         let mut direction: [f64; 7] = core::array::from_fn(|i| match self.active[i] {
             Side::Free => goal[i] - self.x[i],
@@ -326,7 +326,7 @@ impl Search<'_> {
     }
 
     /// Returns the slope of the function into the box from the bound that holds variable `i`; zero
-    /// if it is rounding error, or the interval is empty inside.
+    /// if the slope is rounding error, or if the interval has no interior.
     #[inline(always)]
     fn inward(&self, i: usize, side: Side, gradient: f64) -> f64 {
         let fall = match side {
@@ -347,7 +347,7 @@ impl Search<'_> {
         if fall > ROUNDING * scale { fall } else { 0.0 }
     }
 
-    /// Moves into the box, where a descent may begin.
+    /// Moves into the box, so that a descent can begin.
     fn settle(&mut self) {
         self.x = self.bounds.clamp(&self.x);
     }
@@ -355,7 +355,7 @@ impl Search<'_> {
 
 /// Number of refinement steps for an exact minimum.
 const REFINEMENTS: usize = 2;
-/// Bound, relative to its terms, below which a gradient is rounding error.
+/// Bound, relative to the terms of a gradient, below which the gradient is rounding error.
 const ROUNDING: f64 = 1e-15;
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The joints in base axes: the positions of all frames and the directions of all axes.
 //!
 //! The FER and the FR3 have the same [geometry](crate::geometry) except for two lengths: an
-//! alternating chain in which every joint frame is rolled by 0 or ±90° against the previous one. A
-//! joint therefore costs one plane rotation and a permutation of columns. Positions are relative to
-//! the shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference
-//! point.
+//! alternating chain in which every joint frame is rolled by 0 or ±90° relative to the previous
+//! frame. A joint therefore costs one plane rotation and a permutation of columns. Positions are
+//! relative to the shoulder S, where axes 1, 2 and 3 meet, because these axes then have no moment
+//! about the reference point.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -22,7 +22,7 @@ pub(crate) struct Chain {
     pub(crate) origin: [Vector3<f64>; 7],
     /// Direction of axis i.
     pub(crate) axis: [Vector3<f64>; 7],
-    /// Velocity of the body's point at the shoulder per unit rate of joint i: `origin × axis`.
+    /// Velocity, per unit rate of joint i, of the body's point at the shoulder: `origin × axis`.
     pub(crate) moment: [Vector3<f64>; 7],
 }
 

@@ -6,16 +6,17 @@
 //!
 //! `x` are joint velocities and `(vp, vo)` is a twist, or both are displacements. In the nullspace
 //! of the task, `x` follows the posture term. If a bound is active, the other joints compensate as
-//! well as possible. Clamping the result would do neither.
+//! well as possible. Clamping an unbounded solution would neither follow the posture term nor
+//! compensate.
 //!
 //! # Position first
 //!
-//! `W` weighs radians of orientation against metres of position. It has no effect if both can be
-//! met. If not, joints are at their bounds or the arm is singular. The small default then
-//! sacrifices the orientation, except for a share `W²/r²` of it, where `r` is the lever of the
-//! joints that turn the hand. The remaining error of the position is then added to the target, and
-//! the problem is solved once more (one step of the method of multipliers: Hestenes, 1969), which
-//! squares that share. The answer is continuous in all of its arguments.
+//! `W` weighs radians of orientation against metres of position. It has no effect if position and
+//! orientation can both be met. Otherwise, joints are at their bounds or the arm is singular. The
+//! small default then sacrifices the orientation, except for a share of `W²/r²`, where `r` is the
+//! lever of the joints that turn the hand. The solver then adds the remaining position error to the
+//! target and solves once more, which squares this share (one step of the method of multipliers:
+//! Hestenes, 1969). The answer is continuous in all of its arguments.
 //!
 //! # Damping
 //!
@@ -24,13 +25,13 @@
 //! loss = max(0, 1 − w²/onset²)
 //! ```
 //!
-//! The floor is too small to affect the motion visibly. The damping rises as the manipulability `w`
-//! falls (Nakamura and Hanafusa, 1986, in `w²`). For the whole task it rises by the weight of
-//! orientations, which leaves the position undamped. For the position it rises if the position
-//! itself loses a direction. `w²` is a polynomial in sines and cosines of q, so `λ²` and its
-//! derivative are continuous along any path, and the first part does not depend on the tool's
-//! length. Near a singularity, tracking is abandoned smoothly, first in the directions that need
-//! large joint velocities.
+//! The damping `floor` is too small to affect the motion visibly. The damping rises as the
+//! manipulability `w` falls (Nakamura and Hanafusa, 1986, in `w²`). For the whole task, it rises in
+//! proportion to the weight of orientations, which leaves the position undamped. For the position,
+//! it rises only if the position itself loses a direction. `w²` is a polynomial in sines and
+//! cosines of q, so `λ²` and its derivative are continuous along any path, and the first part does
+//! not depend on the tool's length. Near a singularity, tracking ends smoothly, first in the
+//! directions that need large joint velocities.
 
 use crate::jacobian::squared_manipulabilities;
 use crate::{Jacobian, JointVector, Twist};
@@ -38,28 +39,28 @@ use crate::{Jacobian, JointVector, Twist};
 pub use crate::box_qp::{JointBox, Outcome, PASSES_MAX, Side};
 use crate::box_qp::{Problem, minimise};
 
-/// The dependence of `λ` on the manipulability; see the module.
+/// Dependence of the damping `λ` on the manipulability; see the [module](self).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
-    /// Damping in radians per radian away from singularities: its square is the share of a rotation
-    /// that is not executed. Must be positive, because it makes the minimum unique.
+    /// Damping far from singularities, in radians per radian. Its square is the share of a rotation
+    /// that is not executed. It must be positive, because it makes the minimum unique.
     pub floor: f64,
     /// Additional damping in a singularity of the pose, in the same unit.
     pub ceiling: f64,
-    /// Manipulability below which the damping rises; 0.080 at the ready pose.
+    /// Manipulability below which the damping rises. The ready pose has 0.080.
     pub onset: f64,
     /// Additional damping in a singularity of the position, metres per radian.
     pub position_ceiling: f64,
-    /// Manipulability of the position, `sqrt(det(Jp Jpᵀ))` `[m³]`, below which the damping rises;
-    /// 0.1 in good postures.
+    /// Manipulability of the position, `sqrt(det(Jp Jpᵀ))` `[m³]`, below which the damping rises.
+    /// Good postures have 0.1.
     pub position_onset: f64,
 }
 
 impl Default for Damping {
-    /// Returns a floor that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the
-    /// ready pose. In a singularity, an orientation demands at most 8 rad/s per rad/s. A position
-    /// that only a turning hand can keep, at a stretched elbow, demands hundreds of rad/s per m/s:
-    /// in that case the box bounds the velocities.
+    /// Returns a damping that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the
+    /// ready pose. In a singularity, an orientation requires at most 8 rad/s per rad/s. With a
+    /// stretched elbow, a position may require hundreds of rad/s per m/s, if only a turn of the
+    /// hand can keep it. The box then bounds the velocities.
     fn default() -> Self {
         Self {
             floor: 1.5e-3,
@@ -74,11 +75,12 @@ impl Default for Damping {
 /// The parameters of the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferentialIk {
-    /// Position error in metres with the same weight as one radian of orientation error; positive.
+    /// Position error, in metres, that weighs as much as one radian of orientation error; positive.
     pub orientation_weight: f64,
-    /// True if the position's residual is added to the target once; see the module.
+    /// True if the solver adds the position's residual to the target and solves again; see the
+    /// [module](self).
     pub position_first: bool,
-    /// The choice of `λ`.
+    /// Damping of the solution.
     pub damping: Damping,
 }
 
@@ -86,8 +88,9 @@ impl DifferentialIk {
     /// Returns parameters that sacrifice position and orientation equally if both cannot be met. A
     /// radian counts as 0.3 m, about its effect at the far side of a held object.
     ///
-    /// The joints are therefore slower near singularities, at most 50 rad/s per m/s regardless of
-    /// the box. The hand leaves its line there and returns. For motions whose path does not matter.
+    /// The joints are therefore slower near singularities: at most 50 rad/s per m/s, regardless of
+    /// the box. Near a singularity, the hand leaves its line and returns to it later. Use these
+    /// parameters for motions whose path does not matter.
     pub const fn smooth() -> Self {
         Self {
             orientation_weight: 0.3,
@@ -121,20 +124,20 @@ pub struct Solution {
     pub velocity: JointVector,
     /// `J x − v`: the residual of the end effector's velocity, unweighted.
     pub residual: Twist,
-    /// The active bounds. Passing them to the next, similar problem saves passes.
+    /// Active bounds. Pass them to the next, similar problem to save passes.
     pub active: [Side; 7],
-    /// The result of the search: `velocity` is the minimum if it is [`Outcome::Optimal`].
+    /// Result of the search. `velocity` is the minimum only with [`Outcome::Optimal`].
     pub outcome: Outcome,
     /// Number of factorisations.
     pub passes: usize,
 }
 
 impl DifferentialIk {
-    /// Solves one problem in at most [`PASSES_MAX`] passes, regardless of the numbers.
+    /// Solves one problem in at most [`PASSES_MAX`] passes, for any arguments.
     ///
     /// `jacobian` and `twist` are in the same axes about the same point. `posture` is the preferred
     /// joint velocity in the nullspace of the task. `start` is the active set of the previous
-    /// problem, or `Default::default()`: it changes the time, not the answer.
+    /// problem, or `Default::default()`; it affects the run time, not the answer.
     pub fn solve(
         &self,
         jacobian: &Jacobian,

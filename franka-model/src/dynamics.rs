@@ -1,6 +1,6 @@
 //! Mass matrix, bias torques, inverse and forward dynamics.
 //!
-//! Composite rigid bodies give the mass matrix and gravity, and recursive Newton-Euler the rest
+//! Composite rigid bodies give the mass matrix and gravity. Recursive Newton-Euler gives the rest
 //! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6). All vectors are in base
 //! axes about the shoulder. Forces and momenta of different links therefore add up directly, and
 //! the torque of a joint is `axis · torque + moment · force`.
@@ -137,7 +137,8 @@ pub(crate) fn forward_dynamics(
     Some(factor.solve(&(tau - coriolis - gravity)))
 }
 
-/// The rotation of a body: maps a vector fixed in it to the acceleration of the vector's tip.
+/// Rotation of a body: maps a vector that is fixed in the body to the acceleration of the vector's
+/// tip.
 #[derive(Clone, Copy)]
 struct Spin {
     angular_acceleration: Vector3<f64>,
@@ -161,7 +162,7 @@ struct LinkMotions {
 }
 
 impl LinkMotions {
-    /// Outward recursion; a missing `ddq` counts as zero.
+    /// Runs the outward recursion; a missing `ddq` counts as zero.
     #[inline(always)]
     fn of(
         chain: &Chain,
@@ -195,7 +196,7 @@ impl LinkMotions {
         motion
     }
 
-    /// Inward recursion: returns the joint torques for this motion.
+    /// Runs the inward recursion, and returns the joint torques for this motion.
     #[inline(always)]
     fn torques(&self, chain: &Chain, bodies: &[RigidBody; 7]) -> JointVector {
         let mut torques = JointVector::zeros();

@@ -9,9 +9,8 @@ use crate::scalar::{atan2, sqrt};
 /// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips.
 ///
 /// `atan2(-a (d3 + d5), d3 d5 - a²)` with the elbow offset `a` and the lengths `d3`, `d5` of upper
-/// arm and forearm; libfranka 0.21 documents it in `robot_state.h`. An arm with other
-/// [lengths](crate::geometry::Lengths::flip_angle) is stretched elsewhere by less than a
-/// milliradian.
+/// arm and forearm; libfranka 0.21 documents it in `robot_state.h`. On an arm with other
+/// [lengths](crate::geometry::Lengths::flip_angle), the angle differs by less than a milliradian.
 pub const FLIP_ANGLE: f64 = -0.467002423653011;
 
 /// Returns `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1
@@ -30,9 +29,9 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
 ///
 /// The elbow is the origin of frame 4; the wrist is the origin of frame 5. The angle is between the
 /// vertical half plane above the line and the half plane of the elbow, about the direction from the
-/// shoulder to the wrist, in `(−π, π]`. It is zero with the elbow on top (Kreutz-Delgado, Long and
-/// Seraji, 1992, with the base's z axis as reference). `None` if the wrist is on the axis of joint
-/// 1 or the elbow on the line, up to rounding.
+/// shoulder to the wrist, in `(−π, π]`. The angle is zero with the elbow on top (Kreutz-Delgado,
+/// Long and Seraji, 1992, with the base's z axis as reference). `None` if the wrist is on the axis
+/// of joint 1, or the elbow on the line, except for rounding.
 pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     let chain = Chain::at(lengths, q);
     let (e, w) = (&chain.origin[3], &chain.origin[4]);
@@ -44,7 +43,7 @@ pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     (size > UNDEFINED).then(|| atan2(turned, up))
 }
 
-/// Product of two distances, `[m²]`, below which it is rounding error.
+/// Product of two distances, `[m²]`, below which the product is rounding error.
 const UNDEFINED: f64 = 1e-16;
 
 #[cfg(test)]

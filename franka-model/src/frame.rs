@@ -30,7 +30,7 @@ pub enum Frame {
 }
 
 impl Frame {
-    /// All ten, base to tip.
+    /// All ten frames, from base to tip.
     pub const ALL: [Self; 10] = [
         Self::Joint1,
         Self::Joint2,
@@ -51,10 +51,10 @@ impl Frame {
     }
 }
 
-/// The poses of the user's frames on the flange.
+/// The frames on the flange that the user defines: end effector and stiffness frame.
 ///
-/// Both are used unchanged, even if the rotation block is not exactly orthonormal (the vendor
-/// supplies 0.7071 for sqrt(1/2)); the last row counts as `0 0 0 1`.
+/// The model uses both poses unchanged, even if the rotation block is not exactly orthonormal (the
+/// vendor supplies 0.7071 for sqrt(1/2)). The last row counts as `0 0 0 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// Pose of the end effector in the flange frame, `F_T_EE`.

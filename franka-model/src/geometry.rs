@@ -1,8 +1,8 @@
 //! Lengths and joint frames.
 //!
 //! Source: the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
-//! `franka_description` 1.0.1, `kinematics.yaml` of both robots). Arms differ from it in two
-//! lengths, [`Lengths`].
+//! `franka_description` 1.0.1, `kinematics.yaml` of both robots). Real arms differ from this source
+//! in two lengths, [`Lengths`].
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -37,10 +37,11 @@ impl Lengths {
         forearm: FOREARM,
     };
 
-    /// Lengths derived from the poses of two recorded Franka Research 3, 0.2 mm longer each.
+    /// Lengths derived from the poses of two recorded Franka Research 3. Each length is 0.2 mm
+    /// longer than described.
     ///
     /// Source: states of 2023 (`dlo_parameter_id`) and 2026 (`franka_ros2_teleop_data_collection`,
-    /// `O_T_EE` against `q` of 949 of them, median 0.001 µm off).
+    /// `O_T_EE` compared with `q` in 949 states, median deviation 0.001 µm).
     pub const RECORDED_FR3: Self = Self {
         upper_arm: 0.3162,
         forearm: 0.3842,
@@ -68,16 +69,17 @@ impl Lengths {
         ]
     }
 
-    /// Returns the angle of joint 4 at which this arm is stretched, `[rad]`: the
-    /// [vendor's](crate::elbow::FLIP_ANGLE) for [`DESCRIBED`](Self::DESCRIBED), up to rounding.
+    /// Returns the angle of joint 4 at which this arm is stretched, `[rad]`. For
+    /// [`DESCRIBED`](Self::DESCRIBED) it equals the [vendor's angle](crate::elbow::FLIP_ANGLE),
+    /// except for rounding.
     pub fn flip_angle(&self) -> f64 {
         let (upper, fore) = (self.upper_arm, self.forearm);
         crate::scalar::atan2(-ELBOW * (upper + fore), upper * fore - ELBOW * ELBOW)
     }
 }
 
-/// The pose of a joint's frame in the frame of the previous link, with the joint at zero: moved by
-/// `translation`, then rolled about x. The joint turns about z of the result.
+/// Pose of a joint's frame in the frame of the previous link, with the joint at zero. The frame is
+/// moved by `translation`, then rolled about x. The joint turns about z of the resulting frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointOrigin {
     /// Translation, `[m]`, in the axes of the previous link.

@@ -113,8 +113,8 @@ impl AddAssign for Symmetric3 {
     }
 }
 
-/// A rigid body: mass `[kg]`, centre of mass `[m]` and inertia about it `[kg·m²]`, in one set of
-/// axes.
+/// A rigid body: mass `[kg]`, centre of mass `[m]` and inertia about the centre of mass `[kg·m²]`,
+/// in one set of axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidBody {
     /// Mass, `[kg]`.

@@ -1,9 +1,10 @@
 //! Joint positions for a pose, by iteration.
 //!
-//! Accepts or refuses a target before a motion. Each iteration is a damped Gauss-Newton step inside
-//! the joint limits, first from the seed and then from postures spread over the joint ranges. It
-//! finds one solution near the seed, if one exists; it does not list all of them. A refusal is
-//! strong evidence, not a proof.
+//! Use this module to accept or refuse a target before a motion. Each iteration is a damped
+//! Gauss-Newton step inside the joint limits, first from the seed and then from postures spread
+//! over the joint ranges. The search returns one solution, near the seed if possible; it does not
+//! list all solutions. A target without a solution is almost certainly out of reach, but this is no
+//! proof.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -13,15 +14,16 @@ use crate::limits::JointLimits;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, READY, Twist, rotation, transform};
 
-/// The reason why no solution was found.
+/// Reason why no solution was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum IkError {
-    /// The pose is out of reach within the joint limits: no start came closer than this.
+    /// The pose is out of reach within the joint limits. The fields state how close the search
+    /// came.
     Unreachable {
-        /// Remaining distance, `[m]`.
+        /// Remaining distance of the closest start, `[m]`.
         position: f64,
-        /// Remaining angle, `[rad]`.
+        /// Remaining angle of the closest start, `[rad]`.
         orientation: f64,
     },
     /// The target or the seed has a non-finite number.
@@ -55,11 +57,12 @@ impl core::error::Error for IkError {}
 /// Returns positions within the limits that bring the end effector to `target`, within
 /// [`TOLERANCE`].
 ///
-/// `seed` selects one of the infinitely many solutions, usually a nearby one. A slightly non-rigid
-/// end-effector frame is replaced by the nearest rigid one.
+/// `seed` selects one of the infinitely many solutions, usually a nearby solution. The nearest
+/// rigid frame replaces an end-effector frame that is slightly non-rigid.
 ///
 /// # Errors
-/// See [`IkError`]. A refusal takes up to 32 starts of 60 iterations each, some 2 ms.
+/// See [`IkError`]. The search refuses a target after up to 32 starts of 60 iterations each, some 2
+/// ms.
 pub fn solve(
     model: &Model,
     target: &Isometry3<f64>,
@@ -88,7 +91,7 @@ pub fn solve(
 /// in the base frame, within [`TOLERANCE`], with any orientation.
 ///
 /// # Errors
-/// See [`IkError`]; its `orientation` is zero.
+/// See [`IkError`]; `orientation` is zero in its fields.
 pub fn solve_position(
     model: &Model,
     point: &Vector3<f64>,
@@ -122,7 +125,7 @@ pub(crate) fn from_seed(
     descend(model, &Task::Pose(*flange), seed)
 }
 
-/// Residual of a solution at the flange: metres and radians.
+/// Largest residual of a solution at the flange, in metres and radians.
 pub const TOLERANCE: f64 = 1e-9;
 
 /// The target, in the base frame.
@@ -238,7 +241,7 @@ fn step_box(limits: &JointLimits, q: &JointVector) -> JointBox {
     )
 }
 
-/// Weight in metres per radian, about half the forearm.
+/// Weight of the orientation, in metres per radian: about half the forearm.
 const ORIENTATION_WEIGHT: f64 = 0.2;
 /// Keeps the problem strictly convex at the solution, `[m²]`.
 const DAMPING_FLOOR: f64 = 1e-9;
@@ -247,13 +250,13 @@ const STEP_MAX: f64 = 0.5;
 const ITERATIONS_MAX: usize = 60;
 /// Number of starts after the seed and the ready pose.
 const SPREAD_STARTS: u32 = 30;
-/// Number of starts for a point, which few starts suffice for.
+/// Number of starts for a point. Few starts are enough for a point.
 const POSITION_STARTS: u32 = 6;
 
 /// Returns posture `index` of a sequence that fills the joint ranges evenly.
 ///
-/// Steps by powers of the reciprocal of 1.1127756842787055, the root of `x⁸ = x + 1` (Roberts, The
-/// Unreasonable Effectiveness of Quasirandom Sequences, 2018, for seven dimensions).
+/// The sequence steps by powers of the reciprocal of 1.1127756842787055, the root of `x⁸ = x + 1`
+/// (Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018, for seven dimensions).
 fn spread(limits: &JointLimits, index: u32) -> JointVector {
     let mut step = 1.0;
     JointVector::from_fn(|i, _| {

@@ -112,7 +112,7 @@ pub(crate) fn fastest_point(chain: &Chain, dq: &JointVector, ee: &EndEffector) -
     sqrt(fastest)
 }
 
-/// Returns the same twist in the frame's own axes.
+/// Returns the Jacobian in the frame's own axes.
 pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobian {
     let mut body = *zero;
     for mut column in body.column_iter_mut() {
@@ -124,10 +124,10 @@ pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobia
     body
 }
 
-/// Returns Yoshikawa's manipulability `sqrt(det(J Jᵀ))`: zero in a singularity, the same for every
-/// point of the last link.
+/// Returns Yoshikawa's manipulability `sqrt(det(J Jᵀ))`. It is zero in a singularity, and the same
+/// for every point of the last link.
 ///
-/// Units follow the Jacobian (metres and radians mixed); 0.080 at the ready pose.
+/// Its unit mixes metres and radians, as the Jacobian does. The value at the ready pose is 0.080.
 pub fn manipulability(jacobian: &Jacobian) -> f64 {
     sqrt(squared_manipulability(jacobian))
 }

@@ -7,8 +7,8 @@
 //! | mass matrix | `[f64; 49]` | `7 c + r` |
 //! | inertia of a load | `[f64; 9]` | `3 c + r` |
 //!
-//! Vectors convert with `q.into()`. A state's `O_ddP_O` is the gravitational acceleration for the
-//! model's functions: `Vector3::from(state.O_ddP_O)`.
+//! Vectors convert with `q.into()`. For the model's functions, a state's `O_ddP_O` is the
+//! gravitational acceleration: `Vector3::from(state.O_ddP_O)`.
 //!
 //! ```
 //! use franka_model::{EndEffector, Frame, Load, Model, READY, layout};
@@ -55,8 +55,8 @@ impl EndEffector {
 
 impl Load {
     /// Creates a load from mass `[kg]`, centre of mass in the flange frame `[m]` and inertia about
-    /// it `[kg·m²]`: `m_total`, `F_x_Ctotal` and `I_total` of a state, or the values of one of its
-    /// loads.
+    /// the centre of mass `[kg·m²]`: `m_total`, `F_x_Ctotal` and `I_total` of a state, or the
+    /// values of one of its loads.
     pub fn from_arrays(mass: f64, com: &[f64; 3], inertia: &[f64; 9]) -> Self {
         Self {
             mass,

@@ -1,6 +1,7 @@
 //! `L D Lᵀ` factorisation of small symmetric matrices, with a size known at compile time.
 //!
-//! It avoids square roots, and its loops unroll: half the time of a general factorisation.
+//! It avoids square roots, and its loops unroll, so it takes half the time of a general
+//! factorisation.
 
 /// A factorisation of a positive definite matrix.
 #[derive(Debug)]
@@ -23,7 +24,7 @@ impl<const N: usize> Ldl<N> {
     }
 
     /// Returns the determinants of the leading blocks of size 1 to N; zero from the first
-    /// non-positive one.
+    /// non-positive determinant on.
     #[inline(always)]
     pub(crate) fn leading_minors(matrix: &[[f64; N]; N]) -> [f64; N] {
         let (factor, _) = Self::regardless(matrix);

@@ -8,9 +8,9 @@
 //! ```
 //!
 //! Everything is a function of constants ([`Model`]) and arguments: no workspace, no state, no
-//! allocation, no panic, and a bounded amount of work. All of it may therefore run in a real-time
-//! cycle. One call, [`Model::dynamics`], returns all quantities that a control law needs in one
-//! cycle.
+//! allocation, no panic, and a bounded amount of work. All functions may therefore run in a
+//! real-time cycle, except where their documentation states a longer time. One call,
+//! [`Model::dynamics`], returns all quantities that a control law needs in one cycle.
 //!
 //! | module | content |
 //! |---|---|
@@ -32,8 +32,8 @@
 //!
 //! Control uses `frame` to `elbow`, the dynamics and `collision`. [`analytic_ik`],
 //! [`manipulability`] and [`JointMargins`] are for the rest of a program: postures for a pose,
-//! reachability of a target before a motion, and distances to the limits. Unused, they cost
-//! nothing: they have no static data and no dependencies, so they have no separate feature.
+//! reachability of a target before a motion, and distances to the limits. They have no static data
+//! and no dependencies, and cost nothing if unused, so they have no separate feature.
 //!
 //! # Conventions
 //!
@@ -146,13 +146,13 @@ pub type Twist = SVector<f64, 6>;
 /// A wrench `[force; torque]`, `[N, N·m]`.
 pub type Wrench = SVector<f64, 6>;
 
-/// Duration of a control cycle, `[s]`: the time between two consecutive states of the robot, and
-/// between two commands, also after lost states.
+/// Duration of a control cycle, `[s]`. It is the time between two consecutive states of the robot,
+/// and between two commands, even after lost states.
 pub const CYCLE: f64 = 1e-3;
 
 /// Gravitational acceleration in the base frame of an upright robot, `[m/s²]`.
 ///
-/// The default value of the vendor's model (libfranka 0.21, `model.h`).
+/// This is the default value of the vendor's model (libfranka 0.21, `model.h`).
 pub const GRAVITY_EARTH: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
 /// The ready pose of the vendor's examples, `[rad]`: hand in front of the arm, pointing down, far

@@ -1,14 +1,14 @@
 //! Limits of joints, end effector and elbow. The constants of each robot state the numbers and
 //! their sources.
 //!
-//! All values are nominal: the robot checks against them. A client stays below them by
-//! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
+//! All values are nominal: the robot checks against these values. A client stays [`CLIENT_MARGIN`]
+//! below them (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
 
 use crate::JointVector;
 use crate::scalar::sqrt;
 
-/// The margin that libfranka keeps from every limit: the same number in every unit (libfranka 0.21,
-/// `rate_limiting.h`).
+/// The margin that libfranka keeps from every limit, as the same number in every unit (libfranka
+/// 0.21, `rate_limiting.h`).
 pub const CLIENT_MARGIN: f64 = 1e-3;
 
 /// Limits of the seven joints.
@@ -25,7 +25,8 @@ pub struct JointLimits {
     /// Largest speed at any position, `[rad/s]`; near the position limits see
     /// [`velocity_envelope`](Self::velocity_envelope).
     pub velocity: JointVector,
-    /// Speed bound near the position limits; `None` if the limit is the same at all positions.
+    /// Speed limit near the position limits; `None` if the speed limit is the same at all
+    /// positions.
     pub envelope: Option<BrakingEnvelope>,
     /// Largest acceleration of a commanded motion, `[rad/s²]`.
     pub acceleration: JointVector,
@@ -37,12 +38,12 @@ pub struct JointLimits {
     pub torque_rate: JointVector,
 }
 
-/// The speed limit near a position limit: the largest speed from which a joint can still brake.
+/// Speed limit near a position limit: the largest speed from which a joint can still stop in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrakingEnvelope {
-    /// Deceleration of the parabola, `[rad/s²]`.
+    /// Deceleration of the parabola `speed²/2 = deceleration · distance`, `[rad/s²]`.
     pub deceleration: JointVector,
-    /// Speed, `[rad/s]`, subtracted from the parabola.
+    /// Speed that is subtracted from the parabola, `[rad/s]`.
     pub offset: JointVector,
 }
 
@@ -58,11 +59,11 @@ impl JointLimits {
     /// Returns the velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
     ///
     /// With a [`BrakingEnvelope`], the speed towards a position limit is bounded so that the joint
-    /// stops before the hard limit. Without one, the bound is [`velocity`](Self::velocity)
-    /// everywhere, also beyond the limits. `margin` `[rad/s]` is then subtracted on both sides: the
-    /// robot checks with 0, libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit
-    /// with an envelope, the bound towards it is `-margin`: only motion away from the limit is
-    /// allowed.
+    /// stops before the hard limit. Without an envelope, the bound is [`velocity`](Self::velocity)
+    /// everywhere, even beyond the limits. `margin` `[rad/s]` is then subtracted on both sides: the
+    /// robot checks with 0, and libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position
+    /// limit with an envelope, the bound towards the limit is `-margin`, which allows only motion
+    /// away from the limit.
     ///
     /// Formula and operation order are the same as in libfranka 0.21; the results are identical to
     /// the last digit.
@@ -90,7 +91,7 @@ impl JointLimits {
     }
 }
 
-/// Bounds on a motion along one coordinate, or on the norm of a vector of them.
+/// Bounds on a motion along one coordinate, or on the norm of a vector of coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionLimits {
     /// Velocity, `[m/s]` or `[rad/s]`.

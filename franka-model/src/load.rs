@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::geometry::FLANGE;
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// A rigid payload on the flange: the tool, the object it holds, or both combined.
+/// A rigid payload on the flange: a tool, a held object, or both combined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load {
     /// Mass, `[kg]`. The dynamics ignore a load without positive mass.
@@ -25,9 +25,9 @@ impl Load {
         inertia: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
 
-    /// Returns both loads as one rigid body, with the rules of the vendor's totals (`m_total`,
-    /// `F_x_Ctotal`, `I_total` of libfranka 0.21) to the last bit. The inertia of a load without
-    /// mass counts as zero, and the centre of mass of a total without mass is zero.
+    /// Returns both loads as one rigid body, by the rules of the vendor's totals (`m_total`,
+    /// `F_x_Ctotal`, `I_total` of libfranka 0.21), identical to the last bit. The inertia of a load
+    /// without mass counts as zero, and the centre of mass of a total without mass is zero.
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let com = if mass > 0.0 {

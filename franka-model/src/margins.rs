@@ -11,18 +11,18 @@ pub struct JointMargins {
     pub to_lower: JointVector,
     /// Distance to the largest commanded position, `[rad]`.
     pub to_upper: JointVector,
-    /// Distance to the nearer of the two, as a share of half the range: 1 in the middle, 0 at a
-    /// limit.
+    /// Distance to the nearer of the two positions, as a share of half the range: 1 in the middle,
+    /// 0 at a limit.
     pub normalised: JointVector,
     /// Distance, `[rad]`, to the limit in the direction of motion, after braking from the current
-    /// velocity; at rest, the distance to the nearer limit. The joint decelerates at the value of
-    /// its [envelope](crate::limits::BrakingEnvelope), or at its largest acceleration without an
-    /// envelope. A bound on jerk makes the braking distance slightly longer.
+    /// velocity; at rest, the distance to the nearer limit. The joint brakes with the deceleration
+    /// of its [envelope](crate::limits::BrakingEnvelope), or with its largest acceleration if it
+    /// has no envelope. A bound on jerk makes the braking distance slightly longer.
     pub braking: JointVector,
-    /// Distance to the smallest velocity allowed here, `[rad/s]`; see
+    /// Distance to the smallest velocity allowed at this position, `[rad/s]`; see
     /// [`JointLimits::velocity_envelope`].
     pub to_least_velocity: JointVector,
-    /// Distance to the largest velocity allowed here, `[rad/s]`.
+    /// Distance to the largest velocity allowed at this position, `[rad/s]`.
     pub to_greatest_velocity: JointVector,
 }
 

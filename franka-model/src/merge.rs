@@ -10,8 +10,9 @@ use crate::inertia::{RigidBody, Symmetric3};
 pub(crate) enum Merge {
     /// The rule of mechanics: inertias about the common centre of mass add up.
     Rigid,
-    /// The rule of the FER's model library: link 7 has this mass and centre of mass in the library.
-    /// It keeps its inertia about its own centre, without the lever to the common centre.
+    /// The rule of the FER's model library. The numbers are the mass and centre of mass of link 7
+    /// in this library. Link 7 keeps its inertia about its own centre, without the lever to the
+    /// common centre.
     WithoutOwnLever((f64, [f64; 3])),
 }
 

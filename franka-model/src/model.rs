@@ -18,9 +18,9 @@ use crate::{Jacobian, JointVector, MassMatrix};
 
 /// A robot's constants: kinematics, bodies and limits.
 ///
-/// The vendor's numbers are static values ([`of`](Self::of),
-/// [`physically_consistent`](Self::physically_consistent)). A robot's own description yields a
-/// separate value. Both have the same functions, with the same run time.
+/// Models with the vendor's numbers are static values ([`of`](Self::of),
+/// [`physically_consistent`](Self::physically_consistent)). The description of a connected robot
+/// gives a separate model. Both have the same functions, with the same run time.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in the
@@ -34,12 +34,13 @@ pub struct Model {
     pub(crate) merge: Merge,
     pub(crate) joints: JointLimits,
     pub(crate) lengths: Lengths,
-    /// Joint frames that deviate from these lengths, for simulation: rotation and translation in
-    /// the frame of the previous link.
+    /// Joint frames that deviate from `lengths`, for simulation: rotation and translation in the
+    /// frame of the previous link.
     pub(crate) origins: Option<[(Matrix3<f64>, Vector3<f64>); 7]>,
 }
 
-/// Prints only the kind: errors contain a model, and its numbers would hide their text.
+/// Prints only the kind, because errors contain a model, whose numbers would hide the text of the
+/// error.
 impl fmt::Debug for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut model = f.debug_struct("Model");
@@ -53,7 +54,7 @@ impl Model {
         self.kind
     }
 
-    /// The fixed body, in the base frame. No dynamics depend on it.
+    /// The fixed body, in the base frame. The dynamics do not depend on it.
     pub fn base(&self) -> &RigidBody {
         &self.base
     }
@@ -63,7 +64,7 @@ impl Model {
         &self.links
     }
 
-    /// The limits of its joints.
+    /// Limits of the joints.
     pub fn joint_limits(&self) -> &JointLimits {
         &self.joints
     }
@@ -93,11 +94,11 @@ impl Model {
         }
     }
 
-    /// Returns the same robot with joint frames displaced by `deviations`: entry `i` is the pose of
-    /// the new frame of joint `i + 1`, at joint position zero, in its current frame. The errors of
-    /// a joint move all later frames.
+    /// Returns the same robot with joint frames displaced by `deviations`. Entry `i` is the pose of
+    /// the new frame of joint `i + 1` in its current frame, at joint position zero. The deviation
+    /// of a joint also moves all later frames.
     ///
-    /// For simulation: kinematics and dynamics use the deviations; [analytic
+    /// Use this for simulation. Kinematics and dynamics use the deviations. [Analytic
     /// IK](crate::analytic_ik) and [capsules](crate::collision) keep the frames of the
     /// [`lengths`](Self::lengths).
     #[must_use]
@@ -163,8 +164,8 @@ impl Model {
         (placement.pose(), jacobian)
     }
 
-    /// Returns the speed of the fastest of the centres of the joints, the flange and the end
-    /// effector, `[m/s]`: the origins of the first nine frames of [`Frame::ALL`].
+    /// Returns the largest speed of the centres of the joints, the flange and the end effector,
+    /// `[m/s]`. These points are the origins of the first nine frames of [`Frame::ALL`].
     pub fn fastest_point(&self, q: &JointVector, dq: &JointVector, ee: &EndEffector) -> f64 {
         jacobian::fastest_point(&self.chain(q), dq, ee)
     }
@@ -220,7 +221,7 @@ impl Model {
     /// C dq − g`.
     ///
     /// `armature` is the reflected rotor inertia of each joint `[kg·m²]`. `None` if the matrix is
-    /// not positive definite: because of a non-finite number, a negative armature, or a load that
+    /// not positive definite. Causes are a non-finite number, a negative armature, or a load that
     /// is not physical.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
@@ -242,7 +243,7 @@ impl Model {
         )
     }
 
-    /// Returns all quantities that a control law needs in one cycle, each part computed once.
+    /// Returns all quantities that a control law needs in one cycle; each part is computed once.
     pub fn dynamics(
         &self,
         q: &JointVector,

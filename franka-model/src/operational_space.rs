@@ -5,21 +5,22 @@
 //! effective mass: Khatib, International Journal of Robotics Research 14(1), 1995) describes it
 //! with the Jacobian `J` of the point and the joint-space inertia `M`:
 //!
-//! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. It exists at every posture.
+//! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. The mobility exists at every
+//!   posture.
 //! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
-//!   point is made to accelerate in this way *and in no other*. It does not exist in a singularity.
-//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: the inertia against a
-//!   force along `u` while the point is free to move in every direction. It never exceeds the value
-//!   of `Λ` in the same direction.
+//!   point accelerates in this way *and in no other*. `Λ` does not exist in a singularity.
+//! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`. It is the inertia that
+//!   a force along `u` feels while the point is free to move in every direction. The effective mass
+//!   never exceeds the value of `Λ` in the same direction.
 
 use nalgebra::{Cholesky, Matrix3, SMatrix, UnitVector3, Vector3};
 
 use crate::{Dynamics, EndEffector, Frame, Jacobian, JointVector, Load, MassMatrix, Model, Twist};
 
-/// 6×6, `[linear; angular]` in rows and columns.
+/// A 6×6 matrix, `[linear; angular]` in rows and columns.
 pub type Matrix6 = SMatrix<f64, 6, 6>;
 
-/// The response of a point of the arm to wrenches, in the axes of its Jacobian.
+/// Response of a point of the arm to wrenches, in the axes of the point's Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperationalSpace {
     mobility: Matrix6,
@@ -30,7 +31,7 @@ impl OperationalSpace {
     /// inertia.
     ///
     /// The point is the origin of the Jacobian's frame, and the axes are the Jacobian's: base axes
-    /// for a zero Jacobian. For another point of the last link, move the end effector to it
+    /// for a zero Jacobian. For another point of the last link, move the end effector to this point
     /// ([`EndEffector::f_t_ee`]).
     ///
     /// `None` if `mass` is not positive definite, which is impossible for a physical arm.
@@ -72,8 +73,9 @@ impl OperationalSpace {
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// Returns the effective mass along `direction`, `[kg]`: the ratio of a force along it to the
-    /// acceleration of the point along it. Infinite if the point cannot move in this direction.
+    /// Returns the effective mass along `direction`, `[kg]`: the ratio of a force along `direction`
+    /// to the point's acceleration along `direction`. Infinite if the point cannot move in this
+    /// direction.
     pub fn effective_mass(&self, direction: &UnitVector3<f64>) -> f64 {
         self.effective_inertia(&Self::twist(direction, &Vector3::zeros()))
     }

@@ -9,8 +9,8 @@ use crate::box_qp::{JointBox, Problem};
 const ROWS: usize = 6 + 7;
 type Column = [f64; ROWS];
 
-/// Returns the minimum, from all 3⁷ ways to hold variables on their bounds: the best point within
-/// the box whose gradient does not point into it.
+/// Returns the minimum by trying all 3⁷ ways to hold variables on their bounds. The result is the
+/// best point within the box whose gradient does not point into the box.
 ///
 /// The least squares of each way are solved by orthogonalising the columns of `[A; sqrt(d) 1]`,
 /// without normal equations.

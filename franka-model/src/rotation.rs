@@ -27,7 +27,7 @@ pub fn exp(phi: &Vector3<f64>) -> UnitQuaternion<f64> {
 
 /// Returns the shortest rotation vector of `rotation`, of length at most π.
 ///
-/// At exactly half a turn both directions are right; the quaternion's direction is returned.
+/// At exactly half a turn, both directions are right; the quaternion determines which is returned.
 pub fn log(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let v = rotation.imag();
     let w = rotation.w;
@@ -53,7 +53,7 @@ pub fn left_jacobian(phi: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + k * c.c2 + k * k * c.c3
 }
 
-/// Returns the inverse of [`left_jacobian`]; it exists for `|phi| < 2π`.
+/// Returns the inverse of [`left_jacobian`]. The inverse exists for `|phi| < 2π`.
 pub fn left_jacobian_inverse(phi: &Vector3<f64>) -> Matrix3<f64> {
     let c = Stumpff::at(phi.norm_squared());
     let k = phi.cross_matrix();
@@ -99,7 +99,7 @@ pub fn derivatives(
     (rate, second)
 }
 
-/// Stumpff's functions of `x = angle²`: cosine, sine over angle, and higher ones.
+/// Stumpff's functions of `x = angle²`: cosine, sine over angle, and the functions of higher order.
 struct Stumpff {
     c0: f64,
     c1: f64,
@@ -149,7 +149,7 @@ fn series(k: f64, x: f64) -> f64 {
     sum
 }
 
-/// Square of an angle of 1 rad; above it the quotients lose at most two digits.
+/// Square of an angle of 1 rad. Above this angle, the quotients lose at most two digits.
 const SERIES_BELOW: f64 = 1.0;
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
 //! Conversions between homogeneous matrices and isometries.
 //!
 //! The robot's matrices are column-major, may come from `f32` fields, and need not be exactly
-//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The rotation block is replaced
-//! by the nearest rotation in the least-squares sense (the polar factor).
+//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The conversion replaces the
+//! rotation block by the nearest rotation in the least-squares sense (the polar factor).
 
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
 /// Largest deviation of an element of a rotation block from the nearest rotation.
 ///
-/// This is a hundred times the deviation of the vendor's rounded constants; a transposed or sheared
-/// matrix deviates far more.
+/// The bound is a hundred times the deviation of the vendor's rounded constants. A transposed or
+/// sheared matrix deviates far more.
 pub const DISTORTION_MAX: f64 = 1e-3;
 
 /// Returns the rigid transform nearest to `matrix`.
@@ -51,9 +51,9 @@ pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
 /// Returns the rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) /
 /// 2`.
 ///
-/// It converges for every matrix of positive determinant, quadratically near a rotation (Higham,
-/// Functions of Matrices, 2008, section 8.3). `None` for other matrices, and if 20 steps are not
-/// enough, which happens only close to a singular matrix.
+/// The iteration converges for every matrix of positive determinant, and quadratically near a
+/// rotation (Higham, Functions of Matrices, 2008, section 8.3). `None` for other matrices, and if
+/// 20 steps are not enough, which happens only close to a singular matrix.
 pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
     let determinant = block.determinant();
     if determinant.is_nan() || determinant <= 0.0 {

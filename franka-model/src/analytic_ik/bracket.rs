@@ -2,8 +2,9 @@
 
 /// Returns the root between two points with values of opposite signs, to the last digits of x.
 ///
-/// The method is false position. If one end stays, its value is halved (the Illinois variant:
-/// Dowell and Jarratt, 1971). Every third step is a bisection, which bounds the number of steps.
+/// The method is false position. If the same end of the interval remains twice, its value is halved
+/// (the Illinois variant: Dowell and Jarratt, 1971). Every third step is a bisection, which bounds
+/// the number of steps.
 pub(super) fn root(
     f: impl Fn(f64) -> f64,
     (mut a, mut fa): (f64, f64),
@@ -39,9 +40,8 @@ pub(super) fn root(
     if fa.abs() < fb.abs() { a } else { b }
 }
 
-/// Searches for roots around the middle one of three ascending or descending points. Their values
-/// have the same sign, and the middle value is nearest to zero. Finds two roots, one double root,
-/// or none.
+/// Searches for roots around the middle of three points in order. The three values have the same
+/// sign, and the middle value is nearest to zero. Finds two roots, one double root, or no root.
 pub(super) fn dip(
     f: impl Fn(f64) -> f64,
     [mut a, mut b, mut c]: [(f64, f64); 3],
@@ -96,7 +96,8 @@ pub(super) fn dip(
     }
 }
 
-/// Like [`dip`], between the end of an interval and the next point, which is further from zero.
+/// Like [`dip`], but between the end of an interval and the next point. The value at the next point
+/// is further from zero.
 pub(super) fn dip_at_end(
     f: impl Fn(f64) -> f64,
     end: (f64, f64),
@@ -133,7 +134,7 @@ fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> (f64, f64) {
 }
 
 const STEPS_MAX: u32 = 60;
-/// Number of steps without improvement, as predicted, after which a search ends.
+/// Number of predicted steps without improvement after which a search ends.
 const SETTLED: u32 = 3;
 /// Number of samples between an end and the point next to it.
 const END_STEPS: u32 = 5;

@@ -11,8 +11,8 @@ use crate::scalar::{acos, atan2, sqrt};
 
 /// Returns all solutions with joint 4 at `q4`: at most eight.
 ///
-/// The wrist is on a circle about axis 7. Joint 4 determines its distance from the shoulder, and at
-/// most two points of a circle have a given distance.
+/// The wrist is on a circle about axis 7. Joint 4 determines the distance of the wrist from the
+/// shoulder. At most two points of a circle have a given distance from the shoulder.
 pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Solutions {
     let mut found = Solutions::NONE;
     let flange = Flange::of(flange);

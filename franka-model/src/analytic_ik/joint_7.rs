@@ -1,4 +1,4 @@
-//! The steps after joint 7, in closed form.
+//! Solutions for a given angle of joint 7, in closed form.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -93,7 +93,7 @@ impl Hand {
     }
 }
 
-/// One answer for joint 4.
+/// One solution for joint 4.
 #[derive(Clone, Copy)]
 pub(super) struct Elbow {
     pub(super) above: bool,
@@ -110,7 +110,7 @@ fn squared_sides(lengths: &Lengths) -> [f64; 2] {
 }
 
 impl Elbow {
-    /// Returns both answers for the squared distance between shoulder and wrist, or none.
+    /// Returns both solutions for the squared distance between shoulder and wrist, or none.
     fn both(lengths: &Lengths, squared_distance: f64) -> [Option<Self>; 2] {
         match cosine(Self::from_flip(lengths, squared_distance)) {
             // With the shoulder on the axis of joint 5, far outside the limits, f vanishes.
@@ -122,13 +122,14 @@ impl Elbow {
         }
     }
 
-    /// Returns the answer on one side, for a distance that is possible within rounding.
+    /// Returns the solution on one side of the flip angle. The distance must be possible, except
+    /// for rounding.
     pub(super) fn on_side(lengths: &Lengths, above: bool, squared_distance: f64) -> Self {
         let cos = Self::from_flip(lengths, squared_distance).clamp(-1.0, 1.0);
         Self::turned(lengths, above, cos)
     }
 
-    /// Returns the answer with the given joint 4.
+    /// Returns the solution with the given joint 4.
     pub(super) fn at(lengths: &Lengths, q4: f64) -> Option<Self> {
         let above = sin_cos(q4 - lengths.flip_angle()).0 > 0.0;
         let elbow = Self::of(lengths, above, sin_cos(q4));
@@ -176,7 +177,7 @@ impl Elbow {
     }
 }
 
-/// One answer for joints 5 and 6.
+/// One solution for joints 5 and 6.
 pub(super) struct Forearm {
     pub(super) straight: bool,
     q5: f64,
@@ -186,8 +187,8 @@ pub(super) struct Forearm {
 }
 
 impl Forearm {
-    /// Computes both answers from the axis of joint 5. This axis is in the plane of x6 and y6, and
-    /// the elbow determines its component of the vector to the shoulder.
+    /// Computes both solutions from the axis of joint 5. The axis is in the plane of x6 and y6. The
+    /// elbow determines the component of the vector to the shoulder along this axis.
     pub(super) fn both(hand: &Hand, elbow: &Elbow) -> [Option<Self>; 2] {
         let v = &hand.to_shoulder;
         let (along, across) = (dot(&hand.x6, v), dot(&hand.y6, v));
@@ -204,8 +205,8 @@ impl Forearm {
         })
     }
 
-    /// Computes the answer for known sine and cosine of joint 6, whose squares add up to one. If
-    /// `straight` is `None`, it is derived from joint 5.
+    /// Computes the solution for known sine and cosine of joint 6. The sum of their squares must be
+    /// one. If `straight` is `None`, it is derived from joint 5.
     pub(super) fn of(
         hand: &Hand,
         elbow: &Elbow,
@@ -245,7 +246,7 @@ impl Forearm {
     }
 }
 
-/// The rotation of joints 1, 2 and 3, as sines and cosines of one answer.
+/// Rotation of joints 1, 2 and 3: sines and cosines of one solution.
 struct Turn {
     one: (f64, f64),
     two: (f64, f64),
@@ -274,7 +275,7 @@ impl Turn {
         }
     }
 
-    /// Returns the angles of joints 1, 2 and 3 for both signs of joint 2; the flag is true if joint
+    /// Returns the angles of joints 1, 2 and 3 for both signs of joint 2. The flag is true if joint
     /// 2 is negative.
     fn both(&self) -> [(bool, [f64; 3]); 2] {
         let ((s1, c1), (s2, c2), (s3, c3)) = (self.one, self.two, self.three);
@@ -285,14 +286,15 @@ impl Turn {
     }
 }
 
-/// Returns `x` as a cosine, clamped against rounding; `None` if it is further out of range.
+/// Returns `x` as a cosine, clamped if rounding moved it out of range; `None` if `x` is further out
+/// of range.
 pub(super) fn cosine(x: f64) -> Option<f64> {
     (x.abs() <= 1.0 + FOLD).then(|| x.clamp(-1.0, 1.0))
 }
 
-/// Excess beyond a double root within which a pose still counts as on it: some thousand rounding
+/// Excess beyond a double root up to which a pose counts as on the root: some thousand rounding
 /// errors.
 const FOLD: f64 = 1e-12;
-/// Sine of joint 2 below which axes 1 and 3 count as one. The resulting error of the pose has the
-/// same size, in radians.
+/// Sine of joint 2 below which axes 1 and 3 count as one axis. The resulting error of the pose has
+/// the same size, in radians.
 const SHOULDER_SINGULAR: f64 = 1e-13;

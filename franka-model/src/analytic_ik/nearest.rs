@@ -9,12 +9,11 @@ use crate::inverse_kinematics::{self, IkError};
 use crate::model::Model;
 
 /// Returns the posture within the limits that brings the end effector to `target` and is nearest to
-/// `q` (least sum of squares), over all redundancy parameters. Returns `None` if no posture was
-/// found.
+/// `q` (least sum of squares), over all redundancy parameters; `None` if no posture was found.
 ///
-/// Joint 7 is swept through its range, and the best posture of every branch is refined. This takes
-/// some 0.3 ms. The sweep may miss a pose that allows only a hundredth of a radian of joint 7;
-/// [`reach`](super::reach) searches more finely.
+/// The search sweeps joint 7 through its range and refines the best posture of every branch. This
+/// takes some 0.3 ms. The sweep may miss solutions if they exist only in a hundredth of a radian of
+/// joint 7. [`reach`](super::reach) searches more finely.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].

@@ -13,17 +13,19 @@ use crate::inverse_kinematics::{self, IkError};
 use crate::limits::JointLimits;
 use crate::model::Model;
 
-/// The reachability of a target.
+/// Reachability of a target, and its distance from the boundary of the reachable set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// A posture within the limits that meets the target: among the examined postures, the posture
-    /// with the largest distance to the limits. `None` if the target is out of reach.
+    /// Posture within the limits that reaches the target. Of the examined postures, it has the
+    /// largest distance to the limits. `None` if the target is out of reach.
     pub posture: Option<JointVector>,
-    /// Distance, `[m]`, that the target may move along the line through the shoulder, out or in,
-    /// before it becomes unreachable; at most [`FAR`]. The value is negative for an unreachable
-    /// target: the distance along that line to the reachable set. It is −∞ if no point of the line
-    /// can be reached with that orientation. The value is exact to a micrometre, if the reachable
-    /// set has no gaps shorter than 5 mm on the line.
+    /// Distance, `[m]`, by which the target may move along the line through the shoulder, out or
+    /// in, before it becomes unreachable. At most [`FAR`].
+    ///
+    /// For an unreachable target the value is negative: minus the distance along this line to the
+    /// reachable set. It is −∞ if no point of the line is reachable with this orientation. The
+    /// value is exact to a micrometre, unless the reachable set has gaps shorter than 5 mm on the
+    /// line.
     pub margin: f64,
 }
 
@@ -57,7 +59,8 @@ pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<
 /// Computes the reachability of `point` `[m]`, in the base frame, for the end effector's origin
 /// with any orientation.
 ///
-/// The search is by iteration from several starts: a refusal is strong evidence, not a proof.
+/// The search iterates from several starting postures. A point that it does not reach is almost
+/// certainly out of reach, but this is no proof.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
@@ -109,8 +112,8 @@ impl PoseSearch<'_> {
         }
     }
 
-    /// Iterates from the last posture: at the boundary, joint 7 has only one possible angle, which
-    /// a sweep misses.
+    /// Iterates from the last posture. This finds the boundary, where joint 7 has only one possible
+    /// angle, which a sweep misses.
     fn posture(&self, flange: &Isometry3<f64>) -> Option<JointVector> {
         let seed = self.seed.unwrap_or(crate::READY);
         inverse_kinematics::from_seed(self.model, flange, &seed).ok()
@@ -124,7 +127,7 @@ fn max_margin(model: &Model, flange: &Isometry3<f64>) -> Option<Solution> {
 }
 
 /// Returns the signed distance along the line through the shoulder at which `reaches(shift)`
-/// changes.
+/// changes its value.
 fn margin(
     inside: bool,
     point: &Vector3<f64>,
@@ -164,7 +167,7 @@ fn margin(
 const STEPS: u32 = 32;
 /// Distance between examined places, `[m]`.
 const STRIDE: f64 = 5e-3;
-/// Length, `[m]`.
+/// Resolution of the distance, `[m]`.
 const PRECISION: f64 = 1e-6;
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::JointVector;
 use crate::elbow::FLIP_ANGLE;
 use crate::limits::JointLimits;
 
-/// The choice of a solution between the two answers of each step.
+/// Choice of one of the two answers in each step of the solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Branch {
     /// True if joint 4 is above the [flip angle](crate::elbow::FLIP_ANGLE).
@@ -31,17 +31,17 @@ impl Branch {
 pub struct Solution {
     /// Joint positions, `[rad]`.
     pub q: JointVector,
-    /// The branch: constant along a path that crosses no singularity.
+    /// Branch of the solution. It stays the same along a path that crosses no singularity.
     pub branch: Branch,
-    /// Range of joint 1, `[rad]`, if axes 1 and 3 are in line (joint 2 at zero): a lower and an
-    /// upper bound. Joint 1 may turn by an amount in this range while joint 3 turns back, without
-    /// moving the hand. The range respects the limits if the solution was sought within limits.
-    /// `None` in all other postures.
+    /// Range by which joint 1 may turn, `[rad]`, if axes 1 and 3 are in line (joint 2 at zero):
+    /// lower and upper bound. Joint 3 turns back by the same angle, and the hand does not move. The
+    /// range is within the joint limits if the search was. `None` in all other postures.
     pub slide: Option<[f64; 2]>,
 }
 
 impl Solution {
-    /// Returns the distance of each joint to the nearer of its limits, `[rad]`, negative beyond it.
+    /// Returns the distance of each joint to the nearer of its limits, `[rad]`; negative beyond the
+    /// limit.
     pub fn limit_distances(&self, limits: &JointLimits) -> JointVector {
         (self.q - limits.lower).inf(&(limits.upper - self.q))
     }
@@ -56,7 +56,7 @@ impl Solution {
         Singularity::of(&self.q)
     }
 
-    /// Returns the same pose with joints 1 and 3 as near to their values in `q` as
+    /// Returns the solution for the same pose with joints 1 and 3 as near to their values in `q` as
     /// [`slide`](Self::slide) allows.
     pub(super) fn slid_towards(&self, q: &JointVector) -> Self {
         let Some([back, on]) = self.slide else {
@@ -72,8 +72,8 @@ impl Solution {
         slid
     }
 
-    /// Returns the solution within the limits: angles are shifted by a turn, or joints 1 and 3
-    /// slid, if necessary.
+    /// Returns the solution within the limits. If necessary, it shifts angles by a turn, or slides
+    /// joints 1 and 3.
     fn within(&self, lower: &JointVector, upper: &JointVector) -> Option<Self> {
         let mut moved = *self;
         for i in 0..7 {
@@ -109,10 +109,11 @@ impl Solution {
 }
 
 /// Distances of joints, `[rad]`, from postures where two solutions meet and the six joints without
-/// joint 7 lose a direction. Each is the angle of one joint to the position at which a factor of
-/// their determinant `L1 L2 sin(elbow) · sin(shoulder) · f(q4) sin(wrist)` vanishes.
+/// joint 7 lose a direction. The determinant of these six joints is `L1 L2 sin(elbow) ·
+/// sin(shoulder) · f(q4) sin(wrist)`. Each distance is the angle of one joint from the position at
+/// which a factor vanishes.
 ///
-/// The whole arm can still be regular there, because of its seventh joint; see
+/// With its seventh joint, the arm may still be regular in such a posture; see
 /// [`manipulability`](crate::manipulability).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Singularity {
@@ -141,15 +142,15 @@ impl Singularity {
     }
 }
 
-/// A list of solutions, usable as a slice.
+/// List of solutions, which dereferences to a slice.
 #[derive(Debug, Clone, Copy)]
 pub struct Solutions {
     list: [Solution; CAPACITY],
     count: usize,
 }
 
-/// Capacity of a list: four times the number of solutions for a given joint 7 or 4. In two million
-/// swivel problems, none had more than 12 solutions within the limits.
+/// Capacity of a list: four times the largest number of solutions for a given joint 7 or 4. None of
+/// two million problems with a given swivel angle had more than 12 solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {
@@ -174,10 +175,10 @@ impl Solutions {
         }
     }
 
-    /// Returns the solutions within `lower` and `upper` `[rad]`; angles are shifted by a turn if
-    /// necessary.
+    /// Returns the solutions within `lower` and `upper` `[rad]`. If necessary, angles are shifted
+    /// by a turn.
     ///
-    /// No joint of these robots has a range of a full turn, so the position within it is unique.
+    /// No joint of these robots has a range of a full turn, so the shift is unique.
     pub fn within(mut self, lower: &JointVector, upper: &JointVector) -> Self {
         let found = self.count;
         self.count = 0;
@@ -189,8 +190,8 @@ impl Solutions {
         self
     }
 
-    /// Returns the solution with the least largest joint displacement from `q`, slid towards `q` if
-    /// possible ([`Solution::slide`]).
+    /// Returns the solution whose largest joint displacement from `q` is smallest, slid towards `q`
+    /// if possible ([`Solution::slide`]).
     pub fn nearest(&self, q: &JointVector) -> Option<Solution> {
         let distance = |solution: &Solution| (solution.q - q).amax();
         self.iter()

@@ -8,12 +8,12 @@
 //! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
 //! ```
 //!
-//! The roots of `g` are sought on the arcs of joint 7 on which the distance of shoulder and wrist
-//! suits the range of joint 4. The samples are dense where the half plane of the elbow turns
-//! quickly (the wrist passes near axis 1). Sign changes are bracketed. Between samples that
-//! approach zero without reaching it, the extremum is computed, so that two close roots are not
-//! missed. At the ends of an arc `g` behaves like a square root; cosine spacing of the samples
-//! compensates for this.
+//! The solver seeks the roots of `g` on those arcs of joint 7 on which the distance of shoulder and
+//! wrist is possible in the range of joint 4. Samples are dense where the half plane of the elbow
+//! turns quickly (the wrist passes near axis 1). The solver brackets changes of sign. Where samples
+//! approach zero without a change of sign, it computes the extremum to find two close roots. At the
+//! ends of an arc `g` behaves like a square root; cosine spacing of the samples compensates for
+//! this.
 
 use core::f64::consts::PI;
 
@@ -66,7 +66,7 @@ struct Side<'a> {
     cos: f64,
 }
 
-/// The equation at one angle of joint 7.
+/// Terms of the equation at one angle of joint 7.
 struct Forming {
     hand: Hand,
     elbow: Elbow,
@@ -174,8 +174,8 @@ struct Sample {
 }
 
 impl Sample {
-    /// True if the interval to `other` may contain undetected roots: the half plane of the elbow
-    /// turns by a large angle, or a root or near-root suggests another one.
+    /// True if the interval to `other` may contain undetected roots, because the half plane of the
+    /// elbow turns by a large angle, or because of a root or near-root.
     fn hides_something_before(&self, other: &Self) -> bool {
         let ([a, b], [c, d]) = (self.horizontal, other.horizontal);
         let (along, across) = (a * c + b * d, a * d - b * c);
@@ -260,8 +260,8 @@ const HALVINGS: usize = 24;
 const FINE: f64 = 0.13 * PI / STEPS as f64;
 /// Tangent of the largest turn of the elbow's half plane between samples.
 const TURN: f64 = 0.3;
-/// Typical value of `g` at a root. It is larger at steep roots, with the wrist within millimetres
-/// of axis 1.
+/// Typical value of `g` at a root. The value is larger at steep roots, where the wrist is within
+/// millimetres of axis 1.
 const ROUNDING: f64 = 1e-14;
 /// Largest value of `g` at any root.
 const JUMP: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use crate::JointVector;
 
-/// The bound that holds a variable.
+/// Bound on which a variable is held, if any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
     /// No bound: the variable is inside its interval.
@@ -24,9 +24,9 @@ pub struct JointBox {
 impl JointBox {
     /// Creates the box between `lower` and `upper`; an infinite bound is never active.
     ///
-    /// Bounds can cross through rounding in an interval without width. Both then become their
-    /// midpoint, and the variable is fixed. If bounds can contradict each other by more than that,
-    /// the caller must first decide which bound to drop.
+    /// If rounding makes the bounds of a narrow interval cross, both become their midpoint, and the
+    /// variable is fixed. If bounds can contradict each other by more than rounding, the caller
+    /// must first decide which bound to drop.
     pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
         let mut bounds = Self {
             lower: *lower,
@@ -42,7 +42,7 @@ impl JointBox {
         bounds
     }
 
-    /// Creates a box with the interval `[-bound, bound]` for each variable.
+    /// Creates the box with the interval `[-bound, bound]` for each variable.
     pub fn symmetric(bound: &JointVector) -> Self {
         Self::new(&-bound, bound)
     }

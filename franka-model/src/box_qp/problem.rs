@@ -1,8 +1,8 @@
-//! The function to minimise.
+//! The function that the search minimises.
 
 use crate::{Jacobian, JointVector, Twist};
 
-/// The function to minimise.
+/// The parts of the function to minimise; see [`box_qp`](crate::box_qp).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     /// `A`.

@@ -33,8 +33,8 @@ const fn covering(link: u8, start: [f64; 3], end: [f64; 3], fit: f64, margin: f6
 /// Largest number of capsules of an arm.
 pub(super) const ARM_MAX: usize = FR3.len();
 
-/// The outermost link that a tool is checked against. Only the last two joints move the tool
-/// against this link.
+/// The outermost link against which a tool is checked. Only the last two joints move the tool
+/// relative to this link.
 pub(super) const TOOL_MEETS: u8 = 5;
 
 /// Pairs of the vendor's capsules. See [`Shape::vendor`] for the rule; the tests repeat the search.
@@ -125,8 +125,8 @@ pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// The body is fitted in the same way as the links. The fingers have the vendor's capsule, and
-/// another one at their connection to the body.
+/// The body is fitted in the same way as the links. The fingers have the vendor's capsule, and a
+/// second capsule at their connection to the body.
 pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],

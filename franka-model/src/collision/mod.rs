@@ -18,13 +18,13 @@
 //! Each distance is continuous in `q` and changes by at most the motion of the points, but it is
 //! not smooth everywhere:
 //!
-//! - Between two segments that are parallel and side by side, or that cross (distance `-(r1 +
-//!   r2)`), the nearest points jump. The gradient is then one of the gradients around that posture.
-//!   For parallel segments, it is the gradient at the middle of the overlap. For crossing segments,
-//!   it is along their common normal; rounding determines which of its two directions.
+//! - The nearest points jump between two segments that are parallel and side by side, or that cross
+//!   (distance `-(r1 + r2)`). The gradient is then one of the gradients near this posture. For
+//!   parallel segments, it is the gradient at the middle of the overlap. For crossing segments, it
+//!   is along their common normal; rounding determines its sign.
 //! - The axis of a capsule that crosses a box may have equal distances to several faces or edges.
 //!   An axis parallel to a face or a plane has equal distances at both ends. The gradient is one of
-//!   the possible ones; for a parallel axis, it is the gradient at the middle.
+//!   the possible gradients; for a parallel axis, it is the gradient at the middle.
 //! - The least distance over all pairs has a kink where another pair becomes the nearest. For a
 //!   smooth constraint, use every pair's distance and gradient ([`Placed::pairs`]) as a separate
 //!   constraint.
@@ -70,11 +70,11 @@ use crate::inertia::{cross, dot};
 use capsules::LinkCapsule;
 use segment::Segment;
 
-/// The body that a capsule belongs to.
+/// Body to which a capsule belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Body {
-    /// Link 0 (the base) to 7.
+    /// Link 0 (the base) to link 7.
     Link(u8),
     /// The tool on the flange.
     Tool,
@@ -99,8 +99,8 @@ impl Body {
     }
 }
 
-/// The distance of two bodies, and its derivative. `P` names the bodies: `(Body, Body)` inside the
-/// arm, the inner one first; [`Body`] for an obstacle.
+/// Distance of two bodies, and its derivative. `P` names the bodies: `(Body, Body)` within the arm,
+/// with the inner body first, or [`Body`] for an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity<P> {
     /// The bodies.
@@ -153,7 +153,7 @@ impl<'a> Shape<'a> {
         }
     }
 
-    /// Returns the indices of the pairs of capsules that can meet, the inner one first.
+    /// Returns the indices of the pairs of capsules that can meet, with the inner capsule first.
     fn indices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (arm, tool) = (self.arm, self.arm.len()..self.len());
         let within = self.pairs.iter().map(|&(a, b)| (a.into(), b.into()));
@@ -173,7 +173,7 @@ impl Placed<'_> {
     }
 
     /// Returns the distance of every pair that can meet, `[m]`, in the order of
-    /// [`pairs`](Self::pairs). Cheaper, because no gradients are computed.
+    /// [`pairs`](Self::pairs). This is cheaper, because it computes no gradients.
     pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -181,8 +181,8 @@ impl Placed<'_> {
         })
     }
 
-    /// Returns the pair with the least distance. Cheaper than [`pairs`](Self::pairs), because one
-    /// gradient is computed.
+    /// Returns the pair with the least distance. This is cheaper than [`pairs`](Self::pairs),
+    /// because it computes only one gradient.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
         let distances = self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -202,7 +202,7 @@ impl Placed<'_> {
     }
 
     /// Returns the moving capsule that is nearest to an obstacle. For a floor at the height of the
-    /// base, this is link 1 in most postures, which turns in place a decimetre above it.
+    /// base, this is link 1 in most postures. Link 1 turns in place a decimetre above such a floor.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
         let distances = self.moving().map(|i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -267,10 +267,11 @@ impl Placed<'_> {
         self.proximity(body, 0..body.joints(), nearest)
     }
 
-    /// `joints` move the second point but not the first.
+    /// Computes distance and gradient from the nearest points. `joints` are the joints that move
+    /// the second point but not the first.
     ///
     /// The nearest points stay nearest to first order. So the distance changes by the velocity of
-    /// the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
+    /// the second point along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
     #[inline(always)]
     fn proximity<P>(
         &self,

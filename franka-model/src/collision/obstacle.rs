@@ -19,7 +19,7 @@ pub enum Obstacle {
     },
     /// A box, in any orientation.
     Box {
-        /// Pose of its centre.
+        /// Pose of the centre of the box in the base frame.
         pose: Isometry3<f64>,
         /// Half of its sides, `[m]`, along the axes of `pose`; not negative.
         half: Vector3<f64>,
@@ -35,9 +35,9 @@ impl Obstacle {
         }
     }
 
-    /// Returns the nearest points of the obstacle and a capsule. All distances are exact. Apart, it
-    /// is the least distance between any two points. If they overlap, it is minus the length of the
-    /// shortest shift that separates them.
+    /// Returns the nearest points of the obstacle and a capsule. The distance is exact. If both are
+    /// apart, it is the least distance between any two points. If they overlap, it is minus the
+    /// length of the shortest shift that separates them.
     #[inline(always)]
     pub(super) fn nearest(&self, segment: &Segment) -> Nearest {
         match self {
@@ -95,8 +95,8 @@ fn nearest_to_box(pose: &Isometry3<f64>, half: &Vector3<f64>, segment: &Segment)
     }
 }
 
-/// Length, `[m]`, below which the axis counts as touching the box: the direction of a shorter gap
-/// is rounding.
+/// Length, `[m]`, below which the axis counts as touching the box, because the direction of a
+/// shorter gap is rounding error.
 const TOUCHING: f64 = 1e-12;
 
 /// The axis of a capsule in the axes of a box.
@@ -109,7 +109,8 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// Returns the distance to the box; inside, minus the length of the shortest way out.
+    /// Returns the distance to the box. Inside the box it is minus the length of the shortest way
+    /// out.
     pub(super) fn distance(&self) -> f64 {
         let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
@@ -122,8 +123,8 @@ impl Axis {
     }
 
     /// Returns a parameter with the least distance to the box; see
-    /// [`nearest_outside`](Self::nearest_outside). Only bends at which the sign of the slope is not
-    /// known yet are examined.
+    /// [`nearest_outside`](Self::nearest_outside). Examines only bends at which the sign of the
+    /// slope is not known yet.
     fn one_nearest_outside(&self) -> f64 {
         let mut low = (0.0, self.slope(0.0));
         if low.1 >= 0.0 {
@@ -174,7 +175,8 @@ impl Axis {
         (self.at(t) - self.clamped(t)).dot(&self.along)
     }
 
-    /// Returns the parameter with the least distance to the box; the middle if several exist.
+    /// Returns the parameter with the least distance to the box; the middle of the interval if
+    /// several exist.
     ///
     /// The slope bends where a coordinate passes a face. Between two bends it is a straight line.
     fn nearest_outside(&self) -> f64 {
@@ -216,9 +218,10 @@ impl Axis {
     /// Returns the shortest shift out of the box, given that the axis meets it: the parameter of
     /// the point that leaves the box last, the direction, and the negative length.
     ///
-    /// The relative positions at which the two meet fill a polytope: the box swept by the segment.
-    /// Its faces are the faces of the box, and the faces that the segment sweeps from the box's
-    /// edges. The nearest of them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
+    /// The relative positions at which segment and box meet fill a polytope: the box swept by the
+    /// segment. The faces of the polytope are the faces of the box, and the faces that the segment
+    /// sweeps from the box's edges. The nearest face is the way out (Gottschalk, Lin and Manocha,
+    /// OBBTree, 1996).
     fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
         let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
         for i in 0..3 {
@@ -249,8 +252,8 @@ impl Axis {
         }
     }
 
-    /// Returns the parameter at which the axis passes the edge of the box along coordinate `i` that
-    /// is outermost along `normal`, a direction perpendicular to both.
+    /// Returns the parameter at which the axis passes an edge of the box along coordinate `i`. This
+    /// edge is outermost along `normal`, a direction perpendicular to axis and edge.
     fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
         let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
         // Seen along the edge, the axis passes a point.
@@ -276,8 +279,8 @@ fn sign(x: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which an axis counts as parallel to an edge: it then sweeps
-/// no separate face from the edge.
+/// Square of the sine of an angle below which an axis counts as parallel to an edge. A parallel
+/// axis sweeps no separate face from the edge.
 const PARALLEL: f64 = 1e-24;
 
 /// Two ends and two faces per coordinate.

@@ -7,7 +7,7 @@ use crate::geometry::SHOULDER;
 use crate::inertia::{cross, dot};
 use crate::scalar::sqrt;
 
-/// A capsule at a posture, in base axes, from the shoulder.
+/// A capsule at a posture, in base axes, relative to the shoulder.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
     pub(super) start: Vector3<f64>,
@@ -79,9 +79,9 @@ impl Segment {
 
     /// Returns the nearest points of two axes, and the distance of the surfaces.
     ///
-    /// Both parameters minimise one convex quadratic in a square. Solve for the first and clamp it;
-    /// solve for the second with it and clamp; then solve for the first again (Ericson, Real-Time
-    /// Collision Detection, 2004, section 5.1.9).
+    /// The two parameters minimise a convex quadratic function in a square. This solves for the
+    /// first parameter and clamps it, solves for the second and clamps it, and then solves for the
+    /// first again (Ericson, Real-Time Collision Detection, 2004, section 5.1.9).
     #[inline(always)]
     pub(super) fn nearest(&self, other: &Self) -> Nearest {
         let between = self.start - other.start;
@@ -115,10 +115,10 @@ impl Segment {
     }
 
     /// Returns the parameter on this segment that is nearest to a parallel segment. `ends` are the
-    /// parameters of the other's ends.
+    /// parameters of the other segment's ends.
     ///
-    /// Along the overlap, the distance is constant, and the middle is the only symmetric choice. If
-    /// the distance falls by a slope of rounding size, an end of the overlap is right.
+    /// Along the overlap, the distance is constant except for rounding. The middle is the only
+    /// symmetric choice, unless an end of the overlap is nearer by more than the last digits.
     #[cold]
     fn beside(&self, other: &Self, ends: [f64; 2]) -> f64 {
         let [from, to] = ends.map(clamp);
@@ -143,7 +143,7 @@ impl Segment {
     }
 }
 
-/// Returns a direction perpendicular to both segments, which touch: no other direction is
+/// Returns a direction perpendicular to both segments, which touch. No other direction is
 /// distinguished.
 #[cold]
 fn common_normal(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
@@ -164,7 +164,8 @@ fn clamp(t: f64) -> f64 {
     t.clamp(0.0, 1.0)
 }
 
-/// Returns a quotient, or 0 for a segment without length, whose parameters all mean the same point.
+/// Returns the quotient, or 0 for a segment without length, on which all parameters are the same
+/// point.
 #[inline(always)]
 fn ratio(numerator: f64, square: f64) -> f64 {
     if square > 0.0 {
@@ -174,8 +175,8 @@ fn ratio(numerator: f64, square: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which segments count as parallel: below it, the solution
-/// for two parameters is rounding error.
+/// Square of the sine of an angle below which segments count as parallel. Below this angle, the
+/// solution for two parameters is rounding error.
 const PARALLEL: f64 = 1e-12;
 
 /// Length, `[m]`, below which the direction of a gap is rounding error.

@@ -39,13 +39,14 @@ impl Capsule {
 
 /// Capsules on the links of the arm and on the flange.
 ///
-/// Two sets describe the arm, for different questions. Both are the same for every end effector;
-/// the [Hand](Self::with_hand) or [another tool](Self::with_tool) is added to either.
+/// Two sets of capsules describe the arm: [`vendor`](Self::vendor) for self-collision and
+/// [`covering`](Self::covering) for obstacles. Neither set depends on the end effector. Add the
+/// [Hand](Self::with_hand) or [another tool](Self::with_tool) to either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'a> {
-    /// By link, the base first.
+    /// Capsules of the arm by link, the base first.
     pub(super) arm: &'static [LinkCapsule],
-    /// Indices into `arm` of capsules that can meet, the inner one first.
+    /// Indices into `arm` of capsules that can meet, with the inner capsule first.
     pub(super) pairs: &'static [(u8, u8)],
     /// Capsules in the flange frame.
     pub(super) tool: &'a [Capsule],
@@ -57,12 +58,12 @@ pub struct Shape<'a> {
 impl Shape<'static> {
     /// Returns the vendor's capsules for self-collision, the same for both robots.
     ///
-    /// They are made for links that are far from each other along the chain, and **do not cover**
-    /// the links: the elbow, for example, extends several centimetres beyond them. For obstacles
-    /// use [`covering`](Self::covering).
+    /// The vendor made them for links that are far from each other along the chain. They **do not
+    /// cover** the links: for example, the elbow extends several centimetres beyond them. For
+    /// obstacles use [`covering`](Self::covering).
     ///
-    /// The pairs are those that come within 5 cm of each other somewhere within the position limits
-    /// of either robot, with at least one link between their links. Links 1 and 3 are excluded:
+    /// A pair of capsules is checked if it comes within 5 cm somewhere within the position limits
+    /// of either robot, and if at least one link is between its links. Links 1 and 3 are excluded:
     /// their capsules overlap around the shoulder, where the links themselves fit together.
     pub const fn vendor() -> Self {
         Self {
@@ -81,9 +82,9 @@ impl Shape<'static> {
     /// its fingers at any width. Other parts mounted on an arm are not included: cables, cameras,
     /// covers.
     ///
-    /// They are up to 3.5 cm thicker than the links, so a small negative distance need not be a
-    /// collision. The pairs are the base, link 1 and link 2 with links 5 to 7: capsules of closer
-    /// links touch in common postures.
+    /// The capsules are up to 3.5 cm thicker than the links, so a small negative distance need not
+    /// be a collision. The pairs are the base, link 1 and link 2 with links 5 to 7. Closer links
+    /// are no pairs, because their capsules touch in common postures.
     pub const fn covering(kind: RobotKind) -> Self {
         let arm: &[LinkCapsule] = match kind {
             RobotKind::Fr3 => &FR3,
@@ -147,7 +148,7 @@ impl Shape<'_> {
     }
 }
 
-/// The reason why capsules are not accepted as a tool.
+/// Reason why capsules are not valid as a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {

@@ -9,10 +9,10 @@
 //! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and no
 //! joint further out. [`locate`] divides the surface of the arm into patches (1.5 to 4 centimetres
 //! wide, on the capsules that were fitted to the links). For each patch it computes the force that
-//! explains the torques best, and the quality of the explanation. A contact pushes: the force
-//! points into the surface, and its likelihood decreases with its angle from the normal. The
-//! probability of a body is the sum over its patches. The place is the mean of the patches around
-//! the best one.
+//! explains the torques best, and how well it explains them. A contact pushes: the force points
+//! into the surface, and its likelihood decreases with its angle from the normal. The probability
+//! of a body is the sum over the body's patches. The place is the mean of the patches around the
+//! best patch.
 //!
 //! # What can be known
 //!
@@ -58,34 +58,35 @@ use patches::Patch;
 /// Error of the external torques, joint by joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueError {
-    /// Standard deviation independent of the torque, `[N·m]`.
+    /// Part of the standard deviation that does not depend on the torque, `[N·m]`.
     pub floor: JointVector,
-    /// Standard deviation as a share of the torque, 0 to 1.
+    /// Part of the standard deviation that grows with the torque, as a share of the torque, 0 to 1.
     pub share: f64,
-    /// Friction between the sensor and the link, `[N·m]`. At rest it takes up part of a contact's
-    /// torque, so that the measured torque is too small by at most this value.
+    /// Friction between the sensor and the link, `[N·m]`. At rest, friction takes up part of a
+    /// contact's torque. The measured torque is then too small by at most this value.
     pub friction: JointVector,
 }
 
 impl TorqueError {
     /// Errors of an arm at rest after [`Tare`].
     ///
-    /// The floor is the noise of the sensors and the drift of a few seconds: a joint without motion
-    /// keeps its friction. The friction was fitted on the link's side of the sensors by Gaz et al.
-    /// 2019 (Dynamic Identification of the Franka Emika Panda Robot With Retrieval of Feasible
-    /// Parameters).
+    /// The floor is the noise of the sensors and the drift of a few seconds, because the friction
+    /// of a joint without motion does not change. The friction was fitted on the link's side of the
+    /// sensors by Gaz et al. 2019 (Dynamic Identification of the Franka Emika Panda Robot With
+    /// Retrieval of Feasible Parameters).
     pub const AT_REST: Self = Self {
         floor: crate::joint_vector([0.08, 0.08, 0.08, 0.08, 0.05, 0.05, 0.05]),
         share: 0.03,
         friction: crate::joint_vector([0.27, 0.44, 0.32, 0.64, 0.42, 0.15, 0.28]),
     };
 
-    /// Errors of a moving arm after [`Tare`]: sliding friction does not depend on contacts, but
+    /// Errors of a moving arm after [`Tare`]. Sliding friction does not depend on contacts, but it
     /// changes with velocity and posture.
     ///
-    /// The floor is close to the residual torques of simulated arms with stiction and elasticity,
-    /// whose joints swung at up to 0.25 rad/s: a root mean square of 0.13 N·m (joint 7) to 0.55 N·m
-    /// (joint 2). With two thirds of it, one reported body in thirteen was wrong.
+    /// The floor is close to the residual torques of simulated arms with stiction and elasticity.
+    /// Their joints swung at up to 0.25 rad/s. The root mean square of the residuals was 0.13 N·m
+    /// (joint 7) to 0.55 N·m (joint 2). With two thirds of this floor, one reported body in
+    /// thirteen was wrong.
     pub const IN_MOTION: Self = Self {
         floor: crate::joint_vector([0.35, 0.4, 0.3, 0.4, 0.3, 0.15, 0.14]),
         share: 0.05,
@@ -93,7 +94,7 @@ impl TorqueError {
     };
 
     /// Returns the probable torque for the measured torque `read`, and the reciprocal of its
-    /// variance. Friction took up between zero and its full value.
+    /// variance. The friction is assumed to take up between zero and its full value.
     fn correct(&self, i: usize, read: f64) -> (f64, f64) {
         let friction = self.friction[i];
         let taken = if friction > 0.0 {
@@ -129,22 +130,22 @@ pub struct Contact {
     pub next: Option<(Body, f64)>,
 }
 
-/// The reason why the place of a contact is unknown.
+/// Reason why the place of a contact is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Unknown {
     /// The torques are not finite.
     NotFinite,
-    /// No contact, or a force whose torques are within their errors.
+    /// No contact, or a force whose torques are within the errors of the estimate.
     Weak {
         /// Root mean square of the torques divided by their standard deviations.
         ratio: f64,
     },
-    /// The contact is probably on link 1 or 2, for which too few joints react.
+    /// The contact is probably on link 1 or 2, for which too few joints give information.
     Base {
-        /// The more probable of the two.
+        /// The more probable of links 1 and 2.
         body: Body,
-        /// Probability that it is on either, 0 to 1.
+        /// Probability that the contact is on link 1 or 2, 0 to 1.
         probability: f64,
     },
     /// Several bodies explain the torques about equally well.
@@ -156,16 +157,17 @@ pub enum Unknown {
     Unexplained {
         /// Root mean square of the residual of the best force, divided by the standard deviations.
         ratio: f64,
-        /// The contact with that force.
+        /// The contact with the best force.
         nearest: Contact,
     },
 }
 
-/// Returns the contact on an `arm` that explains the external torques, `[N·m]`: the torques of the
-/// environment on the joints, minus their values without contact. `tau_ext_hat_filtered` of a state
-/// has the opposite sign.
+/// Returns the contact on an `arm` that explains the external torques, `[N·m]`. These are the
+/// torques of the environment on the joints, minus their values without contact.
+/// `tau_ext_hat_filtered` of a state has the opposite sign.
 ///
-/// Bounded work, 0.4 ms of a processor, without allocation; not for the control thread.
+/// The work is bounded (0.4 ms of a processor) and allocates nothing, but it is too long for the
+/// control thread.
 ///
 /// # Errors
 /// [`Unknown`] if the torques do not determine the contact.
@@ -213,11 +215,11 @@ pub fn locate(
     Ok(contact)
 }
 
-/// The torques, and the bodies that they may come from.
+/// The torques, and the bodies on which the contact may be.
 struct Search<'a> {
     arm: &'a Placed<'a>,
     surfaces: [Option<(Body, Capsule)>; SURFACES],
-    /// Corrected for friction.
+    /// Torques after the correction for friction.
     torque: JointVector,
     weights: [f64; 7],
     /// Weighted square of the torques of joint `i` and of the joints further out.
@@ -227,8 +229,8 @@ struct Search<'a> {
 /// The force on a patch that explains the torques best.
 struct Fit {
     force: Vector3<f64>,
-    /// Logarithm of the probability of the torques with a force on this patch, up to a constant; it
-    /// grows with the area of the patch.
+    /// Logarithm of the probability of the torques with a force on this patch, except for a
+    /// constant. The value grows with the area of the patch.
     evidence: f64,
 }
 
@@ -283,9 +285,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns, for each body by its number, the probability of the torques with a contact on it,
+    /// Returns two values for each body, by its number: the probability of a contact on this body,
     /// relative to the most probable body, and its best patch. All bodies, and all places on a
-    /// body, are assumed equally probable.
+    /// body, are equally probable beforehand.
     fn bodies(&self) -> [(f64, Vector3<f64>); BODIES] {
         let mut logarithms = [f64::NEG_INFINITY; BODIES];
         let mut places = [Vector3::zeros(); BODIES];
@@ -312,7 +314,7 @@ impl<'a> Search<'a> {
         core::array::from_fn(|i| (exp(logarithms[i] - most), places[i]))
     }
 
-    /// Returns the contact on this body: the mean of the places around its best patch.
+    /// Returns the contact on this body: the mean of the places around the body's best patch.
     fn contact(&self, of: Body, around: &Vector3<f64>) -> Contact {
         let (mut most, mut sum) = (f64::NEG_INFINITY, 0.0);
         let (mut point, mut normal) = (Vector3::zeros(), Vector3::zeros());
@@ -367,10 +369,10 @@ impl<'a> Search<'a> {
         cross(&chain.axis[i], point) + chain.moment[i]
     }
 
-    /// Returns the force on a patch that explains the torques best; `None` if it pulls.
+    /// Returns the force on a patch that explains the torques best; `None` if this force pulls.
     ///
-    /// Minimises the weighted square of the residual torques. The force across the normal is an
-    /// additional measurement: it is about zero, with a deviation in proportion to the force along
+    /// Minimises the weighted square of the residual torques. The force across the normal counts as
+    /// an additional measurement of about zero. Its deviation is proportional to the force along
     /// the normal, which two passes determine.
     fn fit(&self, of: Body, patch: &Patch) -> Option<Fit> {
         let joints = of.joints();
@@ -443,13 +445,13 @@ const SURFACES: usize = crate::collision::CAPACITY;
 
 /// Width of the patches for the choice of the body, by body number, `[m]`. A force on the next
 /// patch changes the torques by less than their errors. The errors are larger near the base. With
-/// 25 mm everywhere, one body in 40 was wrong that is right with these widths.
+/// 25 mm for all bodies, one body in 40 was wrong that is right with these widths.
 const COARSE: [f64; BODIES] = [1.0, 0.04, 0.04, 0.03, 0.03, 0.025, 0.018, 0.015, 0.015];
 
 /// Width of the patches for the place, `[m]`: finer than the precision of the place.
 const FINE: f64 = 0.012;
 
-/// Depth inside another capsule from which a patch counts as covered, `[m]`.
+/// Depth inside another capsule at which a patch counts as covered, `[m]`.
 const SKIN: f64 = 0.003;
 
 /// Distance from the best patch, `[m]`, within which places count as the same explanation.
@@ -466,11 +468,12 @@ const PUSH_MOST: f64 = 200.0;
 /// Number of passes for the force along the normal.
 const PASSES: usize = 3;
 
-/// Root mean square of the torques, in standard deviations, below which there is no contact.
+/// Root mean square of the torques, in standard deviations, below which no contact is assumed.
 const WEAK: f64 = 1.5;
 
-/// Root mean square of the residual, in standard deviations, above which it is not a torque error.
+/// Root mean square of the residual, in standard deviations, above which errors of the torques do
+/// not explain it.
 const UNEXPLAINED: f64 = 3.0;
 
-/// Probability from which a body is reported as known.
+/// Probability above which a body is reported as known.
 const SURE: f64 = 0.75;

@@ -11,7 +11,7 @@ use crate::scalar::{sin_cos, sqrt};
 /// A piece of a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch {
-    /// Middle of the patch, in the frame of the capsule's ends.
+    /// Middle of the patch, in the frame in which the capsule's ends are given.
     pub(super) point: Vector3<f64>,
     /// Outward direction, of length 1.
     pub(super) normal: Vector3<f64>,
@@ -99,11 +99,11 @@ fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
 /// Length, `[m]`, below which a direction is rounding error.
 const SHORT: f64 = 1e-9;
 
-/// Largest number of bands, which bounds the work for an absurdly large tool: a capsule 2 m long in
-/// bands of 2 cm.
+/// Largest number of bands of a capsule. It is enough for a capsule 2 m long in bands of 2 cm, and
+/// bounds the work for larger tools.
 const BANDS_MAX: usize = 100;
 
-/// Largest number of pieces of a band: a radius of 0.1 m.
+/// Largest number of pieces of a band, enough for a radius of 0.1 m.
 const AROUND_MAX: usize = 32;
 
 #[cfg(test)]

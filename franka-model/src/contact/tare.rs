@@ -3,14 +3,14 @@
 use crate::JointVector;
 use crate::scalar::tanh;
 
-/// A running baseline, to be subtracted from the external torques.
+/// A running baseline of the external torques: their values without contact.
 ///
 /// Each joint has an offset, which slowly follows the torques measured without contact, and a
-/// friction, which changes its sign with the velocity. Torques that leave the baseline by more than
-/// a gate indicate a contact: until they return, and for a while afterwards, the baseline is
-/// frozen.
+/// friction, which changes its sign with the velocity. Torques that deviate from the baseline by
+/// more than a threshold indicate a contact. Until they return, and for a short time afterwards,
+/// the baseline does not change.
 ///
-/// The first state counts as free of contact. A push that grows by less than the gate per time
+/// The first state counts as free of contact. A push that grows by less than the threshold per time
 /// constant (0.4 N·m/s at joint 1) is treated as drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tare {
@@ -37,7 +37,7 @@ impl Tare {
 
     /// Updates the baseline with the torques of one state, `[N·m]`, its joint velocities,
     /// `[rad/s]`, and the time since the previous state, `[s]`. Returns the torques minus the
-    /// baseline. Non-finite numbers are returned unchanged and change nothing.
+    /// baseline. Torques that are not finite are returned unchanged and do not change the baseline.
     pub fn update(&mut self, torque: &JointVector, dq: &JointVector, dt: f64) -> JointVector {
         let usable = torque.iter().chain(dq).all(|x| x.is_finite());
         if usable && !self.started {
@@ -64,7 +64,7 @@ impl Tare {
         left
     }
 
-    /// True if the last state was classified as a contact, or followed one shortly afterwards.
+    /// True if the last state was classified as a contact, or came shortly after one.
     pub fn is_touched(&self) -> bool {
         self.free < QUIET
     }
@@ -91,6 +91,7 @@ const QUIET: f64 = 0.3;
 /// Velocity above which friction is sliding friction, `[rad/s]`.
 const SLIDING: f64 = 0.02;
 
-/// Gate per joint, `[N·m]`: the effect of changing friction and posture on the torques of an arm
-/// without contact. FER at one posture before and after a motion: up to 0.6 N·m on joint 2.
+/// Threshold per joint, `[N·m]`, above the effect of changing friction and posture on an arm
+/// without contact. An FER at one posture before and after a motion showed up to 0.6 N·m on joint
+/// 2.
 const GATE: [f64; 7] = [0.6, 0.75, 0.6, 0.9, 0.6, 0.4, 0.35];

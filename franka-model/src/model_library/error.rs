@@ -2,10 +2,10 @@
 
 use std::string::String;
 
-/// The reason why a model library cannot be used. The texts come from libfranka 0.9.
+/// Reason why a model library cannot be used. The texts of the variants come from libfranka 0.9.
 ///
-/// One of libfranka's texts is not needed: a library that is already loaded. Here each library is a
-/// separate value.
+/// libfranka also has a text for a library that is already loaded. This crate does not need it,
+/// because each library is a separate value.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LibraryError {

@@ -1,11 +1,12 @@
 //! The FER's own model library: compiled code that a robot of FCI version 5 sends to its clients.
 //!
 //! [`Model::fer`](crate::Model::fer) matches that library to the last digits in all comparisons
-//! (the book's page on the model). This module is for comparisons on a particular robot, and for
-//! programs that do not rely on that comparison. Needs the feature `model-library`, and Linux.
+//! (the book's page on the model). Use this module to compare the two on a particular robot, or if
+//! a program must not rely on such a comparison. It requires the feature `model-library`, and
+//! Linux.
 //!
-//! The code is loaded into this process. It runs unchecked, with the rights of the process: hence
-//! [`ModelLibrary::load`] is `unsafe`.
+//! The code is loaded into this process. It runs unchecked, with the rights of the process.
+//! Therefore [`ModelLibrary::load`] is `unsafe`.
 
 mod error;
 mod symbols;
@@ -25,7 +26,7 @@ use std::{env, fmt, format, process};
 use crate::{EndEffector, Frame, Jacobian, JointVector, Load, MassMatrix};
 use symbols::{Jacobians, Symbols};
 
-/// A loaded library; dropping it unloads the library.
+/// A loaded model library. Dropping it unloads the library.
 ///
 /// It has the same functions as [`Model`](crate::Model), with the same arguments.
 pub struct ModelLibrary {
@@ -41,18 +42,18 @@ impl fmt::Debug for ModelLibrary {
 }
 
 impl ModelLibrary {
-    /// Loads the bytes sent by the robot through a temporary file. Only this user can read the
-    /// file, and it is deleted before this function returns.
+    /// Loads the library from the bytes that the robot sent, through a temporary file. Only the
+    /// current user can read the file, and it is deleted before this function returns.
     ///
     /// # Errors
-    /// [`LibraryError`].
+    /// [`LibraryError`] if the library cannot be stored, loaded or used.
     ///
     /// # Safety
-    /// The bytes must be the vendor's model library, or another library. Its initialisers and
-    /// functions must be safe to run from any thread at any time. Its functions named `M_NE`,
-    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` must have the vendor's signatures. Loading
-    /// a robot's library means trusting that robot, and every host that can impersonate it on the
-    /// network, with this process.
+    /// The bytes must be the vendor's model library, or a library that meets these conditions. The
+    /// library's initialisers and functions must be safe to run from any thread at any time. Its
+    /// functions named `M_NE`, `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` must have the
+    /// vendor's signatures. Loading a robot's library means trusting that robot, and every host
+    /// that can impersonate it on the network, with this process.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
         // SAFETY: the caller guarantees safe initialisers.
@@ -170,7 +171,7 @@ fn jacobian(symbols: &Jacobians, frame: Frame, q: &JointVector, ee: &EndEffector
     jacobian
 }
 
-/// Returns the pose of a frame on the flange, for the frames that the user defines.
+/// Returns the pose of a frame on the flange that the user defines; `None` for other frames.
 fn on_flange(frame: Frame, ee: &EndEffector) -> Option<Matrix4<f64>> {
     match frame {
         Frame::EndEffector => Some(ee.f_t_ee),
@@ -185,7 +186,7 @@ struct Temporary {
 }
 
 impl Temporary {
-    /// Writes a new file. If the name exists, it tries another name and leaves the existing file
+    /// Writes a new file. If the name exists, this tries another name and leaves the existing file
     /// unchanged.
     fn with(bytes: &[u8]) -> io::Result<Self> {
         loop {
@@ -217,7 +218,7 @@ impl Drop for Temporary {
     }
 }
 
-/// Handles may be sent and shared: the functions depend on their arguments only.
+/// Handles may be sent and shared, because the functions depend only on their arguments.
 const _: () = {
     const fn shared<T: Send + Sync + 'static>() {}
     shared::<ModelLibrary>();

@@ -20,7 +20,7 @@ pub(super) type Coriolis =
 /// A function of `q`, the gravitational acceleration, `m_total` and `F_x_Ctotal`.
 pub(super) type Gravity = unsafe extern "C" fn(*const f64, *const f64, f64, *const f64, *mut f64);
 
-/// Addresses in a library; valid while it is loaded.
+/// Addresses of functions in a library, valid while the library is loaded.
 pub(super) struct Symbols {
     pub(super) mass: Mass,
     pub(super) coriolis: Coriolis,

@@ -1,8 +1,8 @@
 //! The Franka Emika Robot (FER, Panda).
 //!
-//! Its controller contains a compiled model library whose numbers do not correspond to any set of
-//! seven physical bodies. Hence there are two models: a client model that matches the library, and
-//! a physically possible model for simulation.
+//! The robot contains a compiled model library. The numbers of the library do not correspond to any
+//! set of seven physical bodies. Therefore this module has two models: a client model that matches
+//! the library, and a physically possible model for simulation.
 
 use super::Description;
 use crate::geometry::Lengths;
@@ -147,7 +147,8 @@ static CLIENT: Model = Model {
     origins: None,
 };
 
-/// Link 7 as in the vendor's library, in link axes; only its composition with a load depends on it.
+/// Link 7 as in the vendor's library, in link axes. Only the composition of link 7 with a load
+/// depends on these numbers.
 ///
 /// Source: fitted to the library's mass matrices under one load of 1.23 kg: three equations for two
 /// unknowns with a residual of 4e-15 kg·m². For other loads, the only confirmation is one published

@@ -7,7 +7,7 @@ use crate::kind::RobotKind;
 use crate::limits::{CartesianLimits, JointLimits};
 use crate::model::Model;
 
-/// The differences between the kinds; the [geometry](crate::geometry) is the same.
+/// Constants that differ between the kinds of robot. The [geometry](crate::geometry) is the same.
 struct Description {
     /// The vendor's model, for clients.
     client: &'static Model,
@@ -26,38 +26,39 @@ const fn of(kind: RobotKind) -> &'static Description {
 
 /// The static models.
 impl Model {
-    /// Returns the model of the Franka Research 3.
+    /// Returns the model of the Franka Research 3 with the vendor's numbers.
     pub const fn fr3() -> &'static Self {
         Self::of(RobotKind::Fr3)
     }
 
-    /// Returns the model of the Franka Emika Robot (Panda) that matches its own model library.
+    /// Returns the model of the Franka Emika Robot (Panda) that matches the robot's own model
+    /// library.
     ///
     /// That library is not exact mechanics. Some of the [`links`](Self::links) that match it have
-    /// negative moments. A load joins link 7 without the lever of link 7's own mass, which is
-    /// 3.0e-3 kg·m² of the mass matrix under 1.23 kg. For physics use
+    /// negative moments. The library combines a load with link 7 without the lever of link 7's own
+    /// mass. This omits 3.0e-3 kg·m² of the mass matrix with a load of 1.23 kg. For physics use
     /// [`physically_consistent`](Self::physically_consistent).
     pub const fn fer() -> &'static Self {
         Self::of(RobotKind::Fer)
     }
 
-    /// Returns the vendor's client model of a kind, for controllers: their torques then equal
-    /// libfranka's.
+    /// Returns the vendor's client model of a kind, for controllers. Torques from this model equal
+    /// the torques of libfranka.
     pub const fn of(kind: RobotKind) -> &'static Self {
         of(kind).client
     }
 
     /// Returns a model of a kind with physically consistent inertial parameters, for simulation.
     ///
-    /// For the Franka Research 3 it is the same as [`of`](Self::of). For the FER it is another set
-    /// of bodies, with physically correct loads. Without a load and upright, the two differ by less
-    /// than 0.1 N·m at moderate speed. In a tilted base, joint 1 differs by up to 0.08 N·m per m/s²
-    /// of horizontal gravity.
+    /// For the Franka Research 3 this is the same model as [`of`](Self::of). For the FER it is
+    /// another set of bodies, with physically correct loads. On an upright FER without a load, the
+    /// two models differ by less than 0.1 N·m at moderate speed. With a tilted base, joint 1
+    /// differs by up to 0.08 N·m per m/s² of horizontal gravity.
     pub const fn physically_consistent(kind: RobotKind) -> &'static Self {
         of(kind).physically_consistent
     }
 
-    /// Returns the limits of its end effector and elbow.
+    /// Returns the limits of the end effector and the elbow.
     pub fn cartesian_limits(&self) -> &'static CartesianLimits {
         CartesianLimits::of(self.kind)
     }
@@ -65,13 +66,13 @@ impl Model {
 
 impl JointLimits {
     /// Returns the limits of a kind of robot. For the Franka Research 3 these are the narrower
-    /// limits of systems before 5.9; each robot provides its own.
+    /// limits of systems before 5.9. A connected robot provides its own limits.
     pub const fn of(kind: RobotKind) -> &'static Self {
         &of(kind).client.joints
     }
 
     /// Returns the limits of a Franka Research 3 with system 5.9 or later: wider ranges, and lower
-    /// speeds near their ends.
+    /// speeds near the ends of the ranges.
     ///
     /// The hard range is an assumption: no source publishes it.
     pub const fn fr3_system_5_9() -> &'static Self {

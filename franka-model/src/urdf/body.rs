@@ -9,7 +9,7 @@ use super::element::{self, Element};
 use super::tree::{Link, Tree};
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// Returns the base and links 1 to 7, each with all links fixed to it.
+/// Returns the base and links 1 to 7. Each body includes all links that are fixed to it.
 pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
     let mut bodies = [NOTHING; 8];
     for moved in tree.moved_links() {
@@ -47,7 +47,7 @@ enum Weight {
     Optional,
 }
 
-/// Returns the body of a link, in the place where the link is attached.
+/// Returns the body of a link, in the frame in which the link is attached.
 fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfError> {
     let owner = format!("link: {}", link.name);
     let Some(inertial) = Element::find(link.node, "inertial", &owner) else {

@@ -7,7 +7,7 @@ use std::string::String;
 
 use super::UrdfError;
 
-/// An element and its owner, for messages.
+/// An XML element and the joint or link that owns it, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a, 'n> {
     node: Node<'a, 'n>,
@@ -28,7 +28,7 @@ impl<'a, 'n> Element<'a, 'n> {
         })
     }
 
-    /// Returns the same child, if it exists.
+    /// Like [`child`](Self::child), but `None` if the child does not exist.
     pub(super) fn find(parent: Node<'a, 'n>, name: &'static str, owner: &'a str) -> Option<Self> {
         let node = parent.children().find(|node| node.has_tag_name(name))?;
         Some(Self { node, name, owner })

@@ -3,10 +3,11 @@
 use std::string::String;
 use std::vec::Vec;
 
-/// The reason why a text is not accepted as a description of the arm. Each variant holds the found
-/// value; its text also states the expected value.
+/// Reason why a text is not a valid description of the arm. Each variant contains the value found;
+/// its text also states the expected value.
 ///
-/// If libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with it.
+/// If the velocity-limit parser of libfranka 0.21 has a text for the case, the text of the variant
+/// begins with it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {
@@ -16,7 +17,7 @@ pub enum UrdfError {
         /// Message and position from the parser.
         reason: String,
     },
-    /// The document is of another kind.
+    /// The root element of the document is not `robot`.
     #[error("Failed to parse URDF: no <robot> element exists; the root element is <{got}>")]
     Root {
         /// Name of the root element.
@@ -68,7 +69,7 @@ pub enum UrdfError {
     MissingElement {
         /// Name of the element.
         element: &'static str,
-        /// The joint or link that lacks it, such as `joint: joint3`.
+        /// The joint or link without this element, such as `joint: joint3`.
         owner: String,
     },
     /// An attribute is missing.
@@ -76,7 +77,7 @@ pub enum UrdfError {
     MissingAttribute {
         /// Name of the attribute.
         attribute: &'static str,
-        /// The element that lacks it.
+        /// The element without this attribute.
         element: &'static str,
         /// Owner of the element.
         owner: String,
@@ -86,7 +87,7 @@ pub enum UrdfError {
     Duplicate {
         /// `joint` or `link`.
         element: &'static str,
-        /// The name.
+        /// The duplicate name.
         name: String,
     },
     /// A value is invalid.
@@ -94,7 +95,7 @@ pub enum UrdfError {
     Value {
         /// Name of the attribute.
         attribute: &'static str,
-        /// The element that has it.
+        /// The element with this attribute.
         element: &'static str,
         /// Owner of the element.
         owner: String,
@@ -181,7 +182,7 @@ pub enum UrdfError {
         /// Name of the root.
         root: String,
     },
-    /// The joints are not in sequence.
+    /// A joint is not in the sequence of the arm.
     #[error(
         "joint {joint} has the parent {got}, which {} moves, expected a link that {} moves",
         mover(*.moved_by),
@@ -190,7 +191,7 @@ pub enum UrdfError {
     Order {
         /// Name of the joint.
         joint: String,
-        /// Name of its parent.
+        /// Name of the joint's parent link.
         got: String,
         /// Number of the joint that moves the parent; 0 is the base.
         moved_by: usize,

@@ -14,14 +14,14 @@
 //!
 //! The geometry is the crate's own, with one of the [known](crate::geometry::Lengths::KNOWN) sets
 //! of lengths, because inverse kinematics and capsules depend on it. A text with another geometry
-//! is refused rather than used in part. Within 1 µm and 10 µrad, the error of rounded numbers, the
-//! crate's numbers replace the text's.
+//! is refused rather than used in part. If a frame deviates by less than 1 µm and 10 µrad, the
+//! error of rounded numbers, the crate's numbers replace those of the text.
 //!
-//! The text has no limits of acceleration, jerk and torque rate, and no end-effector limits: the
-//! FR3's limits are used. It has no commanded position range either
+//! The text has no limits of acceleration, jerk and torque rate, and no end-effector limits; the
+//! model then uses the limits of the FR3. The text has no commanded position range either
 //! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)).
-//! Its distance from the text's limits is the same as the documented distance from the vendor's
-//! limits, in wider and in narrower ranges.
+//! This range keeps the same distance from the text's limits as the documented range from the
+//! vendor's limits.
 //!
 //! # What is refused
 //!
@@ -59,23 +59,24 @@ use crate::{JointVector, Model, RobotKind};
 use element::Element;
 use tree::Tree;
 
-/// Largest translation of a frame from its place in the [geometry](crate::geometry), `[m]`.
+/// Largest accepted translation of a frame from its place in the [geometry](crate::geometry),
+/// `[m]`.
 pub const TRANSLATION_OFF: f64 = 1e-6;
 
-/// Largest rotation of a frame from its place in the [geometry](crate::geometry), `[rad]`.
+/// Largest accepted rotation of a frame from its place in the [geometry](crate::geometry), `[rad]`.
 pub const ROTATION_OFF: f64 = 1e-5;
 
 /// Largest number of elements and attribute texts: the vendor's description has a few hundred.
 const NODES_MAX: u32 = 100_000;
 
 impl Model {
-    /// Creates a model from the URDF of a Franka Research 3. Needs the feature `urdf`.
+    /// Creates a model from the URDF of a Franka Research 3. This requires the feature `urdf`.
     ///
     /// The text of an arm with the vendor's numbers gives a model that equals [`Model::fr3`] to the
     /// last bit. See [`urdf`](crate::urdf) for the parts that are read.
     ///
     /// # Errors
-    /// [`UrdfError`].
+    /// [`UrdfError`] if the text is not a valid description of the arm.
     pub fn from_urdf(text: &str) -> Result<Self, UrdfError> {
         // The robot may send a byte order mark, and its client a terminator.
         let text = text.trim_start_matches('\u{feff}').trim_start();
@@ -168,8 +169,8 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
 const POSITIVE: &str = "a number above 0";
 
 /// Smallest deceleration of an envelope, `[rad/s²]`. Controllers brake with half of the lowest
-/// deceleration of the vendor's joints (2.585), or less near the ends of a range, but never with
-/// zero.
+/// deceleration of the vendor's joints (2.585), or with less near the ends of a range. The
+/// deceleration is never zero.
 const BRAKING_LEAST: f64 = 1.2;
 const BRAKING: &str = "a number of at least 1.2";
 

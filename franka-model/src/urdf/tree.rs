@@ -23,7 +23,7 @@ pub(super) struct Tree<'a, 'n> {
 
 pub(super) struct Joint<'a, 'n> {
     pub(super) node: Node<'a, 'n>,
-    /// For messages: `joint: ` and its name.
+    /// Text for messages: `joint: ` and the joint's name.
     pub(super) owner: String,
     pub(super) name: &'a str,
     kind: &'a str,
@@ -41,9 +41,9 @@ pub(super) struct Link<'a, 'n> {
 /// The place of a link, in the frame of the link that a joint moves, or of the base.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
-    /// Number of the last joint that moves it; 0 for none.
+    /// Number of the last joint that moves the link; 0 for none.
     pub(super) moved_by: usize,
-    /// True if it is fixed to the link that the joint moves, or part of the base.
+    /// True if the link is fixed to the link that the joint moves, or is part of the base.
     pub(super) is_fixed: bool,
     pub(super) pose: Isometry3<f64>,
 }
@@ -157,8 +157,8 @@ fn named<'a, 'n>(
 
 /// Assigns the joints of the text to joints 1 to 7 of the arm.
 ///
-/// A name matches if it is the joint's name or contains it, as in the vendor's client. Fixed joints
-/// have other names.
+/// As in the vendor's client, a name matches if it equals or contains the joint's name. Fixed
+/// joints have other names.
 fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     let mut numbers = vec![None; joints.len()];
     let mut missing = Vec::new();
@@ -306,7 +306,7 @@ fn root(links: &[&str], joints: &[Joint<'_, '_>]) -> Result<usize, UrdfError> {
     }
 }
 
-/// Checks for the flange: `link8`, or a name that ends with it.
+/// Checks that a flange exists: `link8`, or a name that ends with it.
 fn check_flange(links: &[&str], places: &[Place]) -> Result<(), UrdfError> {
     const NAME: &str = "link8";
     let found = links

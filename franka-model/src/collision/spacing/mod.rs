@@ -8,9 +8,9 @@
 //!             ──> motion_bound(limit)          bounds how fast distances shrink from here
 //! ```
 //!
-//! Most distances are large at most postures. One pass places the capsules; bounding balls and
-//! boxes exclude the large distances, and the others are measured. The bounds found at one posture
-//! are kept as its [`MotionBound`]. At nearby postures it excludes most distances, or all, without
+//! Most distances are large at most postures. One pass places the capsules, excludes large
+//! distances by bounding balls and boxes, and measures the rest. The bounds at one posture form its
+//! [`MotionBound`]. At nearby postures, the `MotionBound` excludes most distances, or all, without
 //! another pass.
 
 mod motion_bound;
@@ -39,11 +39,11 @@ pub const REGIONS_MAX: usize = 4;
 /// Largest number of pairs of capsules of a shape.
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
-/// Margins above this value, `[m]`, are bounded, not measured: many cycles are needed to use them
-/// up.
+/// Margin, `[m]`, above which a distance is bounded instead of measured, because the arm needs many
+/// cycles to cover it.
 const AMPLE: f64 = 0.15;
 
-/// Pairs and their minimum distances: within an arm, and to regions.
+/// Pairs of capsules within an arm, and capsules and regions, each with a minimum distance.
 ///
 /// The distances are computed as in [`Placed`](super::Placed). The margin of a distance is its
 /// excess over the minimum, `[m]`; negative below the minimum.
@@ -79,8 +79,8 @@ enum Kind {
 }
 
 impl Item {
-    /// The index of the region of this distance, among the given regions; `None` for a distance
-    /// within the arm.
+    /// Returns the index of the region to which this distance refers; `None` for a distance within
+    /// the arm.
     pub fn region(self) -> Option<usize> {
         match self.0 {
             Kind::Pair(_) => None,

@@ -1,19 +1,19 @@
 //! Bounds on the decrease of distances when joints turn.
 //!
-//! A joint between two bodies changes their distance by at most its angle times its lever: the
-//! greatest distance of the outer body from the joint's axis. Distances between the same two bodies
-//! have the same joints in between; they form a group.
+//! A joint between two bodies changes their distance by at most its angle times its lever. The
+//! lever is the greatest distance of the outer body from the joint's axis. Distances between the
+//! same two bodies depend on the same joints, so they form a group.
 
 use super::mounted::Mounted;
 use crate::JointVector;
 use crate::geometry::Lengths;
 
-/// A bound on the margins around a posture: while the joints have turned by less than this allows,
-/// every margin is above the limit of the bound.
+/// Bound on the margins of distances around a posture. While the joints have turned by less than
+/// the bound allows, every margin is above the bound's limit.
 #[derive(Debug, Clone)]
 pub struct MotionBound {
     q: JointVector,
-    /// Excess of each group's least margin over that limit, `[m]`.
+    /// Excess of each group's least margin over the bound's limit, `[m]`.
     spare: [f64; GROUPS_MAX],
 }
 
@@ -49,7 +49,7 @@ impl MotionBound {
     }
 }
 
-/// A set of groups of distances of a [`Spacing`](super::Spacing) that must be measured.
+/// Set of groups of distances of a [`Spacing`](super::Spacing) that must be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CandidateMask(u64);
 
@@ -72,10 +72,11 @@ impl CandidateMask {
 /// The groups of distances, by the pair of bodies.
 #[derive(Debug, Clone)]
 pub(super) struct Groups {
-    /// Numbers of the bodies, the inner one first. Regions do not move and count as the base, 0.
+    /// Numbers of the two bodies of each group, with the inner body first. Regions do not move and
+    /// count as the base, 0.
     numbers: [(u8, u8); GROUPS_MAX],
     count: usize,
-    /// Largest motion of the outer body relative to the inner one per turn, by joint and group,
+    /// Largest motion of the outer body relative to the inner body per turn, by joint and group,
     /// `[m/rad]`.
     levers: [[f64; GROUPS_MAX]; 7],
 }

@@ -21,7 +21,7 @@ pub(super) struct Mounted {
     pub(super) reach: f64,
     /// Radius, `[m]`.
     pub(super) radius: f64,
-    /// Group of its distances to regions.
+    /// Group of the capsule's distances to regions.
     pub(super) group: usize,
 }
 
@@ -111,8 +111,8 @@ impl Mounted {
 /// `joint`: the link's own joint or an earlier one.
 ///
 /// Turning a joint preserves the distances of a point from all points of that joint's axis. So the
-/// distance to an earlier axis is at most the distance to the later axis plus the distances between
-/// the points where the axes meet.
+/// distance to an earlier axis is at most the distance to the later axis, plus the distances
+/// between the points where successive axes meet.
 fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     let (upper_arm, forearm) = (lengths.upper_arm, lengths.forearm);
     let aside = length(point.x, point.y);
@@ -130,8 +130,8 @@ fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> 
 }
 
 /// Returns the distance from the reference point of the axis of joint number `joint` to the
-/// reference point of the next. The reference point is the shoulder for the first three, the elbow
-/// for the fourth, and the wrist for the fifth and sixth.
+/// reference point of the next axis. The reference point is the shoulder for the first three, the
+/// elbow for the fourth, and the wrist for the fifth and sixth.
 fn step(lengths: &Lengths, joint: usize) -> f64 {
     match joint {
         3 => length(lengths.upper_arm, ELBOW),
