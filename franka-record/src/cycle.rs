@@ -9,10 +9,10 @@ use franka_proto::RobotState;
 use franka_rt::driver::Record;
 use nalgebra::Isometry3;
 
-/// A time of this host: nanoseconds since 1970.
+/// A time on this host, in nanoseconds since 1970.
 ///
-/// Within one recording it continues from the wall clock at the beginning of the recording, and
-/// never decreases: later changes of the wall clock have no effect.
+/// Within one recording, the time starts with the wall clock at the beginning of the recording, and
+/// never decreases. Later changes of the wall clock have no effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HostTime(u64);
@@ -23,8 +23,8 @@ impl HostTime {
         Self(nanos)
     }
 
-    /// Returns the current wall clock of this host; the start of 1970 if it is set to an earlier
-    /// time.
+    /// Returns the current wall clock of this host; the start of 1970 if the clock is set to an
+    /// earlier time.
     pub fn now() -> Self {
         Self::from(SystemTime::now())
     }
@@ -34,7 +34,7 @@ impl HostTime {
         self.0
     }
 
-    /// Returns the time from `earlier` to this; zero if `earlier` is later.
+    /// Returns the time from `earlier` to `self`; zero if `earlier` is later.
     pub fn since(self, earlier: Self) -> Duration {
         Duration::from_nanos(self.0.saturating_sub(earlier.0))
     }
@@ -105,8 +105,8 @@ fn date(days: u64) -> (u64, u64, u64) {
 /// One cycle: a state of the robot, and the driver's record of it.
 ///
 /// After reading from a file, numbers have the precision of an `f32`, except times and measured
-/// joint positions. `K_F_ext_hat_K` and `elbow` are computed from the rest. Some fields are not
-/// recorded and have their defaults. They are the derivatives of the torques (`dtau_J`), the motors
+/// joint positions. `K_F_ext_hat_K` and `elbow` are computed from other fields. Some fields are not
+/// recorded and have their defaults: the derivatives of the torques (`dtau_J`), the motors
 /// (`theta`, `dtheta`), the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian
 /// motions (`O_T_EE_c`, `elbow_c` and so on). A pose that is not a rigid transformation becomes the
 /// identity.
@@ -114,12 +114,12 @@ fn date(days: u64) -> (u64, u64, u64) {
 pub struct Cycle {
     /// Time at which this host received the state.
     pub time: HostTime,
-    /// The driver's record.
+    /// The driver's record of the cycle.
     pub record: Record,
     /// The state that the driver answered.
     pub state: RobotState,
     /// Pose of the end effector at the reference joint positions, in the base frame; `None` outside
-    /// target control. A recorder computes it if it is missing.
+    /// target control. If it is `None`, a recorder computes it.
     pub reference: Option<Isometry3<f64>>,
 }
 

@@ -8,11 +8,11 @@ use crate::cycle::{Cycle, HostTime};
 use crate::event::{Event, EventKind, GripperState};
 use crate::sample::Sample;
 
-/// An attempt at a task, between two marks in a recording.
+/// An attempt at a task, recorded between two marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Episode {
-    /// Its name.
+    /// Name of the episode.
     pub name: String,
     /// Description of the task.
     pub task: String,
@@ -24,7 +24,7 @@ pub struct Episode {
     pub end: HostTime,
 }
 
-/// The reason why a name or task is invalid, or why no episode was found.
+/// Reason why a name or task is invalid, or why no episode was found.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
@@ -40,7 +40,7 @@ pub enum EpisodeError {
     /// The task is empty.
     #[error("episode {name:?} has an empty task, expected a description of the task in words")]
     Task {
-        /// Its name.
+        /// Name of the episode.
         name: String,
     },
     /// No episode has this name.
@@ -48,20 +48,20 @@ pub enum EpisodeError {
     Unknown {
         /// The given name.
         got: String,
-        /// The existing names.
+        /// The names of the existing episodes.
         known: String,
     },
 }
 
 impl Episode {
-    /// Largest number of characters in a name.
+    /// Largest number of characters in an episode's name.
     pub const NAME_MAX: usize = 128;
 
-    /// Checks the name and the task of a new episode: a name must be valid in a file name, and a
-    /// task must not be empty.
+    /// Checks the name and the task of a new episode. The name must be valid in a file name, and
+    /// the task must not be empty.
     ///
     /// # Errors
-    /// [`EpisodeError`] with the expected value.
+    /// [`EpisodeError`] that states the value given and the expected value.
     pub fn check(name: &str, task: &str) -> Result<(), EpisodeError> {
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
         if !(1..=Self::NAME_MAX).contains(&name.len()) || !name.chars().all(fits) {
@@ -75,8 +75,8 @@ impl Episode {
         Ok(())
     }
 
-    /// Returns the episodes marked by these events, in their order. An episode without an end, at
-    /// the end of a recording or before the next beginning, is left out.
+    /// Returns the episodes that these events mark, in their order. An episode without an end is
+    /// left out. This happens at the end of a recording, or if the next episode begins first.
     ///
     /// # Errors
     /// The error of the first event that cannot be read.
@@ -102,10 +102,10 @@ impl Episode {
         Ok(episodes)
     }
 
-    /// Returns the episodes of `all` that have one of these names, in their order.
+    /// Returns the episodes of `all` that have one of these names, in the order of `all`.
     ///
     /// # Errors
-    /// [`EpisodeError::Unknown`] for a name that none of them has.
+    /// [`EpisodeError::Unknown`] for a name that no episode has.
     pub fn named(all: Vec<Self>, names: &[String]) -> Result<Vec<Self>, EpisodeError> {
         let is_there = |name: &String| all.iter().any(|episode| episode.name == *name);
         if let Some(unknown) = names.iter().find(|name| !is_there(name)) {
@@ -120,7 +120,7 @@ impl Episode {
     }
 }
 
-/// Samples of cycles, each with the gripper's most recent width.
+/// Iterator of the samples of cycles, each with the gripper's most recent width.
 ///
 /// Both inputs must be in the order of their times. Vacuum grippers have no widths.
 pub struct Samples<C, G: Iterator> {

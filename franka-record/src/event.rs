@@ -9,13 +9,13 @@ use nalgebra::Isometry3;
 
 use crate::HostTime;
 
-/// An event and its time.
+/// An event, with its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Time at which this host was notified.
+    /// Time at which this host learned of the event.
     pub time: HostTime,
-    /// The robot's clock of the newest cycle before it, `[ms]`. Without such a cycle, the clock at
-    /// the time when the robot was attached; 0 if unknown.
+    /// Robot clock of the newest cycle before the event, `[ms]`. Without such a cycle, the robot's
+    /// clock when the robot was attached to the recorder; 0 if unknown.
     pub robot_time: u64,
     /// The kind of event.
     pub kind: EventKind,
@@ -30,9 +30,9 @@ pub enum EventKind {
     Goal(Goal),
     /// A goal ended.
     Outcome(Outcome),
-    /// No state has arrived for this duration.
+    /// No state has arrived for some time: the link to the robot is lost.
     LinkLost {
-        /// The silence so far.
+        /// Time without states so far.
         silence: Duration,
     },
     /// States arrive again.
@@ -47,20 +47,20 @@ pub enum EventKind {
         /// The current mode.
         to: RobotMode,
     },
-    /// The current errors changed.
+    /// The errors that are present changed.
     Errors {
-        /// The current errors.
+        /// The errors that are present now.
         errors: Errors,
         /// The errors that ended the last motion.
         reflex_reason: Errors,
     },
     /// A request to the robot or its gripper was answered.
     Request(Request),
-    /// The reason for the end of a motion, and recommended changes.
+    /// A diagnosis: why a motion ended, and what to change.
     Diagnosis(Diagnosis),
     /// An episode begins.
     EpisodeStart {
-        /// Its name.
+        /// Name of the episode.
         name: String,
         /// Description of the task.
         task: String,
@@ -72,9 +72,9 @@ pub enum EventKind {
     },
     /// A remark of the program, the user or the recorder.
     Note(Note),
-    /// The recorder had no space for some cycles.
+    /// The recorder had no space for some cycles and dropped them.
     Dropped {
-        /// Number of cycles since the last such event.
+        /// Number of cycles dropped since the last such event.
         cycles: u64,
     },
     /// The wall clock of this host was set; recorded times continue unchanged.
@@ -84,20 +84,21 @@ pub enum EventKind {
     },
 }
 
-/// A goal.
+/// A goal: the task of one call, such as `move_to` or `follow`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// Its number, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 if it has none.
+    /// Number of the goal, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 if it has
+    /// none.
     pub number: u64,
-    /// The called method: `move_to`, `follow`, `control_torques`, ...
+    /// Name of the method that set the goal: `move_to`, `follow`, `control_torques`, ...
     pub kind: String,
-    /// Its end, if known when the goal was set.
+    /// Final position of the goal, if known when the goal was set.
     pub target: Option<Target>,
-    /// Its options, as text.
+    /// Options of the goal, as text.
     pub options: String,
 }
 
-/// The end of a goal.
+/// Final position of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// Joint positions, `[rad]`.
@@ -106,45 +107,45 @@ pub enum Target {
     Pose(Isometry3<f64>),
 }
 
-/// The outcome of a goal.
+/// How a goal ended.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Number of the goal; 0 if it has none.
     pub goal: u64,
-    /// The kind of ending.
+    /// Kind of the ending.
     pub ending: Ending,
-    /// The text of the result.
+    /// Result as text.
     pub text: String,
-    /// Time from the first cycle with the goal to its end, if it ran.
+    /// Time from the first cycle with the goal to the end of the goal, if it ran.
     pub duration: Option<Duration>,
 }
 
-/// The kind of a goal's ending, in one word.
+/// Kind of a goal's ending.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
-    /// The goal arrived, or reached its own end condition.
+    /// The goal reached its target, or its own end condition.
     Arrived,
-    /// A newer goal took over.
+    /// A newer goal replaced the goal.
     Superseded,
-    /// The goal was stopped or dropped.
+    /// The program stopped or dropped the goal.
     Stopped,
-    /// The robot stopped itself.
+    /// The robot stopped itself with a reflex.
     Reflex,
-    /// The robot fell silent.
+    /// No more states arrived from the robot.
     LinkLost,
-    /// A guard of the driver aborted the goal.
+    /// A guard (a safety check of the driver) aborted the goal.
     Guard(Guard),
-    /// The goal never began, or a target of its stream was refused.
+    /// The goal never began, or the driver refused a target of its stream.
     Rejected,
-    /// Anything else.
+    /// The goal failed for another reason.
     #[default]
     Failed,
 }
 
 impl Ending {
-    /// True if this ending triggers the black box: a reflex, a lost link, or a guard that aborted
-    /// the motion.
+    /// True if the black box writes a file after this ending. It does so after a reflex, a lost
+    /// link, or a guard that aborted the motion.
     pub fn is_incident(self) -> bool {
         matches!(self, Self::Reflex | Self::LinkLost | Self::Guard(_))
     }
@@ -181,33 +182,33 @@ fn guard_name(guard: Guard) -> String {
 /// A request to the robot or its gripper, and its answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
-    /// The called method: `set_load`, `gripper.grasp`, ...
+    /// Name of the method: `set_load`, `gripper.grasp`, ...
     pub name: String,
-    /// Its arguments, as JSON.
+    /// Arguments of the method, as JSON.
     pub arguments: String,
-    /// The reason for the failure; `None` if it succeeded.
+    /// Reason for the failure; `None` if the request succeeded.
     pub error: Option<String>,
 }
 
-/// The reason for the end of a motion, and recommended changes.
+/// Why a motion ended, and what to change.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
     /// Number of the goal; 0 if it has none.
     pub goal: u64,
     /// The diagnosis as text.
     pub text: String,
-    /// The same as JSON; empty without.
+    /// The same diagnosis as JSON; empty if no JSON is available.
     pub json: String,
 }
 
 /// A remark.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Note {
-    /// Its severity.
+    /// Severity of the remark.
     pub level: Level,
-    /// Its source.
+    /// Source of the remark.
     pub source: String,
-    /// Its text.
+    /// Text of the remark.
     pub text: String,
 }
 
@@ -296,7 +297,7 @@ impl fmt::Display for EventKind {
 }
 
 impl EventKind {
-    /// Returns its severity.
+    /// Returns the severity of the event.
     pub fn level(&self) -> Level {
         match self {
             Self::Outcome(Outcome { ending, .. }) => match ending {
@@ -316,7 +317,7 @@ impl EventKind {
         }
     }
 
-    /// True if this event triggers the black box.
+    /// True if the black box writes a file after this event.
     pub fn is_incident(&self) -> bool {
         match self {
             Self::Outcome(outcome) => outcome.ending.is_incident(),
@@ -324,7 +325,8 @@ impl EventKind {
         }
     }
 
-    /// True if the surrounding cycles are kept at the full rate when others are thinned out.
+    /// True if the cycles around this event are kept at the full rate when a thinned recording
+    /// drops others.
     pub(crate) fn is_notable(&self) -> bool {
         match self {
             Self::LinkRestored { .. } | Self::Dropped { .. } | Self::Errors { .. } => true,
@@ -333,7 +335,7 @@ impl EventKind {
         }
     }
 
-    /// Returns the subject, for the `name` of a log.
+    /// Returns the subject of the event, for the `name` of a log message.
     pub fn source(&self) -> &str {
         match self {
             Self::Goal(_) | Self::Outcome(_) => "motion",

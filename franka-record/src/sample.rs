@@ -16,9 +16,10 @@ pub struct Sample {
     /// Commanded joint positions, `[rad]`: the reference of target control, or the output of a
     /// control function. `None` if the joints were not under control.
     pub q_ref: Option<[f64; 7]>,
-    /// Measured pose of the end effector in the base frame, `O_T_EE`, metres.
+    /// Measured pose of the end effector in the base frame, `O_T_EE`, in metres.
     pub pose: Isometry3<f64>,
-    /// Commanded pose of the end effector in the base frame, metres.
+    /// Commanded pose of the end effector in the base frame, in metres; `None` if the joints were
+    /// not under control.
     pub pose_ref: Option<Isometry3<f64>>,
     /// Distance between the fingers, `[m]`; `None` before the gripper's first state.
     pub width: Option<f64>,
@@ -27,8 +28,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Creates a sample from the arm's data in a cycle; the caller adds the gripper. A pose that is
-    /// not a rigid transformation becomes the identity.
+    /// Creates a sample from the arm's data in a cycle, without the gripper; the caller adds its
+    /// width. A pose that is not a rigid transformation becomes the identity.
     pub fn of(cycle: &Cycle) -> Self {
         let Cycle {
             record,
@@ -62,9 +63,9 @@ impl Sample {
         }
     }
 
-    /// Returns the sample between this one and a `later` one, at a `share` from 0 to 1: positions
-    /// are interpolated linearly, rotations along the shorter arc. The finger width is taken from
-    /// this sample, because grippers report it rarely.
+    /// Returns the sample at a `share`, 0 to 1, of the way from this sample to a `later` sample.
+    /// Positions are interpolated linearly, rotations along the shorter arc. The finger width comes
+    /// from this sample, because grippers report their width rarely.
     pub fn towards(&self, later: &Self, share: f64) -> Self {
         let line =
             |a: &[f64; 7], b: &[f64; 7]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
@@ -83,8 +84,8 @@ impl Sample {
     }
 }
 
-/// Returns the samples from the first to the last with a commanded position; all samples if no
-/// position was commanded.
+/// Returns the samples from the first to the last sample with a commanded position; all samples if
+/// no position was commanded.
 pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
     let is_told = |sample: &Sample| sample.q_ref.is_some();
     let first = samples.iter().position(is_told);

@@ -7,7 +7,7 @@ use franka_proto::wire::service::ConnectRequest;
 use franka_proto::{Protocol as _, Version, gripper, vacuum};
 use zerocopy::FromBytes as _;
 
-/// A device with its own TCP service.
+/// A device of the robot with a TCP service of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Device {
     /// The arm.
@@ -19,7 +19,7 @@ pub enum Device {
 }
 
 impl Device {
-    /// All devices, by port.
+    /// All devices, ordered by port.
     pub const ALL: [Self; 3] = [Self::Robot, Self::Hand, Self::VacuumGripper];
 
     /// The TCP port of the device.
@@ -38,7 +38,7 @@ impl Device {
         Self::ALL.into_iter().find(|device| device.port() == port)
     }
 
-    /// Returns the first message of a stream, `None` while it is incomplete.
+    /// Returns the first message of a stream; `None` while the message is incomplete.
     pub(crate) fn next_message(self, stream: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
         match self {
             Self::Robot => next_message(stream),
@@ -46,16 +46,16 @@ impl Device {
         }
     }
 
-    /// Returns the `Connect` at the beginning of a client's stream; `None` while it is incomplete,
-    /// or if the stream begins with another message.
+    /// Returns the `Connect` at the beginning of a client's stream; `None` while the message is
+    /// incomplete, or if the stream begins with another message.
     pub(crate) fn connect(self, stream: &[u8]) -> Option<ConnectRequest> {
         let message = self.next_message(stream).ok()??;
         let (request, _) = ConnectRequest::read_from_prefix(message.payload).ok()?;
         (message.header.command == 0).then_some(request)
     }
 
-    /// Returns the position of a message's id: after the command, which is shorter for the end
-    /// effectors.
+    /// Returns the range of a message's id. The id comes after the command, which is shorter for
+    /// the end effectors.
     pub(crate) fn id_range(self) -> std::ops::Range<usize> {
         match self {
             Self::Robot => 4..8,
@@ -71,7 +71,7 @@ impl Device {
         }
     }
 
-    /// Returns the name of a request for messages; `version` is the version in `Connect`.
+    /// Returns the name of a request, for error messages; `version` is the version in `Connect`.
     pub(crate) fn request_name(self, version: u16, message: &Message<'_>) -> String {
         let number = message.header.command;
         let known = match self {

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | [`Cassette`], [`Connection`], [`Event`] | the transmitted bytes, with time, connection and side |
 //! | [`CassetteWriter`] | the file, written during the session; [`Cassette::read`] reads it |
-//! | [`Tap`] | is between client and robot, forwards everything and records it |
+//! | [`Tap`] | a proxy between client and robot that forwards and records everything |
 //! | [`Player`] | one connection of a cassette as a state machine: bytes and time in, bytes out |
 //! | [`CassetteServer`] | players on sockets |
 //!
@@ -42,19 +42,20 @@ pub use script::Unplayable;
 pub use server::{CassetteServer, PlayError, PlayReport};
 pub use tap::{Route, Tap, TapReport};
 
-/// The data exchanged between clients and a robot in one session.
+/// The data that clients and a robot exchanged in one session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cassette {
     /// Start of the recording, in nanoseconds since the Unix epoch.
     pub started: u64,
     /// The connections, in the order of their opening.
     pub connections: Vec<Connection>,
-    /// Number of missing events, because the recording thread was too slow.
+    /// Number of events that are missing because the recording thread was too slow.
     pub dropped: u64,
-    /// Number of packets of a capture that were captured only partly, as with a snap length; their
-    /// contents are missing. It is not written to files.
+    /// Number of packets of a network capture that were captured only partly, for example because
+    /// of a snap length. Their contents are missing. Cassette files do not store this number.
     pub truncated: u64,
-    /// The reason why the file is truncated, if it is. `connections` contains the events before.
+    /// The reason why the file is truncated, if it is. `connections` contains the events before the
+    /// cut.
     pub damage: Option<String>,
 }
 
@@ -63,16 +64,16 @@ pub struct Cassette {
 pub struct Connection {
     /// The client's device.
     pub device: Device,
-    /// The events, in their order.
+    /// The events of the connection, in their order.
     pub events: Vec<Event>,
-    /// Number of missing pieces of its TCP streams. A connection with missing pieces cannot be
-    /// played.
+    /// Number of missing pieces of the connection's TCP streams. A connection with missing pieces
+    /// cannot be played.
     pub missing_stream: u64,
-    /// Number of its missing datagrams.
+    /// Number of missing datagrams of the connection.
     pub missing_datagrams: u64,
 }
 
-/// A transmission in one direction of a connection.
+/// One transmission in one direction of a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
     /// Time since [`Cassette::started`] on a monotonic clock.
@@ -88,16 +89,16 @@ pub struct Event {
 pub enum Side {
     /// The client.
     Client,
-    /// The robot, or its end effector.
+    /// The robot, or one of its end effectors.
     Robot,
 }
 
 /// The data sent by a side.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Payload {
-    /// Bytes of the TCP stream, split at any point.
+    /// Bytes of the TCP stream. The split into pieces has no meaning.
     Stream(Vec<u8>),
-    /// The end of the TCP stream.
+    /// The sender closed its side of the TCP stream.
     End,
     /// One UDP datagram.
     Datagram(Vec<u8>),

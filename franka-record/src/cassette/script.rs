@@ -7,7 +7,7 @@ use franka_proto::{RobotCommand, Version};
 
 use super::{Connection, Device, Payload, Side};
 
-/// The reason why a recorded connection cannot be played.
+/// Reason why a recorded connection cannot be played.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unplayable {
@@ -21,7 +21,7 @@ pub enum Unplayable {
         /// Number of missing pieces.
         missing: u64,
     },
-    /// The client's stream cannot be cut into messages.
+    /// The client's stream cannot be split into messages.
     #[error("the client's stream to the {device} has no readable messages: {error}")]
     Framing {
         /// The device of the connection.
@@ -60,7 +60,7 @@ pub(super) enum Step {
 #[derive(Clone, Debug)]
 pub(super) struct Script {
     pub(super) device: Device,
-    /// The version announced by the client; 0 if it sent nothing.
+    /// Version that the client announced; 0 if the client sent nothing.
     pub(super) version: u16,
     pub(super) steps: Vec<(Duration, Step)>,
     /// The mean time between states.
@@ -205,7 +205,7 @@ fn interval(device: Device, steps: &[(Duration, Step)]) -> Duration {
     }
 }
 
-/// Bounds of the time between held states. Robots send one per millisecond; a client considers an
-/// end effector slower than the upper bound dead.
+/// Bounds of the time between held states. Robots send a state per millisecond. Clients consider an
+/// end effector dead if it is slower than the upper bound.
 const INTERVAL_MIN: Duration = Duration::from_millis(1);
 const INTERVAL_MAX: Duration = Duration::from_millis(200);

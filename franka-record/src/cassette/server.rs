@@ -16,9 +16,9 @@ use super::{
 
 /// A server that plays a cassette to any client.
 ///
-/// The first connection of a client to a device gets the first recorded one, and so on. Each is
-/// played separately: two connections, such as to an arm and its hand, are synchronised only by the
-/// client.
+/// A client's first connection to a device gets the first recorded connection to this device, and
+/// so on. The server plays each connection separately. If there are connections to an arm and its
+/// hand, only the client synchronises them.
 #[derive(Debug)]
 pub struct CassetteServer {
     shared: Arc<Shared>,
@@ -26,28 +26,28 @@ pub struct CassetteServer {
     addresses: BTreeMap<Device, SocketAddr>,
 }
 
-/// The result of a playback.
+/// Result of a playback.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayReport {
-    /// The connections that were played to their end, in the order of their ends.
+    /// The connections that were played to their end, in the order in which they ended.
     pub played: Vec<(Device, Tally)>,
 }
 
-/// The reason why a cassette was not played to its end.
+/// Reason why a cassette was not played to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlayError {
     /// A client deviated from the recorded client.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
-    /// A client opened a connection that the recording does not have.
+    /// A client opened more connections to a device than the recording has.
     #[error(
         "the client opened connection {got} to the {device}, expected {recorded} at most, as \
         recorded"
     )]
     Connection {
-        /// The device.
+        /// The device to which the client connected.
         device: Device,
         /// The number of the connection, from 1.
         got: usize,
@@ -57,19 +57,19 @@ pub enum PlayError {
     /// The recording cannot be played.
     #[error(transparent)]
     Unplayable(#[from] Unplayable),
-    /// No client connected, or it did not complete the recording.
+    /// No client connected, or a client did not complete the recording in time.
     #[error(
         "{played} of {recorded} connections were played within {patience:?}, expected all; the \
          next is {awaited}"
     )]
     Unfinished {
-        /// The waiting time.
+        /// How long the server waited.
         patience: Duration,
         /// Number of connections that were played to their end.
         played: usize,
         /// Number of recorded connections.
         recorded: usize,
-        /// The client's next step.
+        /// The client's next step, as text.
         awaited: String,
     },
     /// A socket failed.
@@ -89,7 +89,7 @@ struct Shared {
 struct State {
     report: PlayReport,
     failure: Option<PlayError>,
-    /// The missing client steps of the current connections.
+    /// The steps for which the current connections wait, as text.
     awaited: BTreeMap<(Device, usize), String>,
 }
 
@@ -169,10 +169,10 @@ impl CassetteServer {
         self.addresses.get(&device).copied()
     }
 
-    /// Waits until every recorded connection has been played, and ends.
+    /// Waits until every recorded connection has been played, and ends the server.
     ///
     /// # Errors
-    /// [`PlayError`] if a client deviated from the recording, or if `patience` expires before.
+    /// [`PlayError`] if a client deviated from the recording, or if `patience` expires first.
     pub fn finish(self, patience: Duration) -> Result<PlayReport, PlayError> {
         let recorded = self.shared.recorded;
         let going_on =
@@ -270,7 +270,7 @@ enum Input {
     End,
 }
 
-/// Plays a connection to a client; `None` if the playback ends before.
+/// Plays a connection to a client; `None` if the playback is stopped before its end.
 fn play(
     mut client: &TcpStream,
     connection: &Connection,
@@ -385,7 +385,7 @@ fn read_datagrams(
     }
 }
 
-/// A client connects rarely, and allows a second for it.
+/// Interval of checks for a new client. Clients connect rarely, and allow a second for it.
 const ACCEPT_TICK: Duration = Duration::from_millis(5);
 
 /// Capacity of the player's queue; readers wait if it is full.

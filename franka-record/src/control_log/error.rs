@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The reason why a control log of libfranka cannot be read.
+/// Reason why a control log of libfranka cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ControlLogError {
@@ -19,7 +19,7 @@ pub enum ControlLogError {
     /// The file is not text.
     #[error("got a byte that is not UTF-8 after {offset} bytes, expected text")]
     NotText {
-        /// Number of bytes before the first invalid one.
+        /// Number of bytes before the first invalid byte.
         offset: u64,
     },
     /// The file has no table and no exception text.
@@ -56,7 +56,7 @@ pub enum ControlLogError {
         line: u64,
         /// Number of columns.
         got: usize,
-        /// The missing name.
+        /// Name of the missing column.
         missing: String,
     },
     /// A row has more or fewer cells than the table has columns.
@@ -64,7 +64,7 @@ pub enum ControlLogError {
     Row {
         /// The line of the file, from 1.
         line: u64,
-        /// The first column, from 1, that is missing or excess.
+        /// First column that is missing or excess, counted from 1.
         column: usize,
         /// Number of cells in the row.
         got: usize,
@@ -84,9 +84,9 @@ pub enum ControlLogError {
     Message {
         /// The line of the file, from 1.
         line: u64,
-        /// The character of the line, from 1.
+        /// The position in the line, in characters from 1.
         column: usize,
-        /// The text at this place.
+        /// The text at this position.
         got: String,
         /// The expected text.
         expected: &'static str,

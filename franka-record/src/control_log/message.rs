@@ -13,11 +13,13 @@ use super::{ControlLogError, SHOWN};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ControlMessage {
-    /// The answer to the motion, from `libfranka:` to the list of errors or the end of the line.
+    /// The robot's answer to the motion, from `libfranka:` to the list of errors or the end of the
+    /// line.
     pub text: String,
-    /// The errors of the list; empty if the motion did not end with a reflex.
+    /// Errors in the list; empty if the motion did not end with a reflex.
     pub errors: Errors,
-    /// The success rate at the end, and the states lost at the end; `None` if the text has no rate.
+    /// Success rate and number of lost states at the end of the motion; `None` if the text has no
+    /// rate.
     pub success_rate: Option<SuccessRate>,
 }
 
@@ -41,8 +43,8 @@ pub(super) fn all(
     Ok(messages)
 }
 
-/// Returns the position of the first message, including libfranka's name if it precedes the
-/// message.
+/// Returns the position of the first message. The message includes libfranka's name if the name
+/// precedes it.
 fn begins(text: &str) -> Option<usize> {
     let found = BEGINNINGS.iter().filter_map(|it| text.find(it)).min()?;
     let named = text[..found].ends_with(NAME);
@@ -70,7 +72,8 @@ impl Reader<'_> {
         Ok(message)
     }
 
-    /// Reads `["joint_reflex", "cartesian_reflex"]`, possibly broken into lines by an e-mail.
+    /// Reads `["joint_reflex", "cartesian_reflex"]`, even if an e-mail program has broken it into
+    /// lines.
     fn errors(&mut self) -> Result<Errors, ControlLogError> {
         self.expect("[", "a list of errors, such as [\"joint_reflex\"]")?;
         let mut errors = Errors::NONE;
@@ -178,7 +181,7 @@ const BEGINNINGS: [&str; 4] = [
     "Motion finished commanded,",
 ];
 
-/// Answers that are followed by the list of errors.
+/// Answers after which the list of errors follows.
 const LISTED: [&str; 2] = ["motion aborted by reflex!", "the robot is still moving!"];
 
 const RATE: &str = "control_command_success_rate:";

@@ -1,6 +1,6 @@
-//! The data that libfranka provides about a motion ended by the robot: the table of
-//! `franka::logToCSV`, and the text of the `franka::ControlException`. Programs with libfranka, and
-//! this driver's `ControlLog::to_csv`, write them.
+//! Reads the data that libfranka provides about a motion that the robot ended: the table of
+//! `franka::logToCSV` and the text of the `franka::ControlException`. This driver's
+//! `ControlLog::to_csv` writes the same table.
 //!
 //! ```text
 //! file --> message: refusal, errors, success rate      --> Case --> Explanation
@@ -13,9 +13,9 @@
 //! | `message` | the text of the exception, at any place in the file |
 //! | `motion` | data derived from the rows: modes, numbers of commands, derivatives |
 //!
-//! A file may contain either or both, between other lines, as in the output of a terminal. If there
-//! are several, the newest counts. Tables have three generations of columns, according to the
-//! changelog of libfranka:
+//! A file may contain a table, a text or both, between other lines, as in the output of a terminal.
+//! If the file contains several, the newest counts. Tables have three generations of columns,
+//! according to the changelog of libfranka:
 //!
 //! | libfranka | first columns |
 //! |---|---|
@@ -23,8 +23,8 @@
 //! | 0.9.1 to 0.14 | `time, success_rate, state.q[0], state.q[1]` |
 //! | 0.15 and later | `time,success_rate,state.q[0],state.q[1]` |
 //!
-//! Numbers have six significant digits. A difference that may come from rounding is not reported as
-//! a finding: a log of joint positions shows steps, but seldom a jerk.
+//! Numbers have six significant digits. The diagnosis does not report a difference that may come
+//! from rounding. A log of joint positions therefore shows steps, but rarely a jerk.
 //!
 //! # Example
 //!
@@ -72,12 +72,12 @@ use crate::Cycle;
 pub struct ControlLogFile {
     /// The text of the newest exception.
     pub message: Option<ControlMessage>,
-    /// The newest table, oldest cycle first; empty without a table. Its states contain the values
-    /// of the table and the values derived from it; all other fields have their default.
+    /// The newest table, oldest cycle first; empty without a table. The states contain the values
+    /// of the table and values derived from them. All other fields have their default.
     pub log: Arc<ControlLog>,
-    /// The generation of columns of that table.
+    /// Generation of the columns of the table.
     pub generation: Option<Generation>,
-    /// Number of older tables, or older texts, in the file.
+    /// Number of older tables and texts in the file.
     pub earlier: u64,
     commands: Vec<RobotCommand>,
 }
@@ -86,7 +86,7 @@ impl ControlLogFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`ControlLogError`].
+    /// [`ControlLogError`] if the file cannot be read, or contains neither a table nor a text.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ControlLogError> {
         let path = path.as_ref();
         let bytes = fs::read(path).map_err(|source| ControlLogError::File {
@@ -102,7 +102,8 @@ impl ControlLogFile {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// [`ControlLogError`].
+    /// [`ControlLogError`] if the text contains neither a table nor an exception, or if either is
+    /// damaged.
     pub fn parse(text: &str) -> Result<Self, ControlLogError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (tables, around) = table::find(text);
@@ -134,18 +135,18 @@ impl ControlLogFile {
         })
     }
 
-    /// The robot, if the file identifies it: before libfranka 0.9.1 there was only one kind.
+    /// The kind of robot, if the file identifies it. Before libfranka 0.9.1, only one kind existed.
     pub fn kind(&self) -> Option<RobotKind> {
         (self.generation == Some(Generation::Unprefixed)).then_some(RobotKind::Fer)
     }
 
-    /// The errors in the exception text; none without a text.
+    /// The errors in the exception text; empty without a text.
     pub fn errors(&self) -> Errors {
         let message = self.message.as_ref();
         message.map_or(Errors::NONE, |message| message.errors)
     }
 
-    /// Sets the errors of the motion, if the exception text is missing.
+    /// Sets the errors that ended the motion. Use this if the exception text is missing.
     #[must_use]
     pub fn with_errors(mut self, errors: Errors) -> Self {
         let message = self.message.get_or_insert_default();

@@ -1,9 +1,9 @@
 //! Data derived from the rows of a table.
 //!
 //! A table omits the modes, the numbers of the commands, and the derivatives that the robot
-//! computes. A motion has one kind of command, and all others are zeros; a robot publishes its
-//! previous command as the commanded value. These values are filled in. The rest keeps its default:
-//! the log has no tool, no contact flags and no wrench.
+//! computes. This module derives them: a motion has one kind of command and zeros for all other
+//! kinds, and a robot publishes its previous command as the commanded value. All other fields keep
+//! their default: the log has no tool, no contact flags and no wrench.
 
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use franka_proto::{
@@ -54,7 +54,7 @@ impl Motion {
     }
 }
 
-/// Returns the generator with non-zero commands; `None` if there are only torques.
+/// Returns the generator whose commands are not zero; `None` if the log has only torques.
 fn generator(rows: &[Row]) -> Option<Generator> {
     let any = |of: fn(&RobotCommand) -> &[f64]| rows.iter().any(|row| has(of(&row.command)));
     if any(|it| &it.q_c) {
@@ -70,8 +70,8 @@ fn generator(rows: &[Row]) -> Option<Generator> {
     }
 }
 
-/// True if zeros may be a command: for velocities and torques, except for the first command of a
-/// motion.
+/// True if zeros may be a real command. This is possible for velocities and torques, but not for
+/// the first command of a motion.
 fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<RobotState>) -> bool {
     let is_velocity = matches!(
         generator,
@@ -80,7 +80,7 @@ fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<Robo
     before.is_some() && (is_velocity || has_torques)
 }
 
-/// Fills in the values that a robot publishes after a command, for the whole motion.
+/// Fills in the values that a robot publishes after each command, for the whole motion.
 fn echo(entries: &mut [LogEntry]) {
     // The first state of a motion precedes every command.
     let is_whole = entries[0].command.message_id == 0;
@@ -126,15 +126,15 @@ fn echo(entries: &mut [LogEntry]) {
     }
 }
 
-/// Returns displacement and rotation vector, in base axes.
+/// Returns the displacement and the rotation vector from `from` to `to`, in base axes.
 fn difference(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     let shift = to.translation.vector - from.translation.vector;
     let turn = rotation::error(&to.rotation, &from.rotation);
     Twist::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
 }
 
-/// Returns the log with a last state that shows the end of the motion with these errors.
-/// libfranka's log always has such a state, with a success rate of zero.
+/// Returns the log with an additional last state, which shows the end of the motion with these
+/// errors. libfranka's log always has such a state, with a success rate of zero.
 pub(super) fn ended_by(log: &ControlLog, errors: Errors) -> ControlLog {
     let mut entries: Vec<LogEntry> = log.iter().copied().collect();
     if let [.., _, last] = &mut entries[..]

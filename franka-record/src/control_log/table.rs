@@ -7,7 +7,7 @@ use franka_proto::{RobotCommand, RobotState};
 
 use super::{ControlLogError, SHOWN};
 
-/// A generation of columns: the names in libfranka's table have changed twice.
+/// Generation of the columns of libfranka's table. The names have changed twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Generation {
     /// libfranka 0.2 to 0.9.0: `duration, success rate, q[0]`, and an empty column before the
@@ -19,7 +19,7 @@ pub enum Generation {
     Compact,
 }
 
-/// The place of a table in a file.
+/// Position of a table in a file.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     bytes: Range<usize>,
@@ -36,11 +36,11 @@ pub(super) struct Table {
     pub(super) rows: Vec<Row>,
 }
 
-/// A row: a state, and its previous command.
+/// A row: a state, and the command before it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     pub(super) state: RobotState,
-    /// The command: all zeros except the numbers that control the motion.
+    /// The command. Only the numbers that control the motion are not zero.
     pub(super) command: RobotCommand,
 }
 
@@ -86,7 +86,7 @@ fn generation(line: &str) -> Option<Generation> {
     }
 }
 
-/// True if a line below the names belongs to the table. A truncated or garbled line also does; an
+/// True if a line below the names belongs to the table. Truncated or garbled lines belong to it. An
 /// empty line or a line of words ends the table.
 fn is_row(line: &str) -> bool {
     let line = line.trim();
@@ -94,7 +94,7 @@ fn is_row(line: &str) -> bool {
     line.starts_with(is_number) || line.contains(',') && !line.contains("libfranka")
 }
 
-/// The destination of the numbers of some columns.
+/// Destination of the numbers of a vector of columns.
 enum Field {
     State(fn(&mut RobotState) -> &mut [f64]),
     Command(fn(&mut RobotCommand) -> &mut [f64]),
@@ -118,15 +118,16 @@ const COLUMNS: [(&str, Field); 11] = [
     ("tau_J_d", Field::Command(|it| &mut it.tau_J_d)),
 ];
 
-/// The time, the success rate, and the place of each of [`COLUMNS`] among the cells of a row.
+/// Positions of the time, the success rate and each of [`COLUMNS`] in a row.
 struct Layout {
     cells: usize,
-    /// For each number: the place, the entry of [`COLUMNS`], and the index in its vector.
+    /// For each number: its position in the row, its entry in [`COLUMNS`], and its index in the
+    /// vector.
     numbers: Vec<(usize, usize, usize)>,
 }
 
 impl Layout {
-    /// Columns may have any order, and other columns may be among them.
+    /// Finds the columns. They may have any order, with other columns between them.
     fn of(names: &StringRecord, place: &Place) -> Result<Self, ControlLogError> {
         let is_unprefixed = place.generation == Generation::Unprefixed;
         // Without prefixes, the same names mean states before this column, and commands after it.

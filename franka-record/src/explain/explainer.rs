@@ -20,15 +20,15 @@ use crate::{Cycle, Event, EventKind, HostTime};
 #[derive(Clone, Debug)]
 pub struct Explainer<'a> {
     model: &'a Model,
-    /// The newest run.
+    /// Data since the last start of the robot.
     run: Run,
-    /// The newest previous run in which a motion was ended.
+    /// The newest earlier run in which a motion ended.
     before: Option<Run>,
-    /// Number of ended motions.
+    /// Number of motions that ended.
     ends: u64,
 }
 
-/// The data since the robot was started: its clock continues within a run.
+/// The data since one start of the robot. The robot's clock does not restart within a run.
 #[derive(Clone, Debug, Default)]
 struct Run {
     tare: Tare,
@@ -37,16 +37,17 @@ struct Run {
     peaks: Peaks,
     lost: Lost,
     late: Late,
-    /// Traces of the newest cycles, until the end.
+    /// Traces of the newest cycles, up to the end of the motion.
     window: VecDeque<Trace>,
-    /// Reason for the end of the last motion, from the newest cycle.
+    /// Errors that ended the last motion, as the newest cycle reports them.
     reflex_reason: Option<Errors>,
     ended: Option<Ended>,
     first: Option<u64>,
     last: u64,
     /// Time at which the newest cycle arrived, if known.
     received: Option<HostTime>,
-    /// Goals that have begun and not ended, oldest first; true for goals of chunks.
+    /// Goals that have begun and not ended, oldest first. The flag is true for goals that consist
+    /// of chunks.
     open: Vec<(u64, bool)>,
     /// Text of the last ended goal, if it failed.
     failed: Option<String>,
@@ -55,7 +56,7 @@ struct Run {
     diagnosis: Option<Told>,
 }
 
-/// A diagnosis and its time.
+/// A recorded diagnosis and its time.
 #[derive(Clone, Debug)]
 struct Told {
     time: u64,
@@ -63,17 +64,17 @@ struct Told {
     text: String,
 }
 
-/// The newest end of a motion caused by the robot, a guard or a lost link.
+/// The newest end of a motion, by the robot, a guard or a lost link.
 #[derive(Clone, Debug)]
 struct Ended {
     time: u64,
     received: Option<HostTime>,
     errors: Errors,
-    /// The reason, if known without a diagnosis.
+    /// The reason as text, if it is known without a diagnosis.
     text: String,
     window: VecDeque<Trace>,
     tared: f64,
-    /// Margins until the arm was at rest.
+    /// Distances from the limits until the arm was at rest.
     margins: Margins,
     peaks: Peaks,
 }
@@ -89,8 +90,8 @@ impl<'a> Explainer<'a> {
         }
     }
 
-    /// Processes the next cycle. A cycle with the same age as the last is ignored; an older one is
-    /// the first after a restart of the robot.
+    /// Processes the next cycle. A cycle with the same robot time as the last cycle is ignored. An
+    /// earlier robot time means that the robot was restarted.
     pub fn push(&mut self, cycle: &Cycle) {
         self.take(Some(cycle.time), &cycle.state, Some(&cycle.record));
     }
@@ -100,8 +101,8 @@ impl<'a> Explainer<'a> {
         self.take(None, state, None);
     }
 
-    /// Processes an event after the cycles so far: goals, outcomes, notes and the diagnosis of an
-    /// error. Changes of mode, and errors, are detected in the cycles.
+    /// Processes an event that came after the cycles so far. Pass goals, outcomes, notes and
+    /// diagnoses. The explainer finds changes of mode and errors in the cycles.
     pub fn push_event(&mut self, event: &Event) {
         self.ends += u64::from(self.run.event(event));
     }
@@ -190,7 +191,8 @@ impl Run {
         }
     }
 
-    /// Processes a state newer than the last; returns true if it shows the end of a motion.
+    /// Processes a state that is newer than the last state. Returns true if it shows the end of a
+    /// motion.
     fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) -> bool {
         let time = state.message_id;
         let lost = match self.first {
@@ -247,7 +249,7 @@ impl Run {
         ended
     }
 
-    /// Keeps the data before the end of a motion.
+    /// Keeps the data of the last second before the end of a motion.
     fn end(&mut self, errors: Errors, text: String) {
         self.ended = Some(self.end_now(errors, text));
         self.timeline.ended(self.last);
@@ -352,8 +354,8 @@ fn read(_: &str) -> Option<Diagnosis> {
     None
 }
 
-/// Time before the end that is kept, `[ms]`.
+/// Time before the end for which data is kept, `[ms]`.
 const SPAN: u64 = 1000;
 
-/// Mass, `[kg]`, below which the flange counts as empty; above it, a Hand is assumed.
+/// Mass, `[kg]`, below which the flange counts as empty. Above this mass, a Hand is assumed.
 const BARE: f64 = 0.05;

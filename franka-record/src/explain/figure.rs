@@ -1,4 +1,4 @@
-//! The last second as an SVG image.
+//! Figure of the last second before the end, as an SVG image.
 
 use svg::node::element::path::Data;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
@@ -8,14 +8,14 @@ use super::polyline::thinned;
 use super::report::NO_END;
 use super::{Explanation, MomentKind, Trace, sketch};
 
-/// The position and range of a panel.
+/// Position and range of values of a panel in the figure.
 struct Panel {
     top: f64,
     height: f64,
-    /// Values at its lower and upper edge.
+    /// Values at the lower and upper edge of the panel.
     low: f64,
     high: f64,
-    /// Milliseconds before the end at its left edge.
+    /// Milliseconds before the end at the left edge of the panel.
     span: f64,
 }
 
@@ -262,7 +262,7 @@ fn x(span: f64, before: f64) -> f64 {
     LEFT + CURVES * (1.0 - before / span)
 }
 
-/// Returns the next of 1, 2, 5, 10, ... times a power of ten.
+/// Returns the next larger number of the series 1, 2, 5, 10, 20, 50, ...
 fn rounded(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.5, 10.0].map(|step| step * power);
@@ -277,7 +277,7 @@ fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// Rounds to tenths of a pixel, which are sufficient.
+/// Rounds to tenths of a pixel.
 fn short(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
@@ -299,7 +299,7 @@ const CURVES: f64 = 660.0;
 const PANEL: f64 = 120.0;
 const GAP: f64 = 28.0;
 
-/// Largest error of a drawn curve: not visible.
+/// Largest error of a drawn curve, in pixels; too small to see.
 const TOLERANCE: f64 = 0.2;
 
 const SKETCH_LEFT: f64 = 770.0;

@@ -5,59 +5,59 @@ use franka_model::{EndEffector, Frame, JointVector, Model};
 use franka_proto::RobotState;
 use franka_rt::driver::Record;
 
-/// The distance of a value from its limit.
+/// A value and its distance from its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Approach {
     /// The joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
-    /// The measured value.
+    /// Measured value.
     pub value: f64,
-    /// The limit at that point, on the side of the value.
+    /// Limit at this moment, on the side of the value.
     pub limit: f64,
-    /// Distance from the value to the limit; negative beyond it.
+    /// Distance from the value to the limit; negative beyond the limit.
     pub margin: f64,
-    /// Time, `[ms]` of the robot's clock.
+    /// Time on the robot's clock, `[ms]`.
     pub time: u64,
 }
 
-/// The smallest distances; `None` before any cycle.
+/// Smallest distances from the limits; `None` before any cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margins {
-    /// A joint and the end of its range, relative to its range, `[rad]`.
+    /// Joint position nearest to an end of its range, relative to the range, `[rad]`.
     pub position: Option<Approach>,
-    /// A joint's velocity and its limit at that position, as a share, `[rad/s]`.
+    /// Joint velocity nearest to its limit at that position, relative to the limit, `[rad/s]`.
     pub velocity: Option<Approach>,
-    /// A joint's torque, gravity included, and its limit, as a share, `[N·m]`.
+    /// Joint torque nearest to its limit, relative to the limit, gravity included, `[N·m]`.
     pub torque: Option<Approach>,
-    /// The end effector's velocity and the limit of Cartesian commands, `[m/s]`.
+    /// Velocity of the end effector, and the limit of Cartesian commands, `[m/s]`.
     pub translation: Option<Approach>,
-    /// The end effector's rotation and its limit, `[rad/s]`.
+    /// Angular velocity of the end effector, and its limit, `[rad/s]`.
     pub rotation: Option<Approach>,
 }
 
-/// A largest value.
+/// A largest value, and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
     /// The joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
-    /// Its magnitude.
+    /// Magnitude of the value.
     pub value: f64,
-    /// Time, `[ms]` of the robot's clock.
+    /// Time on the robot's clock, `[ms]`.
     pub time: u64,
 }
 
-/// The largest values; `None` without data.
+/// Largest values of some quantities; `None` without data.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
-    /// External torque of a joint, minus the tare, `[N·m]`.
+    /// External torque of a joint, minus its baseline without contact, `[N·m]`.
     pub external_torque: Option<Peak>,
     /// Norm of the robot's estimate of the external force at the end effector, `[N]`.
     pub force: Option<Peak>,
-    /// Difference between reference and measured position of a joint in target control, `[rad]`.
+    /// Distance of a joint from its reference position in target control, `[rad]`.
     pub following_error: Option<Peak>,
 }
 
@@ -144,7 +144,7 @@ impl Peaks {
     }
 }
 
-/// Returns the speeds of the end effector, `[m/s]`, `[rad/s]`.
+/// Returns linear and angular speed of the end effector, `[m/s]`, `[rad/s]`.
 fn speeds(model: &Model, state: &RobotState) -> (f64, f64) {
     let ee = EndEffector {
         f_t_ee: nalgebra::Matrix4::from_column_slice(&state.F_T_EE),
@@ -164,7 +164,7 @@ fn range_of(model: &Model, approach: &Approach) -> Option<f64> {
     Some(limits.upper[i] - limits.lower[i])
 }
 
-/// Returns the remaining share of the limit.
+/// Returns the share of the limit that is left.
 fn share(approach: &Approach) -> f64 {
     approach.margin / approach.limit.abs().max(f64::MIN_POSITIVE)
 }

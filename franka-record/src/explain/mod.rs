@@ -17,10 +17,10 @@
 //! | `report` | the text |
 //! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
-//! The explained end is the last motion that the robot stopped, a guard aborted or a lost link
-//! ended; without one, it is the newest cycle. After a restart the robot's time starts again: the
-//! explanation then covers the newest run with such an end, or else the newest run. Memory is
-//! bounded, regardless of the number of cycles.
+//! The module explains the last motion that the robot stopped, that a guard aborted, or that a lost
+//! link ended. Without such a motion, it explains the time up to the newest cycle. After a restart,
+//! the robot's time starts again. The explanation then covers the newest run in which such a motion
+//! ended, or else the newest run. Memory is bounded, regardless of the number of cycles.
 //!
 //! # Example
 //!
@@ -66,111 +66,112 @@ pub use margins::{Approach, Margins, Peak, Peaks};
 pub use place::{Place, Placed};
 pub use timeline::{Moment, MomentKind};
 
-/// The explanation of a series of cycles. `Display` is a report of one page.
+/// Explanation of a series of cycles. `Display` gives a report of one page.
 ///
-/// Times are the robot's clock, `[ms]`: the `message_id` of states.
+/// Times are on the robot's clock, `[ms]`: the `message_id` of states.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Explanation {
-    /// The robot.
+    /// Kind of the robot.
     pub robot: RobotKind,
-    /// The first cycle.
+    /// Time of the first cycle.
     pub first: u64,
-    /// The last cycle.
+    /// Time of the last cycle.
     pub last: u64,
     /// Number of cycles.
     pub cycles: u64,
-    /// The cycle that shows the end of the last motion that the robot stopped, a guard aborted or a
-    /// lost link ended. For a guard, it is the cycle in which the arm was at rest. Without such an
-    /// end, it is the last cycle.
+    /// Time of the cycle that shows the end of the explained motion. This is the last motion that
+    /// the robot stopped, a guard aborted or a lost link ended. For a guard, it is the cycle in
+    /// which the arm was at rest. Without such an end, it is the last cycle.
     pub end: u64,
-    /// Time at which this host received that cycle; `None` if unknown, as in a log.
+    /// Time at which this host received the cycle at [`end`](Self::end); `None` if unknown, as in a
+    /// log.
     pub received: Option<HostTime>,
-    /// The newest goal whose end was not recorded, if no end of a motion was found.
+    /// Number of the newest goal without a recorded end, if no motion ended.
     pub under_way: Option<u64>,
-    /// Text of the last goal if it failed on its own, for example after a user stop or at an
+    /// Text of the last goal if it failed without a reflex, for example after a user stop or at an
     /// obstacle; `None` if it did not fail.
     pub failed: Option<String>,
-    /// Number of earlier ends of this kind.
+    /// Number of motions that ended earlier in the same way: by the robot, a guard or a lost link.
     pub earlier: u64,
-    /// The reason for the end of that motion; `None` without such an end.
+    /// Reason for the end of the explained motion; `None` if no motion ended.
     pub cause: Option<Cause>,
-    /// The changes, oldest first, at most [`MOMENTS_MAX`]: until half a second after the end.
+    /// Changes up to half a second after the end, oldest first, at most [`MOMENTS_MAX`].
     pub timeline: Vec<Moment>,
-    /// Number of changes that the timeline had no space for.
+    /// Number of changes for which the timeline had no space.
     pub moments_left_out: u64,
-    /// The smallest distance from each limit, until half a second after the end.
+    /// Smallest distance from each limit, up to half a second after the end.
     pub margins: Margins,
-    /// The largest values, until half a second after the end.
+    /// Largest values, up to half a second after the end.
     pub peaks: Peaks,
-    /// The contact at the end of the motion; `None` without cycles.
+    /// Contact at the end of the motion; `None` without cycles.
     pub contact: Option<Place>,
-    /// States that were lost.
+    /// Lost states.
     pub lost: Lost,
     /// Commands that left after the next state was due.
     pub late: Late,
-    /// The cycles before the end, for the figure.
+    /// Cycles of the last second before the end, for the figure.
     pub last_second: Vec<Trace>,
 }
 
-/// The reason for the end of a motion.
+/// Reason for the end of a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cause {
-    /// The errors named by the robot; none if a guard or a lost link ended the motion.
+    /// Errors that the robot named; empty if a guard or a lost link ended the motion.
     pub errors: Errors,
-    /// The exceeded limit and its causes. `None` if the commands of the motion are unknown, as in a
-    /// recording without the diagnosis event.
+    /// The exceeded limit and its causes. `None` if the commands of the motion are unknown, for
+    /// example in a recording without a diagnosis event.
     pub diagnosis: Option<Diagnosis>,
-    /// The diagnosis, or the other known facts, as text.
+    /// The diagnosis as text, or the other known facts.
     pub text: String,
 }
 
-/// States that did not arrive, or arrived too late to be answered.
+/// States that did not arrive, or that arrived too late to be answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lost {
-    /// Total number.
+    /// Total number of lost states.
     pub states: u64,
     /// Largest number of consecutive lost states.
     pub most_in_a_row: u64,
-    /// The cycle before these consecutive states.
+    /// Time of the cycle before the longest series of lost states.
     pub most_at: u64,
-    /// Number in the second before the end.
+    /// Number of lost states in the last second before the end.
     pub in_last_second: u64,
 }
 
-/// Commands that left this computer too late, if the times are known: in recordings of a robot, but
-/// not in logs and not under active control.
+/// Commands that left this computer too late. The times are known in recordings of a robot, but not
+/// in logs and not under active control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Late {
     /// Number of late commands.
     pub commands: u64,
-    /// Largest delay of a command after the next state was due.
+    /// Largest delay of a command, from the time at which the next state was due.
     pub most: Duration,
-    /// The state answered by that command.
+    /// Time of the state that the most delayed command answered.
     pub at: u64,
-    /// Time from the state's availability to that command.
+    /// Time from the arrival of this state to the departure of its command.
     pub turnaround: Duration,
 }
 
-/// One cycle of the last second.
+/// One cycle of the last second before the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Trace {
     /// Time of the state.
     pub time: u64,
-    /// Number of states lost before it.
+    /// Number of states lost directly before this state.
     pub lost: u64,
     /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
-    /// Velocity divided by the limit in its direction, -1 to 1.
+    /// Joint velocity divided by the limit in its direction, -1 to 1.
     pub speed: [f64; 7],
-    /// Torque of the environment on the joints, minus the tare, `[N·m]`.
+    /// Torque of the environment on each joint, minus its baseline without contact, `[N·m]`.
     pub external: [f64; 7],
-    /// Torque divided by its limit, -1 to 1.
+    /// Joint torque divided by its limit, -1 to 1.
     pub torque: [f64; 7],
     /// Largest measured joint velocity, `[rad/s]`.
     pub fastest: f64,
@@ -189,8 +190,8 @@ impl Explanation {
         Self::of_readable(cycles, events.into_iter().map(Ok), model)
     }
 
-    /// Explains one robot of a recording, or a part of its time. Unreadable data is skipped and
-    /// noted in the timeline.
+    /// Explains one robot of a recording, or a part of its time. It skips unreadable data and notes
+    /// this in the timeline.
     pub fn of_recording(recording: &RobotRecording<'_>, model: &Model) -> Self {
         Self::of_readable(recording.cycles(), recording.events(), model)
     }
@@ -227,12 +228,12 @@ impl Explanation {
         explainer.finish()
     }
 
-    /// Explains the log of an error, which contains the last cycles of its motion.
+    /// Explains an error from its log, which contains the last cycles of the motion.
     pub fn of_error(error: &ControlError) -> Self {
         Self::of_case(&Case::from(error), &error.model)
     }
 
-    /// Explains a saved log. The cause is always present, even if the log does not show it.
+    /// Explains a saved log. The result always has a cause, even if the log does not show it.
     pub fn of_case(case: &Case, model: &Model) -> Self {
         let mut explainer = Explainer::new(model);
         for entry in case.log.iter() {
@@ -252,8 +253,8 @@ impl Explanation {
         }
     }
 
-    /// Explains a log of libfranka. Without errors in the file, it explains the table, and reports
-    /// that the errors are missing.
+    /// Explains a log of libfranka. If the file names no errors, the explanation covers the table
+    /// and reports that the errors are missing.
     pub fn of_control_log(file: &ControlLogFile, model: &Model) -> Self {
         let case = file.case();
         let mut explanation = Self::of_case(&case, model);
@@ -273,16 +274,16 @@ impl Explanation {
         explanation
     }
 
-    /// Returns the last second before the end as an SVG image: contact torques, velocities and
-    /// torques relative to their limits, the events, and the place of the contact on the arm.
+    /// Returns an SVG image of the last second before the end. It shows contact torques, velocities
+    /// and torques relative to their limits, the events, and the place of the contact on the arm.
     ///
-    /// The image has no background, and its colours are distinguishable on white and on black.
+    /// The image has no background, and its colours can be told apart on white and on black.
     pub fn figure(&self) -> String {
         figure::draw(self)
     }
 }
 
-/// The cause for a table without the text of its exception.
+/// Text of the cause for a table without the text of the exception.
 const UNNAMED: &str = "the file does not name the errors: paste the text of the exception, which \
     names them, into the file";
 

@@ -10,23 +10,25 @@ use super::Trace;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Place {
-    /// The cycle with the evaluated torques: the strongest of the last 100 ms.
+    /// Time of the cycle whose torques were evaluated: the cycle with the strongest torques of the
+    /// last 100 ms.
     pub time: u64,
     /// Joint positions at that time, `[rad]`.
     pub q: [f64; 7],
-    /// External torques on the arm at that time, minus the tare, `[N·m]`.
+    /// External torques on the arm at that time, minus their baseline without contact, `[N·m]`.
     pub torque: [f64; 7],
-    /// Learning time of the tare, `[s]`. If it is short, the estimate includes the torques that are
-    /// measured without a contact.
+    /// Time over which the baseline was learned, `[s]`. If it is short, the estimate includes
+    /// torques that are measured without a contact.
     pub tared: f64,
-    /// True if a Hand on the flange was assumed.
+    /// True if the estimate assumed a Hand on the flange.
     pub has_hand: bool,
     /// True if the robot itself detected a contact or collision in the last 100 ms, or since the
-    /// end. Without that and without a stop, the estimate is for an untouched arm.
+    /// end. If false, and if no motion was stopped, the arm was probably not touched, and the
+    /// estimate has no meaning.
     pub noticed: bool,
-    /// The contact, if the torques determine it.
+    /// Contact, if the torques determine it.
     pub contact: Option<Placed>,
-    /// The reason why the body is uncertain or unknown; `None` if it is known.
+    /// Reason why the touched body is uncertain or unknown; `None` if it is known.
     pub unknown: Option<String>,
 }
 
@@ -34,17 +36,17 @@ pub struct Place {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Placed {
-    /// The link, or the tool.
+    /// The touched link, or the tool.
     pub body: Body,
     /// Position, `[m]`.
     pub point: [f64; 3],
-    /// Force on the arm, `[N]`.
+    /// Force on the arm, `[N]`, in base axes.
     pub force: [f64; 3],
-    /// Spread of the places that explain the torques equally well, `[m]`.
+    /// Spread of the points that explain the torques equally well, `[m]`.
     pub spread: f64,
-    /// Torques that are not explained, `[N·m]`.
+    /// Torques that the contact does not explain, `[N·m]`.
     pub residual: [f64; 7],
-    /// Probability that it is this body, 0 to 1.
+    /// Probability that the contact is on this body, 0 to 1.
     pub probability: f64,
     /// The second most probable body, and its probability.
     pub next: Option<(Body, f64)>,
@@ -77,7 +79,8 @@ pub(super) fn shape(model: &Model, has_hand: bool) -> Shape<'static> {
     if has_hand { shape.with_hand() } else { shape }
 }
 
-/// Returns the contact at the end of `traces`; the robot last detected one at `noticed`.
+/// Returns the contact at the end of `traces`. `noticed` is the time at which the robot last
+/// detected a contact.
 pub(super) fn of(
     model: &Model,
     has_hand: bool,
@@ -162,7 +165,7 @@ pub(super) fn name(body: Body) -> String {
     }
 }
 
-/// Time before the end in which the contact is searched, `[ms]`.
+/// Time before the end in which a contact is sought, `[ms]`.
 const NEAR_END: u64 = 100;
 
 /// Joint velocity above which friction is sliding friction, `[rad/s]`.

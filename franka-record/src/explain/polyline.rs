@@ -1,8 +1,8 @@
 //! Simplifies lines through many points.
 
-/// Returns few of the points, in order, such that straight lines between them pass every point
-/// within `tolerance`. A single pass extends each line until no slope passes all of its points. `x`
-/// must increase.
+/// Returns a few of the points, in order. Straight lines between them pass every omitted point
+/// within `tolerance`. A single pass extends each line as long as one slope passes all points on
+/// it. `x` must increase.
 pub(super) fn thinned(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     let Some(&first) = points.first() else {
         return Vec::new();

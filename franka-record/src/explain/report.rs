@@ -207,11 +207,11 @@ fn of(joint: Option<u8>) -> String {
     }
 }
 
-/// Text without a cause.
+/// Text if no motion ended.
 pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
 
-/// Number of moments in the report, the newest ones.
+/// Largest number of moments in the report; older moments are omitted.
 const SHOWN: usize = 40;
 
-/// Learning time of the tare, `[s]`, below which the report notes it.
+/// Time over which the baseline was learned, `[s]`, below which the report warns about it.
 const SHORT: f64 = 0.2;

@@ -10,7 +10,7 @@ use svg::node::element::{Circle, Group, Line};
 use super::figure::{INK, line, text};
 use super::{Explanation, place};
 
-/// A direction of view: the coordinates that point right and up, with signs.
+/// Direction of view: the coordinates that point right and up, with their signs.
 struct View {
     name: &'static str,
     right: fn(&Vector3<f64>) -> f64,
@@ -158,7 +158,7 @@ fn arrow(tail: (f64, f64), head: (f64, f64)) -> Group {
 /// Margin around the arm, `[m]`.
 const MARGIN: f64 = 0.12;
 
-/// Length of the arrow, `[m]`.
+/// Length of the arrow in the sketch, `[m]`.
 const ARROW: f64 = 0.2;
 
 /// Colour of the touched body, and of the force.

@@ -12,7 +12,7 @@ use crate::{Event, EventKind};
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moment {
-    /// The cycle, `[ms]` of the robot's clock.
+    /// Time of the cycle on the robot's clock, `[ms]`.
     pub time: u64,
     /// The kind of event.
     pub kind: MomentKind,
@@ -54,15 +54,14 @@ pub(super) struct Timeline {
     errors: Errors,
     reflex_reason: Errors,
     goal: u64,
-    /// Flags of joints and axes, and of guards: the time when each was last set.
+    /// Time at which each flag of joints, axes and guards was last set.
     contacts: [Option<u64>; AXES],
     collisions: [Option<u64>; AXES],
     guards: [Option<u64>; Guard::ALL.len()],
     last_loss: Option<u64>,
     /// True if events report the goals.
     has_goals: bool,
-    /// The newest end of a motion, and the moments until shortly after it, once there are later
-    /// ones.
+    /// Time of the newest end of a motion, and the moments until shortly after it.
     end: Option<u64>,
     until_end: Option<Vec<Moment>>,
 }
@@ -157,7 +156,7 @@ impl Timeline {
         }
     }
 
-    /// Records the end of a motion: much later moments are dropped.
+    /// Records the end of a motion. Moments long after the end are then dropped.
     pub(super) fn ended(&mut self, time: u64) {
         (self.end, self.until_end) = (Some(time), None);
     }
@@ -208,7 +207,8 @@ impl Timeline {
         flags.copied().flatten().max()
     }
 
-    /// Returns the moments until shortly after the end, oldest first, and the number of the others.
+    /// Returns the moments until shortly after the end, oldest first, and the number of the omitted
+    /// moments.
     pub(super) fn finish(self) -> (Vec<Moment>, u64) {
         let mut moments = self.until_end.unwrap_or(self.moments);
         moments.sort_by_key(|moment| moment.time);
@@ -229,13 +229,14 @@ fn appears(last: &mut Option<u64>, now: u64) -> bool {
     before.is_none_or(|before| now > before + PAUSE)
 }
 
-/// Time after the end of a motion in which events still belong to it, `[ms]`: the arm brakes.
+/// Time after the end of a motion in which events still belong to the motion, `[ms]`, because the
+/// arm brakes.
 pub(super) const AFTER: u64 = 500;
 
 /// Absence after which a condition is recorded again, `[ms]`.
 const PAUSE: u64 = 200;
 
-/// Joints, and axes of the base at the stiffness frame.
+/// Number of flags: one per joint, and one per axis of the base at the stiffness frame.
 const AXES: usize = 13;
 
 const NAMES: [(&str, &str); AXES] = [

@@ -4,11 +4,11 @@ use franka_rt::driver::Column;
 
 use crate::cycle::Cycle;
 
-/// The columns of a table, after the time of each cycle.
+/// The columns of a table, which follow the time of each cycle.
 #[derive(Clone, Debug)]
 pub struct Columns(pub(super) Vec<&'static Column>);
 
-/// No column has this name.
+/// Error: no column has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("got the column {got:?}, expected columns from {}", expected.join(", "))]
 pub struct UnknownColumn {
@@ -25,13 +25,14 @@ impl Columns {
     }
 
     /// Returns all columns of a [control log](crate::control_log). `q_ref`, `dq_ref` and `tau_c`
-    /// are the commands that answer a state; `O_T_EE_c` and `O_dP_EE_c` were commanded before it.
+    /// are the commands that answer a state. `O_T_EE_c` and `O_dP_EE_c` are the values commanded
+    /// before the state.
     pub fn of_log() -> Self {
         let find = |name| Column::find(name).expect("a column of a cycle");
         Self(LOGGED.map(find).into())
     }
 
-    /// Returns the columns of a recording with these names, each once, in this order.
+    /// Returns the columns of a recording with these names, in this order, without repetitions.
     ///
     /// # Errors
     /// [`UnknownColumn`] for the first name that no column of a recording has.
@@ -39,10 +40,10 @@ impl Columns {
         Self::all().choose(names)
     }
 
-    /// Returns the columns of this selection with these names, each once, in this order.
+    /// Returns the columns of this selection with these names, in this order, without repetitions.
     ///
     /// # Errors
-    /// [`UnknownColumn`] for the first name that none of them has.
+    /// [`UnknownColumn`] for the first name that no selected column has.
     pub fn choose<'a>(
         &self,
         names: impl IntoIterator<Item = &'a str>,
@@ -62,7 +63,7 @@ impl Columns {
         Ok(Self(columns))
     }
 
-    /// Writes the numbers of a cycle into `row`, replacing its contents.
+    /// Writes the numbers of a cycle into `row`, in place of its contents.
     pub(super) fn read(&self, cycle: &Cycle, row: &mut Vec<f64>) {
         row.clear();
         for column in &self.0 {
@@ -71,7 +72,7 @@ impl Columns {
     }
 }
 
-/// Returns the name for a number; empty if it has none.
+/// Returns the name for a number; empty if the number has no name.
 pub(super) fn name_of(list: &'static [&'static str], number: f64) -> &'static str {
     list.get(number as usize).copied().unwrap_or_default()
 }
@@ -98,7 +99,7 @@ const LOGGED: [&str; 12] = [
     "O_dP_EE_c",
 ];
 
-/// Fields of the state that are not recorded, and are zero after reading.
+/// Fields of the state that are not recorded. They are zero after reading.
 const NOT_RECORDED: [&str; 13] = [
     "theta",
     "dtheta",

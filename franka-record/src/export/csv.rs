@@ -9,7 +9,7 @@ use super::cells::{Columns, name_of};
 use super::error::ExportError;
 use crate::cycle::Cycle;
 
-/// Writes a line with the names of the columns, and one line for each cycle; returns the number of
+/// Writes a line with the names of the columns, and one line for each cycle. Returns the number of
 /// cycles. The first columns are `time`, the robot's clock in milliseconds, and `host_time`,
 /// nanoseconds since 1970. A vector has a column for each number, `q[0]` to `q[6]`; a matrix is
 /// row-major. A missing number is left empty.

@@ -4,11 +4,11 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The reason why an export failed or is incomplete.
+/// Reason why an export failed or is incomplete.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// A file with this name exists. An export never replaces a file: choose another name, or
+    /// A file with this name exists, and an export never replaces a file. Choose another name, or
     /// delete the file first.
     #[error("{} exists, and an export never replaces a file: choose another name", path.display())]
     Exists {
@@ -41,25 +41,25 @@ pub enum ExportError {
     /// The samples of an episode are invalid.
     #[error("episode {index} of the dataset, with the task {task:?}: {why}")]
     Episode {
-        /// Its number in the dataset, from 0.
+        /// Number of the episode in the dataset, from 0.
         index: u64,
-        /// Its task.
+        /// Task of the episode.
         task: String,
-        /// The error.
+        /// Description of the error.
         why: String,
     },
     /// The folder is not a dataset that can be written to.
     #[error("the dataset {}: {why}", path.display())]
     Dataset {
-        /// Its folder.
+        /// Folder of the dataset.
         path: PathBuf,
-        /// The found and the expected value.
+        /// The value found and the expected value.
         why: String,
     },
     /// An option has an invalid value.
     #[error("{option}: got {got}, expected {expected}")]
     Option {
-        /// Its name.
+        /// Name of the option.
         option: &'static str,
         /// The value.
         got: String,

@@ -8,11 +8,11 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::error::ExportError;
 
-/// A file under construction. It gets its name when it is [finished](Self::finish), and is deleted
-/// if it is dropped before.
+/// A file that is being written. It gets its name with [`finish`](Self::finish). If this value is
+/// dropped earlier, the file is deleted.
 ///
-/// Until then it has a temporary name in the same folder, which ends in `.partial`. A killed
-/// process leaves that file behind; it does not affect other exports.
+/// Until then the file has a temporary name in the same folder, which ends in `.partial`. If the
+/// process is killed, this temporary file remains; it does not affect other exports.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
@@ -58,7 +58,7 @@ impl NewFile {
     /// Waits until the disk has stored the whole file, and gives it its name.
     ///
     /// # Errors
-    /// [`ExportError::Exists`] if another file now has the name, and [`ExportError::Io`].
+    /// [`ExportError::Exists`] if another file now has this name, and [`ExportError::Io`].
     pub fn finish(self) -> Result<(), ExportError> {
         let Self { path, file } = self;
         let synced = file.as_file().sync_all();

@@ -15,7 +15,7 @@ use ::parquet::schema::types::{Type, TypePtr};
 use super::error::ExportError;
 use super::new_file::NewFile;
 
-/// A column of a table: its name, and its number of values per row.
+/// A column of a table: name, type, and number of values per row.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
     pub(crate) name: String,
@@ -96,7 +96,7 @@ impl Field {
     }
 }
 
-/// A table under construction. It gets its name once it is complete.
+/// A table that is being written. The file gets its name once the table is complete.
 pub(crate) struct TableWriter {
     path: PathBuf,
     fields: Vec<Field>,
@@ -199,7 +199,7 @@ fn append(column: &mut ColumnWriter<'_>, length: Option<usize>, values: &Values)
 }
 
 impl Values {
-    /// Returns the values as numbers; flags are 0 or 1. Texts return none.
+    /// Returns the values as numbers; flags are 0 or 1. Returns an empty list for texts.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Bool(values) => values.iter().map(|x| f64::from(u8::from(*x))).collect(),

@@ -15,10 +15,11 @@ use crate::cycle::Cycle;
 /// Number of rows per write: a minute, some 100 MB with all columns.
 const ROWS: usize = 60_000;
 
-/// Writes the file `path`, with a row for each cycle; returns the number of rows. The first columns
+/// Writes the file `path`, with a row for each cycle. Returns the number of rows. The first columns
 /// are `time`, the robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A vector
-/// is a list, a matrix a row-major list. Flags and counts are integers, modes are texts, everything
-/// else is an `f64`. The file's metadata contains the units, as JSON, with the key `units`.
+/// is a list; a matrix is a row-major list. Flags and counts are integers, modes are texts,
+/// everything else is an `f64`. The file's metadata contains the units, as JSON, with the key
+/// `units`.
 ///
 /// The file gets its name once it is complete.
 ///
@@ -65,7 +66,7 @@ pub fn write_parquet<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// Returns the columns of the next rows: fewer than [`ROWS`] at the end.
+/// Returns the columns of the next rows. At the end there are fewer than [`ROWS`].
 fn next_rows<E: Error + Send + Sync + 'static>(
     cycles: &mut impl Iterator<Item = Result<Cycle, E>>,
     columns: &Columns,

@@ -9,16 +9,16 @@ use super::options::BlackBox;
 use super::session::Session;
 use crate::HostTime;
 
-/// The last seconds of a recording.
+/// The messages of the last seconds.
 #[derive(Debug)]
 pub(super) struct LastSeconds {
     options: BlackBox,
     messages: VecDeque<Message>,
-    /// The incident whose file is due.
+    /// The incident after which a file is due.
     incident: Option<Incident>,
 }
 
-/// The parts of the file's name.
+/// Parts of the name of an incident's file.
 #[derive(Debug)]
 struct Incident {
     time: HostTime,
@@ -56,7 +56,7 @@ impl LastSeconds {
         }
     }
 
-    /// Records an incident. If a file is already due, that file also covers the new incident.
+    /// Records an incident. If a file is already due, this file also covers the new incident.
     pub(super) fn note(&mut self, time: HostTime, robot: &str, why: &str) {
         self.incident.get_or_insert_with(|| Incident {
             time,
@@ -110,12 +110,12 @@ impl Incident {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedFile {
     Whole,
-    /// An incomplete file.
+    /// A file that is not complete.
     Part,
 }
 
-/// Returns the kind of black box file with this name, which begins with a time as above; `None` for
-/// other files.
+/// Returns the kind of black box file with this name; `None` for other files. The names of black
+/// box files begin with a time, as above.
 pub(super) fn file_of_name(name: &str) -> Option<NamedFile> {
     let (time, rest) = name.split_once('-')?;
     let shape: String = time

@@ -13,7 +13,7 @@ use super::black_box;
 use super::error::RecordError;
 use super::lock;
 
-/// The state of the files.
+/// State of the recording's files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DiskStatus {
     /// Number of bytes that wait for the disk.
@@ -28,9 +28,9 @@ pub(super) struct DiskStatus {
     pub(super) files: Vec<PathBuf>,
     /// The files of the black box.
     pub(super) black_boxes: Vec<PathBuf>,
-    /// The error that ended the recording early.
+    /// Error that ended the recording early.
     pub(super) error: Option<RecordError>,
-    /// The error of writing the newest black box.
+    /// Error that occurred when the newest black box was written.
     pub(super) black_box_error: Option<RecordError>,
 }
 
@@ -49,7 +49,7 @@ enum Job {
     Follow(PathBuf),
     /// Appends whole chunks with this many cycles.
     Append(Vec<u8>, u64),
-    /// Writes a file of the black box at once and deletes the oldest beyond `keep`.
+    /// Writes a file of the black box immediately, and keeps only the newest `keep` files.
     BlackBox {
         directory: PathBuf,
         name: String,
@@ -59,8 +59,8 @@ enum Job {
 }
 
 impl Disk {
-    /// Starts the thread. It ends once this value is dropped and everything is written; `done` is
-    /// then dropped.
+    /// Starts the thread. It ends after this value is dropped and everything is written; the thread
+    /// then drops `done`.
     pub(super) fn start(sync: bool, done: Sender<()>) -> Result<Self, RecordError> {
         let (jobs, receiver) = mpsc::channel();
         let status = Arc::<Mutex<DiskStatus>>::default();
@@ -91,7 +91,7 @@ impl Disk {
         lock(&self.status).backlog
     }
 
-    /// True if the recording can continue.
+    /// True if no error has ended the recording.
     pub(super) fn is_well(&self) -> bool {
         lock(&self.status).error.is_none()
     }
@@ -156,7 +156,7 @@ impl Disk {
     }
 }
 
-/// Records and logs why the recording cannot continue; the first reason is kept.
+/// Records and logs the reason why the recording cannot continue. Only the first reason is kept.
 fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
     let mut status = lock(status);
     if status.error.is_none() {
@@ -166,7 +166,8 @@ fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
     }
 }
 
-/// Records and logs why a black box could not be written; the newest reason is kept.
+/// Records and logs the reason why a black box could not be written. Only the newest reason is
+/// kept.
 fn fail_black_box(status: &Mutex<DiskStatus>, error: RecordError) {
     tracing::error!(%error, "no black-box file was written for this incident");
     lock(status).black_box_error = Some(error);
@@ -212,9 +213,9 @@ struct DiskThread {
 struct Open {
     path: PathBuf,
     file: File,
-    /// Its length, which consists of whole chunks.
+    /// Length of the file. It consists of whole chunks.
     length: u64,
-    /// True if a part of it may not have reached the disk.
+    /// True if part of the file may not have reached the disk.
     dirty: bool,
 }
 
@@ -314,7 +315,7 @@ impl DiskThread {
         fail(&self.status, error);
     }
 
-    /// Waits until the disk has stored the written data, if enabled.
+    /// Waits until the disk has stored the written data, if this is enabled.
     fn synchronise(&mut self) {
         let Some(open) = &mut self.open else { return };
         if !(self.sync && open.dirty) {
@@ -330,7 +331,7 @@ impl DiskThread {
 }
 
 impl Open {
-    /// Appends `bytes`, or leaves the file unchanged.
+    /// Appends `bytes`. On an error the file stays unchanged.
     fn append(&mut self, bytes: &[u8]) -> Result<(), RecordError> {
         self.dirty = true;
         match self.file.write_all(bytes) {
@@ -387,8 +388,8 @@ fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// Deletes the oldest black box files, so that `keep` are left, and the remains of others after
-/// crashes. A file that cannot be deleted stays.
+/// Deletes the oldest black box files except the newest `keep`, and incomplete files that crashes
+/// left. It ignores files that cannot be deleted.
 fn delete_oldest(directory: &Path, keep: usize) {
     let Ok(entries) = fs::read_dir(directory) else {
         return;
@@ -417,7 +418,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
     }
 }
 
-/// Age of an incomplete file from which no process writes it any more.
+/// Age above which no process writes an incomplete file any more.
 const PART_AGE: Duration = Duration::from_secs(3600);
 
 #[cfg(test)]

@@ -30,26 +30,26 @@ pub(super) enum Order {
     Finish,
 }
 
-/// The thread's progress, and its flags in addition to the orders.
+/// Progress of the thread, and flags that other threads set.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DrainStatus {
     pub(super) cycles: u64,
     pub(super) dropped: u64,
     pub(super) events_dropped: u64,
-    /// True to end the thread.
+    /// True if the thread must end.
     pub(super) finish: bool,
     /// True once the thread has ended.
     pub(super) ended: bool,
 }
 
-/// The thread's state.
+/// State of the thread.
 pub(super) struct Drain {
     orders: Receiver<Order>,
     status: Arc<Mutex<DrainStatus>>,
     sources: Vec<Source>,
     files: Files,
     clock: RecordClock,
-    /// The wall clock.
+    /// Reads the wall clock.
     wall: fn() -> HostTime,
     /// Time of the next comparison with the wall clock.
     compare_due: Instant,
@@ -61,14 +61,14 @@ pub(super) struct Drain {
 struct Source {
     label: String,
     cycles: CycleReader,
-    /// Readers of later control threads.
+    /// Readers of later control threads of the same robot.
     next: VecDeque<CycleReader>,
-    /// Cycles lost by `cycles`, as reported so far.
+    /// Number of cycles that `cycles` has lost, as reported so far.
     lost: u64,
     encoder: Encoder,
-    /// Data other than cycles, oldest first, that waits until the earlier cycles were read.
+    /// Data other than cycles, oldest first. It waits until the earlier cycles have been read.
     waiting: Vec<Waiting>,
-    /// Messages in transit; empty between calls.
+    /// Buffer for messages; empty between calls.
     messages: Vec<Message>,
 }
 
@@ -124,8 +124,8 @@ impl Drain {
         self.finish();
     }
 
-    /// Waits for the interval between two polls, and processes the pending orders. Returns true to
-    /// continue.
+    /// Waits for the interval between two polls, and processes the pending orders. Returns false if
+    /// the thread must end.
     fn take_orders(&mut self) -> bool {
         let mut next = match self.orders.recv_timeout(LOOK) {
             Ok(order) => Some(order),
@@ -195,8 +195,8 @@ impl Drain {
         }
     }
 
-    /// Reads the cycles of a robot that exist now, and no later ones, so that the others have their
-    /// turn.
+    /// Reads the cycles of a robot that are available now. Later cycles wait, so the other robots
+    /// have their turn.
     fn take_waiting_cycles(&mut self, index: usize) {
         let (mut taken, mut dropped) = (0, 0);
         let source = &mut self.sources[index];
@@ -230,7 +230,7 @@ impl Drain {
         status.dropped += dropped;
     }
 
-    /// Records when the wall clock of this host was set.
+    /// Detects whether the wall clock of this host was set, and records it.
     fn compare_clocks(&mut self) {
         let now = Instant::now();
         if now < self.compare_due {
@@ -278,8 +278,8 @@ impl Drain {
 }
 
 impl Source {
-    /// Reads these cycles after the current ones, unless they are of the same control thread: a
-    /// connection created while its robot is attached is reported twice.
+    /// Reads these cycles after the current cycles. If both are from the same control thread, this
+    /// does nothing, because a connection may be reported twice.
     fn resume(&mut self, cycles: CycleReader) {
         let last = self.next.back().unwrap_or(&self.cycles);
         if !last.is_of_same_thread(&cycles) {
@@ -287,7 +287,7 @@ impl Source {
         }
     }
 
-    /// Forwards data other than cycles, up to `time`.
+    /// Forwards data other than cycles that is not newer than `time`.
     fn pass(&mut self, time: HostTime, files: &mut Files) {
         let count = self
             .waiting
@@ -311,7 +311,7 @@ impl Source {
         }
     }
 
-    /// Reports the cycles lost after the last one, and returns their number.
+    /// Reports the cycles that were lost after the last cycle, and returns their number.
     fn note_end(&mut self, time: HostTime, files: &mut Files) -> u64 {
         let cycles = self.cycles.lost() - self.lost;
         if cycles > 0 {
@@ -331,10 +331,11 @@ impl Source {
     }
 }
 
-/// Interval between two polls of the rings, which hold seconds.
+/// Interval between two polls of the rings. The rings hold several seconds of cycles.
 const LOOK: Duration = Duration::from_millis(20);
 
 const COMPARE_PERIOD: Duration = Duration::from_secs(1);
 
-/// Smallest change that counts as a step, `[ns]`; smaller changes come from slewing.
+/// Smallest difference that counts as a step of the wall clock, `[ns]`. Smaller differences come
+/// from slewing.
 const STEP_MIN: i64 = 100_000_000;

@@ -17,7 +17,7 @@ pub(super) struct Message {
     pub(super) topic: Topic,
     pub(super) time: HostTime,
     pub(super) data: Box<[u8]>,
-    /// True if the surrounding cycles should be kept at the full rate.
+    /// True if the cycles around this message are kept at the full rate.
     pub(super) notable: bool,
 }
 
@@ -27,14 +27,14 @@ pub(super) struct Encoder {
     robot: usize,
     frames: Frames,
     model: &'static Model,
-    /// Reused for each cycle, with the memory of its fields.
+    /// Message of a cycle. It is reused, with the memory of its fields.
     cycle: franka::Cycle,
     /// Values of the newest cycle; `None` before the first.
     seen: Option<Seen>,
     /// The robot's clock before the first cycle, `[ms]`; 0 if unknown.
     attached: u64,
     tool: Option<franka::Tool>,
-    /// Time at which the channels with a lower rate are due again.
+    /// Time at which messages on the slower channels are due again.
     slow_due: HostTime,
 }
 
@@ -90,8 +90,8 @@ impl Encoder {
         }
     }
 
-    /// Appends the events of the changes since the previous cycle. Returns true if the surrounding
-    /// cycles should be kept.
+    /// Appends the events of the changes since the previous cycle. Returns true if the cycles
+    /// around this cycle are kept at the full rate.
     fn compare(&mut self, cycle: &Cycle, out: &mut Vec<Message>) -> bool {
         let state = &cycle.state;
         let now = Seen {
@@ -143,7 +143,7 @@ impl Encoder {
         }
     }
 
-    /// Appends an event, as a value and as text.
+    /// Appends an event twice: as a value and as text.
     pub(super) fn event(&self, event: &Event, out: &mut Vec<Message>) {
         let mut message = franka::Event::from(event);
         if message.robot_time == 0 {
@@ -193,5 +193,5 @@ impl Encoder {
     }
 }
 
-/// Period of the messages for viewers: 50 Hz, sufficient for a screen.
+/// Period of the messages for viewers: 50 Hz, which is enough for a screen.
 const SLOW_PERIOD: Duration = Duration::from_millis(20);

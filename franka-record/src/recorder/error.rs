@@ -5,11 +5,11 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The reason why data was not recorded. The robot is not affected: its motion continues.
+/// Reason why data was not recorded. The robot's motion is not affected.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A file with this name exists. A recording never overwrites a file: choose another name.
+    /// A file with this name exists, and a recording never overwrites a file. Choose another name.
     #[error("{} exists, and a recording never overwrites a file: choose another name", path.display())]
     Exists {
         /// The file.
@@ -23,13 +23,13 @@ pub enum RecordError {
         /// The system's error.
         source: Arc<io::Error>,
     },
-    /// A file can no longer be written: disk full, or device removed. The data written before is
-    /// readable; the rest of the recording is lost.
+    /// A file can no longer be written, for example because the disk is full or was removed. The
+    /// data written so far is readable; the rest of the recording is lost.
     #[error("cannot write {} beyond {bytes} bytes: {source}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// Number of bytes in it, all of them readable.
+        /// Number of bytes in the file. All of them are readable.
         bytes: u64,
         /// The system's error.
         source: Arc<io::Error>,
@@ -42,8 +42,8 @@ pub enum RecordError {
         /// The system's error.
         source: Arc<io::Error>,
     },
-    /// The disk did not store everything within the time limit. The remaining data is written in
-    /// the background.
+    /// The disk did not store everything within the time limit. The recorder writes the remaining
+    /// data in the background.
     #[error("the recording is not completely written after {limit:?}: the disk is too slow")]
     Unfinished {
         /// The time limit.
@@ -83,7 +83,7 @@ pub enum RecordError {
         /// The server's error.
         reason: String,
     },
-    /// The bytes of the file could not be encoded. Please report this.
+    /// The recorder could not encode data. This is a bug; please report it.
     #[error("cannot encode the recording: {reason}")]
     Encode {
         /// The encoder's error.

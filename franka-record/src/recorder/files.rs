@@ -22,7 +22,7 @@ pub(super) struct Files {
     disk: Disk,
     /// The current file; `None` without a file, and after a failure.
     open: Option<Open>,
-    /// True if a file was requested.
+    /// True if the recording has a file.
     wanted: bool,
     last_seconds: Option<LastSeconds>,
     thinning: Option<Thinning>,
@@ -42,9 +42,10 @@ pub(super) struct Files {
 /// The state of one robot.
 #[derive(Default)]
 struct RobotFiles {
-    /// Number of cycles that were not written, since the last call of [`Files::take_missing`].
+    /// Number of this robot's cycles that were not written, since the last call of
+    /// [`Files::take_missing`].
     missing: u64,
-    /// The chunk that contains its tool.
+    /// Number of the chunk that contains the robot's tool.
     chunk: Option<u64>,
 }
 
@@ -56,7 +57,7 @@ struct Open {
     bytes: u64,
     /// Number of cycles since the last flush.
     cycles: u64,
-    /// Time of its first message.
+    /// Time of the file's first message.
     began: Option<HostTime>,
     /// Time of the newest message at the last flush, and the time of the flush.
     flushed: HostTime,
@@ -64,11 +65,11 @@ struct Open {
     room: Room,
 }
 
-/// The messages accepted while the disk is behind.
+/// Kinds of messages that are accepted while the disk is behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Room {
     All,
-    /// Events only: they are few, and explain the recording.
+    /// Only events, because they are few and explain the recording.
     Events,
     Nothing,
 }
@@ -137,7 +138,7 @@ impl Files {
         self.check(added);
     }
 
-    /// Serves all further messages to viewers.
+    /// Sends all further messages to viewers through `server`.
     #[cfg(feature = "foxglove")]
     pub(super) fn serve(&mut self, mut server: super::live::Server) {
         let mut robots = self.session.robots().iter();
@@ -208,7 +209,7 @@ impl Files {
         self.take_missing_at_end(robot)
     }
 
-    /// Like [`Self::take_missing`], if no cycle follows.
+    /// Like [`Self::take_missing`], for the end of a robot's cycles.
     pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
         let robot = self.robots.get_mut(robot);
         robot.map_or(0, |robot| mem::take(&mut robot.missing))
@@ -219,7 +220,7 @@ impl Files {
         mem::take(&mut self.missing_events)
     }
 
-    /// Makes space for the last events of the recording.
+    /// Makes space in the queue for the last events of the recording.
     pub(super) fn begin_end(&mut self) {
         if let Some(open) = &mut self.open
             && open.room == Room::Nothing
@@ -228,7 +229,7 @@ impl Files {
         }
     }
 
-    /// Ends the chunk if messages at `now` are too late for it.
+    /// Ends the chunk if it is too old for messages at `now`.
     pub(super) fn flush_if_due(&mut self, now: HostTime) {
         if let Some(open) = &self.open
             && now.since(open.flushed) >= self.options.flush
@@ -238,7 +239,8 @@ impl Files {
         }
     }
 
-    /// True if the next messages of a robot are its first in a chunk; true once per chunk.
+    /// True if the next messages of a robot are its first messages in a chunk. Returns true only
+    /// once per chunk.
     pub(super) fn begins_chunk(&mut self, robot: usize) -> bool {
         let chunk = Some(self.chunk);
         let robot = self.robots.get_mut(robot);
@@ -251,7 +253,7 @@ impl Files {
         }
     }
 
-    /// Writes data that is due at `now`. Called about 50 times a second.
+    /// Writes the data that is due at `now`. The thread calls this about 50 times a second.
     pub(super) fn tick(&mut self, now: HostTime) {
         if !self.disk.is_well() {
             self.give_up();
@@ -279,7 +281,7 @@ impl Files {
         }
     }
 
-    /// Ends the chunk, and the file if its end is due.
+    /// Ends the chunk. Ends the file, too, if a new file is due.
     fn flush(&mut self) {
         let newest = self.newest;
         let flushed = match &mut self.open {
@@ -329,7 +331,7 @@ impl Files {
         }
     }
 
-    /// Closes the file in its current state on the disk.
+    /// Closes the file and leaves it as it is on the disk.
     fn give_up(&mut self) {
         if let Some(open) = self.open.take() {
             self.disk.lose(open.cycles);

@@ -11,8 +11,8 @@ use crate::schema::foxglove::{
 };
 use crate::{Cycle, HostTime};
 
-/// The names of one robot's frames and joints: the names in `franka_description`, prefixed with the
-/// robot's name.
+/// The names of one robot's frames and joints. They are the names in `franka_description`, with the
+/// robot's name as prefix.
 #[derive(Debug)]
 pub(super) struct Frames {
     prefix: String,
@@ -40,8 +40,8 @@ impl Frames {
         format!("{}_{name}", self.prefix)
     }
 
-    /// Returns the links, each relative to the previous one; the end effector relative to the
-    /// flange; reference and target relative to the base.
+    /// Returns the poses of the links, each relative to the previous link. The end effector is
+    /// relative to the flange; reference and target are relative to the base.
     pub(super) fn transforms(&self, cycle: &Cycle) -> FrameTransforms {
         let mut transforms = Vec::with_capacity(12);
         let mut put = |parent: String, child: String, pose: &Isometry3<f64>| {
@@ -105,8 +105,8 @@ impl Frames {
         }
     }
 
-    /// Returns the external force on the arm as an arrow of 1 cm per newton that ends at the
-    /// stiffness frame. It fades if no newer one arrives; a force below 1 N has no arrow.
+    /// Returns the external force on the arm as an arrow that ends at the stiffness frame, 1 cm per
+    /// newton. The arrow fades if no newer arrow arrives. A force below 1 N has no arrow.
     pub(super) fn scene(&self, cycle: &Cycle) -> Option<SceneUpdate> {
         let [x, y, z, ..] = cycle.state.O_F_ext_hat_K;
         // The state contains the force with which the robot pushes.

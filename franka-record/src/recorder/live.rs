@@ -19,10 +19,10 @@ use crate::schema::{DESCRIPTORS, Topic};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Live {
     /// Address of the server. The default, `127.0.0.1:8765`, is Foxglove's default. Every client
-    /// that can connect to it can watch. The server accepts no commands.
+    /// that can connect to this address can watch. The server accepts no commands.
     pub address: SocketAddr,
-    /// Interval of the served cycles, 20 by default: 50 cycles a second. All other channels are
-    /// complete.
+    /// The server sends every n-th cycle; n is 20 by default, which gives 50 cycles a second. All
+    /// other channels are complete.
     pub every: u32,
 }
 
@@ -37,7 +37,7 @@ impl Default for Live {
 
 /// A server, and its channels.
 pub(super) struct Server {
-    /// Uses a separate thread, so that neither the recorder's thread nor the program's waits for a
+    /// Runtime on a separate thread. Neither the recorder's thread nor the program waits for a
     /// viewer.
     runtime: Option<Runtime>,
     handle: Option<WebSocketServerHandle>,
@@ -119,8 +119,8 @@ impl Server {
         Ok(())
     }
 
-    /// Sends a message to the viewers that subscribed to its channel. Never waits: a viewer that is
-    /// too slow loses the oldest messages.
+    /// Sends a message to the viewers that subscribed to its channel. This never waits: a viewer
+    /// that is too slow loses the oldest messages.
     pub(super) fn send(&mut self, message: &Message) {
         if message.topic == Topic::Cycle {
             self.cycles = self.cycles.wrapping_add(1);
@@ -158,5 +158,5 @@ impl fmt::Debug for Server {
     }
 }
 
-/// Number of messages that wait for a viewer with all channels of one robot: two seconds.
+/// Largest number of messages that wait for a viewer: two seconds of all channels of one robot.
 const BACKLOG: usize = 512;

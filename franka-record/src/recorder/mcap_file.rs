@@ -15,7 +15,7 @@ use super::session::Session;
 use crate::HostTime;
 use crate::schema::{DESCRIPTORS, METADATA, ROBOT_METADATA, Topic};
 
-/// An MCAP file that grows in memory. The flushed part is a whole number of chunks: a reader needs
+/// An MCAP file that grows in memory. The flushed part consists of whole chunks, so a reader needs
 /// no later data.
 pub(super) struct McapFile {
     writer: Writer<Buffer>,
@@ -24,7 +24,7 @@ pub(super) struct McapFile {
     channels: Vec<[u16; Topic::ALL.len()]>,
     /// Number of messages so far, by channel.
     sequences: BTreeMap<u16, u32>,
-    /// Time of the newest message; no message is written with an earlier time.
+    /// Time of the newest message. Later messages get at least this time.
     newest: HostTime,
     /// Start of the recording.
     began: HostTime,
@@ -160,17 +160,17 @@ fn encode(error: McapError) -> RecordError {
     }
 }
 
-/// Length in bytes at which a chunk ends before the next flush, as with several robots.
+/// Length in bytes at which a chunk ends before the next flush, for example with several robots.
 const CHUNK_MAX: u64 = 4 << 20;
 
-/// Bytes of a file that have not been taken yet. Bytes are only appended.
+/// Bytes of a file that have not been taken yet. Bytes can only be appended.
 #[derive(Clone, Default)]
 struct Buffer(Arc<Mutex<Pending>>);
 
 #[derive(Default)]
 struct Pending {
     bytes: Vec<u8>,
-    /// Number of bytes taken before.
+    /// Number of bytes that were taken before.
     taken: u64,
 }
 
@@ -195,7 +195,7 @@ impl Write for Buffer {
 }
 
 impl Seek for Buffer {
-    /// Returns the position at the end: seeking elsewhere is not possible.
+    /// Returns the position at the end. Seeking to another position is not possible.
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         let pending = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let end = pending.taken + pending.bytes.len() as u64;

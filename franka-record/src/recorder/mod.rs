@@ -6,10 +6,10 @@
 //! RecordHandle --bounded queue-----+
 //! ```
 //!
-//! Both threads are ordinary threads. A slow disk delays only the second one: up to 64 MB wait for
-//! it. Then cycles and data derived from them are dropped and counted, and the count is recorded.
-//! Events have another 16 MB, and one file of the black box waits. A disk failure ends the
-//! recording, but does not affect anything else.
+//! Both threads are ordinary threads. A slow disk delays only the second thread. Up to 64 MB wait
+//! for the disk. Beyond that, the recorder drops cycles and data derived from them, and records
+//! their number. Events have another 16 MB, and one file of the black box can wait. A disk failure
+//! ends the recording, but does not affect anything else.
 
 mod black_box;
 mod disk;
@@ -45,7 +45,7 @@ pub use self::options::{Attachment, BlackBox, RecordOptions, Robot, Rotation};
 pub use self::session::RecordClock;
 use crate::{Event, EventKind, GripperState, HostTime};
 
-/// Records robots to files, or the last seconds before an incident, or both.
+/// Records robots to files, or keeps the last seconds before an incident, or both.
 ///
 /// ```no_run
 /// use franka_model::RobotKind;
@@ -71,7 +71,7 @@ pub struct Recorder {
     clock: RecordClock,
     disk: Arc<Mutex<DiskStatus>>,
     drained: Arc<Mutex<DrainStatus>>,
-    /// Ends when the last byte is written. The finishing thread locks it.
+    /// Ends when the last byte is written. The thread that finishes the recording locks it.
     done: Mutex<Receiver<()>>,
     /// The robots so far, by index.
     robots: Mutex<Vec<String>>,
@@ -87,7 +87,8 @@ impl Recorder {
         Self::start(Some(path.as_ref()), options)
     }
 
-    /// Keeps only the last seconds in memory, and writes them after an incident ends a motion.
+    /// Keeps only the last seconds in memory. Writes them to a file after an incident has ended a
+    /// motion.
     ///
     /// # Errors
     /// [`RecordError::Option`], [`RecordError::Thread`].
@@ -99,7 +100,8 @@ impl Recorder {
         Self::start(None, options)
     }
 
-    /// Records nothing, and serves the channels of a recording to Foxglove: see [`Self::serve`].
+    /// Records nothing to files, and serves the channels of a recording to Foxglove: see
+    /// [`Self::serve`].
     ///
     /// # Errors
     /// The errors of [`Self::serve`], and [`RecordError::Thread`].
@@ -117,7 +119,7 @@ impl Recorder {
         Self::start_with(path, file, options, HostTime::now)
     }
 
-    /// Starts a recording in `file`, which is at `path`. `wall` is the wall clock.
+    /// Starts a recording in `file`, which is at `path`. `wall` reads the wall clock.
     fn start_with(
         path: Option<&Path>,
         file: Option<File>,
@@ -158,8 +160,8 @@ impl Recorder {
         })
     }
 
-    /// Records `robot` with its `cycles`, until its thread or the recording ends. The handle
-    /// accepts all other data.
+    /// Records `robot` with its `cycles`, until the robot's control thread or the recording ends.
+    /// Pass all other data to the returned handle.
     ///
     /// # Errors
     /// [`RecordError::SameName`], [`RecordError::Option`] for an invalid name, and
@@ -183,13 +185,14 @@ impl Recorder {
         })
     }
 
-    /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
-    /// connection", "Foxglove WebSocket") and other clients that speak `foxglove.sdk.v1`. Returns
-    /// the address; the system chooses the port if it is 0. A viewer that is too slow loses
-    /// messages, but the recording does not. Blocks until the server listens.
+    /// Serves the channels of the recording from now on, until the recording ends. Viewers are
+    /// Foxglove ("Open connection", "Foxglove WebSocket") and other clients that speak
+    /// `foxglove.sdk.v1`. Returns the address; the system chooses the port if the requested port is
+    /// 0. A viewer that is too slow loses messages, but the recording does not. This blocks until
+    /// the server listens.
     ///
     /// # Errors
-    /// [`RecordError::Live`] if it cannot listen at this address, [`RecordError::Option`],
+    /// [`RecordError::Live`] if the server cannot listen at this address, [`RecordError::Option`],
     /// [`RecordError::Ended`].
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<core::net::SocketAddr, RecordError> {
@@ -232,8 +235,8 @@ impl Recorder {
     /// Ends the recording and waits, up to `limit`, until everything is on the disk.
     ///
     /// # Errors
-    /// [`RecordError::Write`] and others if the file could not be completed, and
-    /// [`RecordError::Unfinished`] if the disk was too slow. The written data is readable.
+    /// [`RecordError::Unfinished`] if the disk was too slow, and [`RecordError::Write`] or another
+    /// error if the file could not be completed. The written data is readable.
     pub fn finish_within(self, limit: Duration) -> Result<RecordStatus, RecordError> {
         lock(&self.drained).finish = true;
         // Wakes the thread; with a full queue it is already awake.
@@ -258,16 +261,17 @@ impl Drop for Recorder {
     }
 }
 
-/// The progress of a recording, and its failures.
+/// Progress of a recording, and its failures.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RecordStatus {
     /// Number of cycles received, of all robots.
     pub cycles: u64,
-    /// Number of cycles without space: in the ring, because this host was busy, or in memory or on
-    /// the disk. The file records where they are missing, unless it ended before.
+    /// Number of cycles for which there was no space: in the ring, because this host was busy, or
+    /// in memory or on the disk. The file records where cycles are missing, unless the recording
+    /// ended before.
     pub dropped: u64,
-    /// Number of events without space.
+    /// Number of events for which there was no space.
     pub events_dropped: u64,
     /// Number of bytes in the files of the recording.
     pub bytes: u64,
@@ -277,14 +281,14 @@ pub struct RecordStatus {
     pub files: Vec<PathBuf>,
     /// The written files of the black box.
     pub black_boxes: Vec<PathBuf>,
-    /// The error that ended the recording early.
+    /// Error that ended the recording early.
     pub error: Option<RecordError>,
-    /// The error of writing the newest black box.
+    /// Error that occurred when the newest black box was written.
     pub black_box_error: Option<RecordError>,
 }
 
-/// Accepts the data of one robot other than cycles. A cheap handle. None of its methods waits,
-/// except [`Self::resume`]: data without space is dropped and counted.
+/// Handle that accepts the data of one robot other than cycles. It is cheap to clone. Only
+/// [`Self::resume`] may wait: data for which there is no space is dropped and counted.
 #[derive(Clone, Debug)]
 pub struct RecordHandle {
     orders: SyncSender<Order>,
@@ -299,9 +303,9 @@ impl RecordHandle {
         self.clock
     }
 
-    /// Continues with the cycles of another control thread of the same robot after a reconnect,
-    /// once all previous cycles were read. Does nothing if the newest cycles are already from that
-    /// thread. Waits while the queue of orders is full.
+    /// Continues with the cycles of a new control thread of the same robot, after a reconnect. The
+    /// recorder first reads all previous cycles. Does nothing if the newest cycles are already from
+    /// this thread. Waits while the recorder's queue is full.
     pub fn resume(&self, cycles: CycleReader) {
         // Fails if the recording has ended.
         let _ = self
@@ -333,17 +337,17 @@ impl RecordHandle {
         }));
     }
 
-    /// Records a state of the gripper, received now.
+    /// Records a state of the gripper with the current time.
     pub fn gripper(&self, state: GripperState) {
         self.gripper_at(self.clock.now(), state);
     }
 
-    /// Records a state of the gripper, received at `time`.
+    /// Records a state of the gripper that this host received at `time`.
     pub fn gripper_at(&self, time: HostTime, state: GripperState) {
         self.order(Order::Gripper(self.robot, time, state));
     }
 
-    /// True if the recording has ended: data given to this handle is then dropped.
+    /// True if the recording has ended. Data passed to this handle is then dropped.
     pub fn has_ended(&self) -> bool {
         lock(&self.drained).ended
     }
@@ -360,7 +364,7 @@ const ORDERS_MAX: usize = 4096;
 
 const FINISH_MAX: Duration = Duration::from_secs(10);
 
-/// Ordinary threads hold the lock for a few assignments.
+/// Locks the status. Ordinary threads hold the lock only for a few assignments.
 fn lock<T>(status: &Mutex<T>) -> MutexGuard<'_, T> {
     status.lock().unwrap_or_else(PoisonError::into_inner)
 }

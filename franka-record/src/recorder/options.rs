@@ -12,26 +12,29 @@ use super::error::RecordError;
 /// Options of a recording.
 #[derive(Clone, Debug)]
 pub struct RecordOptions {
-    /// True to reduce the rate outside notable events: every tenth cycle is kept, and every second
-    /// message for viewers (`/tf`, `/target`, `/joints`, `/scene`). Off by default.
+    /// True to reduce the rate away from notable events. The recording then keeps every tenth
+    /// cycle, and every second message for viewers (`/tf`, `/target`, `/joints`, `/scene`). Off by
+    /// default.
     ///
     /// Notable events are reflexes and other errors, contacts and collisions, a lost link, failed
-    /// motions or motions aborted by a guard, lost cycles and remarks of level error. The full rate
-    /// is kept from 0.5 s before to 1 s after. Messages are therefore delayed by 0.5 s.
+    /// motions or motions aborted by a guard, lost cycles and remarks of level error. The recording
+    /// keeps the full rate from 0.5 s before to 1 s after a notable event. Therefore all messages
+    /// are delayed by 0.5 s.
     pub thinned: bool,
-    /// Longest time between two writes, 1 s by default and at most: the largest loss in a crash.
+    /// Longest time between two writes; 1 s by default and at most. A crash loses at most the data
+    /// of this time.
     pub flush: Duration,
-    /// True to force each write to the disk, so that a power failure loses no more than a crash. On
-    /// by default. It does not affect the robot, because a separate thread waits for the disk.
+    /// True to force each write to the disk. A power failure then loses no more than a crash. True
+    /// by default. The robot is not affected, because a separate thread waits for the disk.
     pub sync: bool,
-    /// Condition for a new file: `run.mcap` is followed by `run-0002.mcap` and so on, skipping the
-    /// numbers of existing files.
+    /// Condition at which the recording continues in a new file. `run-0002.mcap` follows
+    /// `run.mcap`, and so on. Numbers of existing files are skipped.
     pub rotation: Rotation,
     /// Known facts about the recording, for its metadata.
     pub metadata: BTreeMap<String, String>,
     /// Files that are attached to every file of the recording.
     pub attachments: Vec<Attachment>,
-    /// Black box: writes the last seconds before an incident to a separate file, if set.
+    /// Black box, if any: it writes the last seconds before an incident to a separate file.
     pub black_box: Option<BlackBox>,
 }
 
@@ -131,46 +134,48 @@ impl RecordOptions {
 const FLUSH_MIN: Duration = Duration::from_millis(10);
 pub(super) const FLUSH_MAX: Duration = Duration::from_secs(1);
 
-/// Smallest size of a file: less than two seconds of one robot.
+/// Smallest permitted size of a file: less than two seconds of one robot.
 const ROTATION_MIN: u64 = 1_000_000;
 
-/// Longest time before an incident: some 200 MB in memory.
+/// Longest permitted time before an incident: some 200 MB in memory.
 const BEFORE_MAX: Duration = Duration::from_secs(300);
 const AFTER_MAX: Duration = Duration::from_secs(60);
 
-/// Condition for a new file; never, by default.
+/// Condition at which a recording continues in a new file. By default it never does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rotation {
-    /// After a file has this many bytes.
+    /// Size after which a new file begins, in bytes.
     pub bytes: Option<u64>,
-    /// After a file spans this time.
+    /// Duration after which a new file begins.
     pub time: Option<Duration>,
 }
 
-/// A file inside the recording.
+/// A file that is stored inside the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// Its name, such as `options.json`.
+    /// Name of the attachment, such as `options.json`.
     pub name: String,
-    /// Its media type, such as `application/json`.
+    /// Media type of the attachment, such as `application/json`.
     pub media_type: String,
-    /// Its bytes.
+    /// Contents of the attachment.
     pub data: Vec<u8>,
 }
 
-/// Keeps the last seconds in memory, and writes them to a file when a motion ends because of a
-/// reflex, a lost link or a guard of the driver
+/// Options of a black box. It keeps the last seconds in memory, and writes them to a file when a
+/// reflex, a lost link or a guard of the driver ends a motion
 /// ([`Ending::is_incident`](crate::event::Ending::is_incident)).
 #[derive(Clone, Debug)]
 pub struct BlackBox {
-    /// The directory of the files; created if missing. Files are named by UTC, robot and cause:
-    /// `20260301T120000.123Z-fr3-reflex.mcap`.
+    /// The directory of the files. The recorder creates it if necessary. The name of a file
+    /// contains UTC, robot and cause: `20260301T120000.123Z-fr3-reflex.mcap`.
     pub directory: PathBuf,
-    /// Time kept before the incident, 30 s by default: some 0.7 MB per second and robot.
+    /// Recorded time before the incident, 30 s by default. It needs some 0.7 MB per second and
+    /// robot.
     pub before: Duration,
-    /// Time added after it, 1 s by default. Another incident in this time gets no separate file.
+    /// Recorded time after the incident, 1 s by default. Another incident in this time gets no
+    /// separate file.
     pub after: Duration,
-    /// Number of files kept, 20 by default; the oldest are deleted.
+    /// Number of files to keep, 20 by default. The recorder deletes the oldest.
     pub keep: usize,
 }
 
@@ -186,22 +191,23 @@ impl BlackBox {
     }
 }
 
-/// A recorded robot.
+/// Description of a robot to record.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Its name: letters, digits, `-` and `_`. Empty by default, which is sufficient for a single
-    /// robot. Channels are then named `/cycle` and so on, or `/left/cycle` with the name `left`.
+    /// Name of the robot: letters, digits, `-` and `_`. The default is empty, which is enough for a
+    /// single robot. Channels are then named `/cycle` and so on. With the name `left` they are
+    /// named `/left/cycle` and so on.
     pub name: String,
     /// The kind of robot.
     pub kind: RobotKind,
-    /// Lengths of its links, for viewers: those of the vendor's description by default.
+    /// Lengths of the robot's links, for viewers. Default: the vendor's description.
     pub lengths: Lengths,
-    /// Its description, if known; attached to the file.
+    /// URDF of the robot, if known. It is attached to the file.
     pub urdf: Option<String>,
-    /// Other known facts: address, version, options. For the metadata.
+    /// Other known facts for the metadata: address, version, options.
     pub metadata: BTreeMap<String, String>,
-    /// The robot's clock when it is attached, `[ms]`, used for events before the first cycle; 0 if
-    /// unknown.
+    /// Robot clock at the time when the robot is attached, `[ms]`, for events before the first
+    /// cycle; 0 if unknown.
     pub robot_time: u64,
 }
 
@@ -240,7 +246,7 @@ impl Robot {
         }
     }
 
-    /// Returns its name for metadata and file names.
+    /// Returns the robot's name for metadata and file names.
     pub(super) fn label(&self) -> &str {
         match self.name.as_str() {
             "" => self.arm(),
@@ -248,7 +254,7 @@ impl Robot {
         }
     }
 
-    /// Returns the name of its kind of arm in `franka_description`.
+    /// Returns the name in `franka_description` of the robot's kind of arm.
     pub(super) fn arm(&self) -> &'static str {
         match self.kind {
             RobotKind::Fer => "fer",

@@ -1,4 +1,4 @@
-//! The common beginning of every file of one recording.
+//! Data that every file of a recording begins with.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,8 +7,8 @@ use super::error::RecordError;
 use super::options::{Attachment, RecordOptions, Robot};
 use crate::HostTime;
 
-/// The origin of recorded time: the wall clock at the creation of the recorder, and the monotonic
-/// clock since.
+/// Clock of recorded time. It starts with the wall clock at the creation of the recorder, and
+/// continues with the monotonic clock.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordClock {
     wall: HostTime,
@@ -38,7 +38,7 @@ impl RecordClock {
     }
 }
 
-/// The common beginning of every file of one recording.
+/// Data that every file of a recording begins with.
 #[derive(Debug)]
 pub(super) struct Session {
     began: HostTime,

@@ -1,5 +1,5 @@
-//! Keeps cycles at the full rate around notable events, and at a tenth of it elsewhere; messages
-//! for viewers at half their rate elsewhere.
+//! Keeps all cycles near notable events, and every tenth cycle elsewhere. Messages for viewers are
+//! kept at half their rate elsewhere.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -12,14 +12,14 @@ use crate::schema::Topic;
 #[derive(Debug, Default)]
 pub(super) struct Thinning {
     waiting: VecDeque<(Message, bool)>,
-    /// Time until which everything is kept.
+    /// Time until which all messages are kept.
     notable_until: HostTime,
     /// Number of messages so far, by robot and topic.
     counts: Vec<[u64; Topic::ALL.len()]>,
 }
 
 impl Thinning {
-    /// Processes a message; `pass` receives the messages whose delay has ended.
+    /// Processes a message. `pass` receives the messages whose delay has ended.
     pub(super) fn push(&mut self, message: Message, mut pass: impl FnMut(Message)) {
         let now = message.time;
         let due = now - BEFORE;
@@ -41,7 +41,7 @@ impl Thinning {
         self.waiting.push_back((message, kept));
     }
 
-    /// Counts a message; returns true if it is kept even without a notable event.
+    /// Counts a message. Returns true if the message is kept even without a notable event.
     fn is_next(&mut self, robot: usize, topic: Topic) -> bool {
         if self.counts.len() <= robot {
             self.counts.resize(robot + 1, Default::default());
@@ -65,7 +65,7 @@ impl Thinning {
 const BEFORE: Duration = Duration::from_millis(500);
 const AFTER: Duration = Duration::from_secs(1);
 
-/// Returns the number of messages of which one is kept without a notable event.
+/// Returns n for a topic of which every n-th message is kept without a notable event.
 fn one_in(topic: Topic) -> u64 {
     match topic {
         Topic::Cycle => 10,

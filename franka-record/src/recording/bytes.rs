@@ -37,7 +37,7 @@ impl Bytes {
         self.length
     }
 
-    /// Returns `length` bytes from `offset` on; `None` if fewer exist, without allocation.
+    /// Returns `length` bytes from `offset` on; `None`, without allocation, if fewer exist.
     pub(super) fn read(&self, offset: u64, length: u64) -> io::Result<Option<Vec<u8>>> {
         let end = offset.checked_add(length);
         if end.is_none_or(|end| end > self.length) {

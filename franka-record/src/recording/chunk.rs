@@ -67,8 +67,8 @@ impl Chunk {
         })
     }
 
-    /// Returns the next record: its kind and its body. `None` at the end, or if no record can be
-    /// read.
+    /// Returns the kind and the body of the next record; `None` at the end, or if the record cannot
+    /// be read.
     pub(super) fn next(&mut self) -> Option<(u8, &[u8])> {
         let (kind, body, _) = wire::split(self.records.get(self.next..)?)?;
         self.next += HEADER as usize + body.len();
@@ -81,10 +81,11 @@ impl Chunk {
     }
 }
 
-/// The compression of the format that is not supported.
+/// Name of a compression that the format has and this reader does not support.
 const ZSTD: &str = "zstd";
 
-/// Returns at most one byte more than `size` from LZ4 frames. The memory grows with the output.
+/// Returns at most one byte more than `size` from LZ4 frames. The memory grows with the actual
+/// output.
 fn decompress(data: &[u8], size: u64) -> Result<Vec<u8>, String> {
     let mut records = Vec::new();
     let decoder = lz4::Decoder::new(data).map_err(|error| error.to_string())?;

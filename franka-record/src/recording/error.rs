@@ -4,11 +4,11 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The reason why a recording, or a part of it, cannot be read.
+/// Reason why a recording, or a part of it, cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The file cannot be opened, or cannot be written in a recovery.
+    /// The file cannot be opened, or a recovery cannot write its file.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
@@ -19,16 +19,17 @@ pub enum RecordingError {
     /// The file is not an MCAP file.
     #[error("not an MCAP file: got {got:02x?} at the begin, expected the magic bytes of MCAP")]
     NotMcap {
-        /// The bytes at its beginning.
+        /// The bytes at the beginning of the file.
         got: Vec<u8>,
     },
     /// The file is an MCAP file, but not a recording: it describes neither a recording nor a robot.
     #[error("not a recording of this program: {content}")]
     Foreign {
-        /// The actual content, with the program that wrote it if the file names one.
+        /// Actual content of the file, with the program that wrote it if the file names this
+        /// program.
         content: String,
     },
-    /// The system cannot continue to read.
+    /// The system reported an error while reading.
     #[error("cannot read the recording: {source}")]
     Read {
         /// The system's error.
@@ -39,28 +40,28 @@ pub enum RecordingError {
         "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` writes a copy without it"
     )]
     Chunk {
-        /// Offset of its beginning.
+        /// Offset of the chunk's beginning.
         offset: u64,
         /// The error.
         reason: String,
     },
-    /// A chunk has an unsupported compression, because another tool rewrote the file. Use the
-    /// tool's option `lz4` or no compression.
+    /// A chunk has an unsupported compression, because another tool rewrote the file. Rewrite the
+    /// file with `lz4` or without compression.
     #[error(
         "the chunk at byte {offset} is compressed with {got:?}; expected \"lz4\" or no compression"
     )]
     Compression {
-        /// Offset of its beginning.
+        /// Offset of the chunk's beginning.
         offset: u64,
         /// The compression named by the file.
         got: String,
     },
-    /// A message does not match its kind. Later messages can be read.
+    /// A message cannot be decoded as the kind of its channel. Later messages can be read.
     #[error("a message of {topic} in the chunk at byte {offset} is damaged: {reason}")]
     Message {
-        /// Its channel.
+        /// Channel of the message.
         topic: String,
-        /// Offset of its chunk.
+        /// Offset of the chunk that contains the message.
         offset: u64,
         /// The error.
         reason: String,
@@ -89,7 +90,7 @@ impl From<io::Error> for RecordingError {
 mod tests {
     use super::*;
 
-    /// `franka recover` is the recovery of a robot from a reflex, so the advice must not name it.
+    /// Advice must not name `franka recover`, because this command recovers a robot from a reflex.
     #[test]
     fn advice_about_a_damaged_file_acts_on_no_robot() {
         let error = RecordingError::Chunk {

@@ -6,7 +6,7 @@ use super::bytes::Bytes;
 use super::error::RecordingError;
 use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
 
-/// The positions of all parts.
+/// Positions of all parts of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Index {
     /// Chunks, in the order of the file.
@@ -15,9 +15,9 @@ pub(super) struct Index {
     pub(super) metadata: Vec<Entry>,
     /// Bodies of schema and channel records outside of chunks.
     pub(super) described: Vec<(u8, Vec<u8>)>,
-    /// The end of the data, if the file was scanned to this point.
+    /// End of the data, if the file was scanned up to this point.
     pub(super) data_end: Option<u64>,
-    /// The reason why the file is incomplete or damaged, if it is.
+    /// Reason why the file is incomplete or damaged, if it is.
     pub(super) damage: Option<String>,
 }
 
@@ -133,7 +133,7 @@ impl Index {
         (chunks && entries.all(|entry| inside(entry.offset, entry.length))).then_some(index)
     }
 
-    /// Builds the index by a scan from record to record, up to the last readable one.
+    /// Builds the index by a scan from record to record, up to the last readable record.
     pub(super) fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
         Self::check_magic(bytes)?;
         let mut index = Self::default();
@@ -191,7 +191,7 @@ fn entry(fields: &mut Fields<'_>) -> Option<Entry> {
     })
 }
 
-/// Length of the footer with the magic bytes after it.
+/// Length of the footer and the magic bytes after it.
 const FOOTER_LENGTH: u64 = HEADER + 8 + 8 + 4 + 8;
 
 /// The channels of a recording, with the kinds of their messages.
@@ -210,8 +210,8 @@ pub(super) struct ChannelEntry {
 }
 
 impl Channels {
-    /// Processes a record that describes a schema or a channel; others are ignored. Returns true if
-    /// it could be read.
+    /// Processes a record that describes a schema or a channel; other records are ignored. Returns
+    /// true if the record could be read.
     pub(super) fn take(&mut self, kind: u8, body: &[u8]) -> bool {
         match kind {
             op::SCHEMA => match wire::Schema::read(body) {

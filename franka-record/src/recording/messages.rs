@@ -15,7 +15,7 @@ use crate::{Cycle, Event, GripperState, HostTime};
 #[derive(Debug)]
 struct Walk {
     bytes: Bytes,
-    /// The remaining chunks, last one first.
+    /// The remaining chunks, with the next chunk last.
     chunks: Vec<ChunkEntry>,
     open: Option<Chunk>,
     from: HostTime,
@@ -23,7 +23,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// Starts `before` chunks before the first one.
+    /// Starts `before` chunks before the first chunk with requested messages.
     fn of(robot: &RobotRecording<'_>, before: usize) -> Self {
         let all = &robot.recording.index.chunks;
         let wanted = |chunk: &ChunkEntry| {
@@ -41,7 +41,8 @@ impl Walk {
         }
     }
 
-    /// Calls `take` with each message until it returns a value. `None` at the end.
+    /// Calls `take` with each message until `take` returns a value, and returns this value. `None`
+    /// at the end.
     fn next<T>(
         &mut self,
         mut take: impl FnMut(wire::Message<'_>) -> Option<Result<T, (&'static str, String)>>,
@@ -94,7 +95,7 @@ fn channel(robot: &RobotRecording<'_>, topic: Topic) -> Option<u16> {
     channels.find(&topic.channel(&robot.name), &topic.schema())
 }
 
-/// The cycles of one robot: [`RobotRecording::cycles`].
+/// Iterator of the cycles of one robot: see [`RobotRecording::cycles`].
 #[derive(Debug)]
 pub struct Cycles {
     walk: Walk,
@@ -146,7 +147,7 @@ impl Iterator for Cycles {
     }
 }
 
-/// The events of one robot: [`RobotRecording::events`].
+/// Iterator of the events of one robot: see [`RobotRecording::events`].
 #[derive(Debug)]
 pub struct Events {
     walk: Walk,
@@ -181,7 +182,7 @@ impl Iterator for Events {
     }
 }
 
-/// The states of the gripper of one robot, each with its time of arrival:
+/// Iterator of the gripper states of one robot, each with its time of arrival: see
 /// [`RobotRecording::gripper_states`].
 #[derive(Debug)]
 pub struct GripperStates {

@@ -20,8 +20,8 @@
 //! # Ok::<(), franka_record::recording::RecordingError>(())
 //! ```
 //!
-//! The index at the end of the file locates each part of a recording, and only that part is read.
-//! If the end is missing, the file is scanned once, from chunk to chunk.
+//! The index at the end of the file locates each part of a recording. The reader reads only the
+//! requested parts. If the end is missing, it scans the file once, from chunk to chunk.
 
 mod bytes;
 mod chunk;
@@ -66,16 +66,16 @@ pub struct Recording {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RecordedRobot {
-    /// Its name; empty for a single robot.
+    /// Name of the robot; empty for a single robot without a name.
     pub name: String,
-    /// The kind of robot; `None` if the file does not name it, or this version does not know it.
+    /// Kind of the robot; `None` if the file does not name it, or this version does not know it.
     pub kind: Option<RobotKind>,
-    /// Other known facts.
+    /// Other known facts about the robot.
     pub metadata: BTreeMap<String, String>,
 }
 
 impl Recording {
-    /// Opens a recording. A recording without an end is read up to the last whole chunk:
+    /// Opens a recording. A recording without an end is read up to the last whole chunk; see
     /// [`Recording::damage`].
     ///
     /// # Errors
@@ -119,8 +119,8 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Returns the kind of a file without the metadata of a recording; `None` for a recording that
-    /// was cut before the metadata. `others` are the names of its metadata.
+    /// Describes a file that lacks the metadata of a recording. `None` if it is a recording that
+    /// was cut off before the metadata. `others` are the names of the metadata that the file has.
     fn foreign(&self, others: &[String]) -> Result<Option<String>, RecordingError> {
         if others.iter().any(|name| name == CASSETTE_METADATA) {
             return Ok(Some("a cassette, which `franka cassette` reads".to_owned()));
@@ -180,7 +180,7 @@ impl Recording {
         Ok(others)
     }
 
-    /// Finds the channels in the summary, or else in the chunks; the first chunks describe them.
+    /// Finds the channels in the summary, or else in the first chunks.
     fn read_channels(&mut self) -> Result<(), RecordingError> {
         for (kind, body) in &self.index.described {
             self.channels.take(*kind, body);
@@ -214,13 +214,15 @@ impl Recording {
         })
     }
 
-    /// Returns the damage of the file, if any: its end is missing after a power failure, a crash or
-    /// on a full disk, or its index is damaged. The flushed data can still be read.
+    /// Describes the damage of the file, if any. The end is missing after a power failure or a
+    /// crash, or if the disk was full. The index may also be damaged. The data that was flushed can
+    /// still be read.
     pub fn damage(&self) -> Option<&str> {
         self.damage.as_deref()
     }
 
-    /// Returns the times of the first and the last message; `None` if it has no messages.
+    /// Returns the times of the first and the last message; `None` if the recording has no
+    /// messages.
     pub fn span(&self) -> Option<(HostTime, HostTime)> {
         let chunks = || self.index.chunks.iter().filter(|chunk| chunk.end > 0);
         let begin = chunks().map(|chunk| chunk.begin).min()?;
@@ -238,10 +240,11 @@ impl Recording {
         &self.robots
     }
 
-    /// Returns the recording of one robot. A single robot has an empty name unless it was named.
+    /// Returns the recording of one robot. The name of a single robot is empty, unless the program
+    /// set a name.
     ///
     /// # Errors
-    /// [`RecordingError::NoRobot`].
+    /// [`RecordingError::NoRobot`] if the recording has no robot with this name.
     pub fn robot(&self, name: &str) -> Result<RobotRecording<'_>, RecordingError> {
         if self.robots.iter().any(|robot| robot.name == name) {
             Ok(RobotRecording {
@@ -261,7 +264,7 @@ impl Recording {
     /// Returns the names of the attached files.
     ///
     /// # Errors
-    /// [`RecordingError::Read`].
+    /// [`RecordingError::Read`] if the file cannot be read.
     pub fn attachments(&self) -> Result<Vec<String>, RecordingError> {
         let mut names = Vec::new();
         for entry in &self.index.attachments {
@@ -274,10 +277,11 @@ impl Recording {
         Ok(names)
     }
 
-    /// Returns the bytes of an attached file; `None` if no file has this name, or it is damaged.
+    /// Returns the bytes of an attached file; `None` if no attached file has this name, or if it is
+    /// damaged.
     ///
     /// # Errors
-    /// [`RecordingError::Read`].
+    /// [`RecordingError::Read`] if the file cannot be read.
     pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, RecordingError> {
         for entry in &self.index.attachments {
             if let Some(record) = self.bytes.read(entry.offset, entry.length)?
@@ -305,7 +309,7 @@ fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
 }
 
-/// Largest number of bytes of the first record that are read; longer texts are not shown.
+/// Largest number of bytes of the first record that the reader reads. Longer texts are not shown.
 const HEADER_MAX: u64 = 1024;
 
 /// The recording of one robot in a time range; initially the whole recording.
@@ -318,7 +322,7 @@ pub struct RobotRecording<'a> {
 }
 
 impl RobotRecording<'_> {
-    /// Returns the part from `time` on.
+    /// Returns the part of the recording from `time` on.
     #[must_use]
     pub fn from(&self, time: HostTime) -> Self {
         Self {
@@ -327,7 +331,7 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// Returns the part up to and including `time`.
+    /// Returns the part of the recording up to and including `time`.
     #[must_use]
     pub fn to(&self, time: HostTime) -> Self {
         Self {
@@ -336,23 +340,24 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// Returns the cycles, oldest first. After an error the iterator continues behind the damage.
+    /// Returns the cycles, oldest first. After an error, the iterator continues behind the damage.
     pub fn cycles(&self) -> Cycles {
         Cycles::of(self)
     }
 
-    /// Returns the events, oldest first; like [`RobotRecording::cycles`].
+    /// Returns the events, oldest first. Errors are handled as in [`RobotRecording::cycles`].
     pub fn events(&self) -> Events {
         Events::of(self)
     }
 
-    /// Returns the states of the gripper, oldest first; like [`RobotRecording::cycles`].
+    /// Returns the states of the gripper, oldest first. Errors are handled as in
+    /// [`RobotRecording::cycles`].
     pub fn gripper_states(&self) -> GripperStates {
         GripperStates::of(self)
     }
 
-    /// Returns cycles at `rate` per second of the robot's clock: at each time the newest cycle
-    /// before it. In a gap, this is an old cycle.
+    /// Returns `rate` cycles per second of the robot's clock. Each is the newest cycle at that
+    /// time; in a gap it is the cycle before the gap.
     pub fn resampled(&self, rate: f64) -> Resampled {
         Resampled::of(self.cycles(), rate)
     }

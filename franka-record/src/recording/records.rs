@@ -8,7 +8,7 @@ use super::error::RecordingError;
 use super::index::Index;
 use super::wire::{self, Fields, HEADER, MAGIC, op};
 
-/// A record.
+/// A record of an MCAP file.
 pub(crate) enum Record<'a> {
     Metadata {
         name: &'a str,
@@ -29,7 +29,7 @@ pub(crate) enum Record<'a> {
 /// Calls `take` with all metadata, and then with the channels and messages of every chunk, in the
 /// order of the file. Stops at the first damaged chunk. Returns the error of the file, if any.
 ///
-/// A length in the file is not trusted before its bytes have been read.
+/// Before the bytes have been read, a length in the file is not trusted.
 ///
 /// # Errors
 /// The errors of `take`, and [`RecordingError::NotMcap`].

@@ -14,25 +14,25 @@ use super::error::RecordingError;
 use super::index::Index;
 use super::wire::{self, AttachmentHeader, Fields, op};
 
-/// The result of a recovery.
+/// Result of a recovery.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Recovery {
     /// Number of messages in the new file.
     pub messages: u64,
-    /// Number of whole chunks.
+    /// Number of whole chunks that were copied.
     pub chunks: u64,
-    /// Number of damaged chunks, which are left out.
+    /// Number of damaged chunks, which were omitted.
     pub lost: u64,
-    /// The damage of the file; `None` if it was not damaged.
+    /// Description of the damage; `None` if the file was not damaged.
     pub damage: Option<String>,
 }
 
 impl Recording {
-    /// Writes the intact parts of the MCAP file `damaged` to a new file, with the missing index. As
-    /// in the standard tool's `mcap recover`, these are every message of every whole chunk,
-    /// attachments and metadata. It supports any MCAP file with LZ4 or without compression;
-    /// messages outside of chunks are left out.
+    /// Writes the intact parts of the MCAP file `damaged` to a new file, and adds the missing
+    /// index. As with `mcap recover` of the standard tool, the intact parts are every message of
+    /// every whole chunk, attachments and metadata. Any MCAP file is possible, with LZ4 or without
+    /// compression. Messages outside of chunks are omitted.
     ///
     /// # Errors
     /// [`RecordingError::NotMcap`], [`RecordingError::Compression`], [`RecordingError::Read`], and
@@ -149,7 +149,7 @@ fn copy_message(writer: &mut Writer, body: &[u8]) -> Result<bool, McapError> {
     }
 }
 
-/// Copies a schema or a channel. A record that contradicts an earlier one is left out.
+/// Copies a schema or a channel. A record that contradicts an earlier record is omitted.
 fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError> {
     let added = match kind {
         op::SCHEMA => wire::Schema::read(body).map(|schema| {
@@ -172,7 +172,7 @@ fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError>
     }
 }
 
-/// Copies metadata or an attachment; a damaged record is left out.
+/// Copies metadata or an attachment. A damaged record is omitted.
 fn copy_outside(writer: &mut Writer, record: &[u8]) -> Result<(), McapError> {
     match wire::split(record) {
         Some((op::METADATA, body, _)) => {

@@ -3,17 +3,18 @@
 use super::{Cycles, RecordingError};
 use crate::Cycle;
 
-/// Cycles at a constant rate: [`RobotRecording::resampled`](super::RobotRecording::resampled).
+/// Iterator of cycles at a constant rate: see
+/// [`RobotRecording::resampled`](super::RobotRecording::resampled).
 #[derive(Debug)]
 pub struct Resampled {
     cycles: Cycles,
     /// Time between two samples, `[ms]` of the robot's clock.
     period: f64,
-    /// The newest cycle not after the next sample.
+    /// Newest cycle that is not after the next sample.
     held: Option<Cycle>,
-    /// The following cycle.
+    /// The cycle after `held`.
     next: Option<Cycle>,
-    /// The robot's time of the first sample, and the number of samples since.
+    /// Robot time of the first sample, and number of samples since.
     first: u64,
     samples: u64,
 }

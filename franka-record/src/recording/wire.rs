@@ -1,7 +1,7 @@
 //! The records of an MCAP file that the reader of recordings needs.
 //!
-//! They are read here rather than by the crate `mcap`, so that a length in a damaged file is not
-//! trusted before its bytes have been read. Source: the MCAP format specification, version 0.
+//! This module reads the records instead of the crate `mcap`, because it does not trust a length in
+//! a damaged file before it has read the bytes. Source: the MCAP format specification, version 0.
 
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ pub(super) fn header(bytes: &[u8]) -> Option<(u8, u64)> {
     Some((fields.u8()?, fields.u64()?))
 }
 
-/// Splits off the first record: its kind, its body and the rest.
+/// Splits off the first record. Returns its kind, its body and the remaining bytes.
 pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (kind, length) = header(bytes)?;
     let rest = &bytes[HEADER as usize..];
@@ -42,7 +42,7 @@ pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     Some((kind, body, rest))
 }
 
-/// Reads fields, each `None` if the bytes are not sufficient.
+/// Reads fields in their order. Each method returns `None` if too few bytes are left.
 #[derive(Clone, Copy)]
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 
@@ -73,13 +73,13 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// Reads a text with its length before it.
+    /// Reads a text that follows its length.
     pub(super) fn text(&mut self) -> Option<&'a str> {
         let length = usize::try_from(self.u32()?).ok()?;
         std::str::from_utf8(self.bytes(length)?).ok()
     }
 
-    /// Reads texts by their names.
+    /// Reads a map of texts.
     pub(super) fn map(&mut self) -> Option<BTreeMap<String, String>> {
         let length = usize::try_from(self.u32()?).ok()?;
         let mut entries = Fields(self.bytes(length)?);

@@ -8,32 +8,33 @@ use franka_rt::session::Chunk;
 use super::error::ReplayError;
 use super::plan::{PERIOD, ReplayPlan};
 
-/// Number of targets of a chunk until the next chunk takes over: 1 s. The next chunk is sent when
-/// this one begins.
+/// Number of targets of a chunk before the next chunk takes over: 1 s. The replay sends the next
+/// chunk when this chunk begins.
 const WINDOW: usize = 100;
 
-/// Number of targets before the takeover, so that a chunk agrees with the previous one at the
-/// takeover: 0.2 s.
+/// Number of targets that a chunk repeats from before it takes over: 0.2 s. It thus agrees with the
+/// previous chunk at that moment.
 const BEFORE: usize = 20;
 
-/// Number of additional targets of a chunk: 0.5 s for a host that is late with the next chunk.
-/// Without the next chunk, the arm stops at their end.
+/// Number of additional targets at the end of a chunk: 0.5 s. They bridge the time if the host is
+/// late with the next chunk. If no chunk follows, the arm stops at their end.
 const AFTER: usize = 50;
 
 /// Time from the first chunk's departure to its first target.
 const LEAD_IN: Duration = Duration::from_millis(100);
 
-/// A running replay: provides its chunks in time. Its only clock is the robot's.
+/// A running replay. It provides each chunk of targets when it is due, on the robot's clock.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayCourse {
-    /// The time of the first target, `message_id`.
+    /// Time of the first target, as a `message_id`.
     begin: u64,
     /// The number of the next chunk.
     next: usize,
 }
 
 impl ReplayCourse {
-    /// Creates a replay that begins a tenth of a second after the state `now`, `message_id`.
+    /// Creates a replay that begins a tenth of a second after the state with the `message_id`
+    /// `now`.
     pub fn new(now: u64) -> Self {
         Self {
             begin: now + milliseconds(LEAD_IN),
@@ -41,18 +42,19 @@ impl ReplayCourse {
         }
     }
 
-    /// Returns the time of the first target, `message_id`.
+    /// Returns the time of the first target, as a `message_id`.
     pub fn begin(&self) -> u64 {
         self.begin
     }
 
-    /// Returns the time of the last target, `message_id`.
+    /// Returns the time of the last target, as a `message_id`.
     pub fn end(&self, plan: &ReplayPlan) -> u64 {
         self.begin + milliseconds(plan.duration())
     }
 
-    /// Returns the chunk that must be sent by the state `now`, `message_id`: the first one at once,
-    /// every other one when its predecessor takes over. `None` if no chunk is due.
+    /// Returns the chunk that must be sent at the state with the `message_id` `now`; `None` if no
+    /// chunk is due. The first chunk is due immediately. Every other chunk is due when the chunk
+    /// before it begins.
     ///
     /// # Errors
     /// [`ReplayError::Chunk`] for targets that do not form a motion.
@@ -74,7 +76,7 @@ impl ReplayCourse {
         Ok(Some(chunk.observed_at(self.time_of(first))))
     }
 
-    /// Returns the time of a target, `message_id`.
+    /// Returns the time of a target, as a `message_id`.
     fn time_of(&self, target: usize) -> u64 {
         self.begin + milliseconds(PERIOD) * target as u64
     }

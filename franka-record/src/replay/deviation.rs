@@ -5,35 +5,35 @@ use franka_proto::RobotState;
 
 use super::plan::{PERIOD, ReplayPlan, ReplayTargets, pose_at};
 
-/// Distances between the arm and the recorded arm, collected over a replay.
+/// Collects the distances between the arm and the recorded arm during a replay.
 #[derive(Clone, Debug, Default)]
 pub struct ReplayDeviation {
     joints: Vec<f64>,
     position: Vec<f64>,
 }
 
-/// The distance of an arm from the recorded arm.
+/// Distance of the arm from the recorded arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// Largest distance of a joint, `[rad]`.
     pub joints: f64,
-    /// Distance of the recorded end effector, `[m]`.
+    /// Distance of the end effector from the recorded end effector, `[m]`.
     pub position: f64,
 }
 
 /// Median, 95th percentile and maximum of some distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Half of them are smaller.
+    /// Median: half of the distances are smaller.
     pub median: f64,
-    /// 95 % of them are smaller.
+    /// 95th percentile: 95 % of the distances are smaller.
     pub p95: f64,
-    /// The maximum.
+    /// Largest distance.
     pub max: f64,
 }
 
 impl ReplayDeviation {
-    /// Records a state, `since_begin` milliseconds after the time of the first target. Returns its
+    /// Records a state that came `since_begin` milliseconds after the first target. Returns its
     /// distance.
     pub fn note(
         &mut self,
@@ -52,12 +52,12 @@ impl ReplayDeviation {
         Distance { joints, position }
     }
 
-    /// Returns the largest joint distance in each state, `[rad]`.
+    /// Returns the spread of the largest joint distance per state, `[rad]`.
     pub fn joints(&self) -> Spread {
         Spread::of(&self.joints)
     }
 
-    /// Returns the distance of the recorded end effector, `[m]`.
+    /// Returns the spread of the end effector's distance per state, `[m]`.
     pub fn position(&self) -> Spread {
         Spread::of(&self.position)
     }
@@ -74,11 +74,11 @@ impl ReplayDeviation {
 }
 
 impl ReplayPlan {
-    /// Distance of a joint, `[rad]`, from which a replay by joints should be aborted. Springs,
-    /// friction and lag cause a tenth of it.
+    /// Distance of a joint, `[rad]`, above which a replay by joints should be aborted. Springs,
+    /// friction and lag cause a tenth of this distance.
     pub const JOINTS_OFF_MAX: f64 = 0.15;
 
-    /// Distance of the end effector, `[m]`, from which a replay by poses should be aborted.
+    /// Distance of the end effector, `[m]`, above which a replay by poses should be aborted.
     pub const POSITION_OFF_MAX: f64 = 0.05;
 
     /// Returns the distance and its limit as text, if the replay should be aborted.

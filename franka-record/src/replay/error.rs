@@ -10,19 +10,19 @@ use super::plan::ReplayOptions;
 /// Longest time without a cycle that is bridged, `[ms]`.
 pub(super) const GAP_MAX: u64 = 50;
 
-/// The reason why a recording is not replayed. The arm has not moved.
+/// Reason why a recording is not replayed. No motion of the replay has begun.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
-    /// The recording is of another kind of robot.
+    /// The recording comes from another kind of robot.
     #[error("the recording is of a robot {got:?}, expected {expected:?}")]
     Kind {
-        /// The recorded robot.
+        /// Kind of the recorded robot.
         got: RobotKind,
-        /// The robot of the replay.
+        /// Kind of the robot for the replay.
         expected: RobotKind,
     },
-    /// The speed is out of bounds.
+    /// The requested speed is out of bounds.
     #[error(
         "the speed factor is {got}, expected {} to 1",
         ReplayOptions::SPEED_MIN
@@ -54,7 +54,7 @@ pub enum ReplayError {
         /// `message_id` of the cycle.
         time: u64,
     },
-    /// The joints were not under control.
+    /// The joints were not under control in a part of the recording.
     #[error(
         "the recording has no commanded position at {time} ms of the robot's clock: engage the \
          arm for the whole motion, or replay measured positions (source `measured`)"
@@ -75,23 +75,23 @@ pub enum ReplayError {
         got: f64,
         /// The allowed velocity of a replay, `[rad/s]`.
         most: f64,
-        /// A speed that is possible.
+        /// A speed at which the replay is possible.
         speed: f64,
     },
     /// A target is outside the limits or out of reach.
     #[error("{after:.3?} after the begin of the replay: {error}")]
     Target {
-        /// The time in the replay.
+        /// Time in the replay.
         after: Duration,
-        /// The error of the target.
+        /// Reason why the target is refused.
         error: GoalError,
     },
-    /// Targets do not form a motion.
+    /// Some targets do not form a motion.
     #[error("{after:.3?} after the begin of the replay: {error}")]
     Chunk {
-        /// The time in the replay.
+        /// Time in the replay.
         after: Duration,
-        /// The error of the chunk.
+        /// Reason why the chunk is refused.
         error: ChunkError,
     },
 }

@@ -9,7 +9,7 @@
 //! * `course`: the schedule of the chunks on the robot's clock.
 //! * `deviation`: the distance between the actual and the recorded motion.
 //!
-//! This module does not move an arm: `franka-async` does, in a session with all its guards.
+//! This module does not move an arm. `franka-async` moves it, in a session with all guards.
 
 mod course;
 mod deviation;

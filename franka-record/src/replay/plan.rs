@@ -14,39 +14,39 @@ use crate::sample::{Sample, told};
 /// Time between targets.
 pub(super) const PERIOD: Duration = Duration::from_millis(10);
 
-/// Half of the averaging time of measured positions, `[ms]`.
+/// Half of the time over which measured positions are averaged, `[ms]`.
 const HALF_WINDOW: u64 = 20;
 
-/// Share of a joint's velocity limit that a replay may use: the rest is for catching up.
+/// Share of a joint's velocity limit that a replay may use. The rest is for catching up.
 const VELOCITY_SHARE_MAX: f64 = 0.9;
 
-/// Factor of the limits over the requirements of the recorded motion.
+/// Ratio of the limits to the requirements of the recorded motion.
 const RESERVE: f64 = 1.25;
 
 /// Options of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReplayOptions {
-    /// Speed relative to the recording: 1 as recorded, 0.5 in twice the time.
+    /// Speed relative to the recording: 1 is as recorded, 0.5 takes twice the time.
     pub speed: f64,
-    /// The recorded positions that the arm follows.
+    /// Recorded positions that the arm follows.
     pub source: ReplaySource,
-    /// The kind of targets that the arm follows.
+    /// Kind of targets that the arm follows.
     pub targets: ReplayTargets,
 }
 
-/// The recorded positions that an arm follows.
+/// Recorded positions that an arm follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplaySource {
     /// The commanded positions, from the first command to the last.
     #[default]
     Reference,
-    /// The measured positions, averaged over 40 ms: for arms that were moved by hand, or by
+    /// The measured positions, averaged over 40 ms. Use them if the arm was moved by hand or by
     /// torques.
     Measured,
 }
 
-/// The kind of targets that an arm follows.
+/// Kind of targets that an arm follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplayTargets {
     /// Joint positions: every joint moves as recorded.
@@ -67,7 +67,7 @@ impl Default for ReplayOptions {
 }
 
 impl ReplayOptions {
-    /// Smallest speed.
+    /// Smallest permitted speed.
     pub const SPEED_MIN: f64 = 0.01;
 
     /// Sets the speed.
@@ -77,7 +77,7 @@ impl ReplayOptions {
         self
     }
 
-    /// Sets the recorded positions to follow.
+    /// Sets the recorded positions that the arm follows.
     #[must_use]
     pub fn source(mut self, source: ReplaySource) -> Self {
         self.source = source;
@@ -97,9 +97,9 @@ impl ReplayOptions {
 pub struct ReplayPlan {
     kind: RobotKind,
     pub(super) targets: ReplayTargets,
-    /// Joint positions, [`PERIOD`] apart.
+    /// Joint positions, with the time [`PERIOD`] between them.
     pub(super) points: Vec<[f64; 7]>,
-    /// The measured positions at these times.
+    /// Measured positions at the times of `points`.
     pub(super) measured: Vec<[f64; 7]>,
     /// Pose of the recorded end effector in the flange frame.
     pub(super) tool: Isometry3<f64>,
@@ -108,12 +108,12 @@ pub struct ReplayPlan {
 }
 
 impl ReplayPlan {
-    /// Creates the motion of these samples of a robot of the kind `recorded`, for an arm of this
-    /// model.
+    /// Prepares the motion in these samples for an arm of this model. `recorded` is the kind of the
+    /// recorded robot.
     ///
     /// # Errors
-    /// [`ReplayError`] for recordings that cannot be replayed. [`Self::check`] checks whether the
-    /// arm can reach the targets in its current configuration.
+    /// [`ReplayError`] for a recording that cannot be replayed. Call [`Self::check`] to find
+    /// whether the arm can reach the targets from a given state.
     pub fn new(
         recorded: RobotKind,
         samples: &[Sample],
@@ -157,8 +157,8 @@ impl ReplayPlan {
         self.kind
     }
 
-    /// Returns the first target, joint positions, `[rad]`: the arm must rest there when the replay
-    /// begins.
+    /// Returns the first target as joint positions, `[rad]`. The arm must rest there when the
+    /// replay begins.
     pub fn start(&self) -> [f64; 7] {
         self.points[0]
     }
@@ -168,14 +168,14 @@ impl ReplayPlan {
         PERIOD * (self.points.len() as u32 - 1)
     }
 
-    /// Returns the speed of the replay, as a share of the recorded one. The motion to the first
-    /// target has this share of the speed of other goals.
+    /// Returns the speed of the replay, as a share of the recorded speed. The motion to the first
+    /// target uses the same share of the usual speed.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Returns the limits for the arm: the requirements of the motion plus a quarter, and at least
-    /// the limits of other goals.
+    /// Returns the limits for the arm: a quarter more than the motion requires, and at least the
+    /// limits of other goals.
     pub fn budget(&self) -> Budget {
         self.budget
     }
@@ -183,7 +183,7 @@ impl ReplayPlan {
     /// Checks all targets for an arm in this state.
     ///
     /// # Errors
-    /// [`ReplayError::Target`] for the first targets outside the limits or out of reach, and
+    /// [`ReplayError::Target`] for the first target outside the limits or out of reach, and
     /// [`ReplayError::Kind`] for an arm of another kind.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), ReplayError> {
         if model.kind() != self.kind {
@@ -204,7 +204,7 @@ impl ReplayPlan {
         Ok(())
     }
 
-    /// Returns the motion through these targets, the first at the origin of the chunk.
+    /// Returns the motion through these targets. The first target is at the start of the chunk.
     pub(super) fn chunk(
         &self,
         model: &Model,

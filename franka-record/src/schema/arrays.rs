@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use super::franka;
 
-/// Writes `values` with the precision of the message.
+/// Writes `values` with the precision of the message, `f32`.
 pub(super) fn put(message: &mut Vec<f32>, values: &[f64]) {
     message.clear();
     message.extend(values.iter().map(|&value| value as f32));
@@ -19,12 +19,12 @@ pub(super) fn put_unless_zero(message: &mut Vec<f32>, values: &[f64]) {
     }
 }
 
-/// Reads the existing values; missing values, and all values of a missing field, are zero.
+/// Reads the existing values. Missing values are zero, and so are all values of a missing field.
 pub(super) fn get<const N: usize>(message: &[f32]) -> [f64; N] {
     core::array::from_fn(|index| message.get(index).map_or(0.0, |&value| f64::from(value)))
 }
 
-/// Like [`get`], without a loss of precision.
+/// Like [`get`], for a field with the full precision.
 pub(super) fn get_exact<const N: usize>(message: &[f64]) -> [f64; N] {
     core::array::from_fn(|index| message.get(index).copied().unwrap_or(0.0))
 }

@@ -15,7 +15,7 @@ use super::numbers::{bindings, generator, generator_number, guard_number, robot_
 use crate::{Cycle, HostTime};
 
 impl franka::Cycle {
-    /// Replaces the contents with `cycle`; the memory of the fields is reused.
+    /// Replaces the contents with `cycle`, and reuses the memory of the fields.
     pub fn set(&mut self, cycle: &Cycle) {
         let (record, state) = (&cycle.record, &cycle.state);
         self.host_time = cycle.time.as_nanos();
@@ -74,7 +74,7 @@ impl franka::Cycle {
             .map(|slack| (slack.as_nanos() as f64 * 1e-9) as f32);
     }
 
-    /// Returns the cycle of this message, with the tool on the arm.
+    /// Returns the cycle of this message. The message lacks the tool, so the caller provides it.
     pub fn to_cycle(&self, tool: Option<&franka::Tool>) -> Cycle {
         let mut cycle = Cycle {
             time: HostTime::from_nanos(self.host_time),
@@ -155,7 +155,7 @@ impl franka::Cycle {
     }
 }
 
-/// Fills in the values derived from the others.
+/// Fills in the values that are derived from other values.
 fn derive(state: &mut RobotState) {
     let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
     let stiffness = pose(&state.O_T_EE) * pose(&state.EE_T_K);

@@ -18,7 +18,7 @@ pub mod foxglove {
     include!("generated/foxglove.rs");
 }
 
-/// The messages of this project.
+/// Messages that this project defines.
 #[allow(missing_docs, non_snake_case, reason = "documented in the definitions")]
 pub mod franka {
     include!("generated/franka.rs");

@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_proto::{MotionGeneratorMode, RobotMode};
 use franka_rt::session::{Bindings, Guard};
 
-/// Returns the mode of a number; an undefined number reads as `Other`.
+/// Returns the mode with this number; `Other` for an undefined number.
 pub(super) fn robot_mode(number: i32) -> RobotMode {
     u8::try_from(number).map_or(RobotMode::Other, RobotMode::from_byte)
 }

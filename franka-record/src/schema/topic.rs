@@ -5,10 +5,10 @@ use prost::Name as _;
 use super::{foxglove, franka};
 use crate::event::Level;
 
-/// Name of the metadata of the whole recording.
+/// Name of the metadata record of the whole recording.
 pub(crate) const METADATA: &str = "recording";
 
-/// Name of a robot's metadata, followed by the robot's name.
+/// Prefix of the name of a robot's metadata record. The robot's name follows.
 pub(crate) const ROBOT_METADATA: &str = "robot:";
 
 /// Name of the first metadata record of a cassette.
@@ -20,7 +20,7 @@ pub(crate) const CASSETTE_METADATA: &str = "franka cassette";
 pub(crate) enum Topic {
     /// Every cycle.
     Cycle,
-    /// The tool, and each change of it.
+    /// The tool, repeated at each change.
     Tool,
     /// Events, as values.
     Event,
@@ -82,7 +82,7 @@ impl Topic {
         }
     }
 
-    /// Returns the full name of its messages.
+    /// Returns the full name of the type of the channel's messages.
     pub(crate) fn schema(self) -> String {
         match self {
             Self::Cycle => franka::Cycle::full_name(),

@@ -8,7 +8,7 @@ pub use write::CassetteWriter;
 use crate::recording::RecordingError;
 use crate::schema::CASSETTE_METADATA;
 
-/// The reason why a cassette cannot be written or read.
+/// Reason why a cassette cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CassetteError {
@@ -27,13 +27,13 @@ pub enum CassetteError {
         first message"
     )]
     NotACassette,
-    /// The file has a later version of the format.
+    /// The file has a newer version of the format than this library.
     #[error("the cassette has version {got:?} of the format, expected {VERSION}")]
     Version {
         /// The version in the file.
         got: String,
     },
-    /// A channel that cassettes do not have.
+    /// The file has a channel that cassettes do not have.
     #[error(
         "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or the \
          same below /udp"
@@ -141,7 +141,7 @@ mod tests {
         }
     }
 
-    /// From a file that was cut off at any point, every whole chunk is read.
+    /// The reader returns every whole chunk of a file that was cut off at any point.
     #[test]
     fn a_file_that_was_cut_off_is_read_as_far_as_it_goes() {
         let file = Shared::default();
@@ -173,7 +173,7 @@ mod tests {
         }
     }
 
-    /// A text claims a length of 4 GB: no memory is reserved for it, and the rest is read.
+    /// A text claims a length of 4 GB. The reader reserves no memory for it, and reads the rest.
     #[test]
     fn a_length_beyond_the_file_is_not_believed() {
         let cassette = sample();

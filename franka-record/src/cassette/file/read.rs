@@ -17,8 +17,8 @@ impl Cassette {
         Self::read(&std::fs::read(path)?)
     }
 
-    /// Reads a file. A truncated file is read up to its end: [`Cassette::damage`] then contains the
-    /// reason.
+    /// Reads a file. For a truncated file, the cassette contains the data up to the cut, and
+    /// [`Cassette::damage`] contains the reason.
     ///
     /// # Errors
     /// [`CassetteError`] if the bytes are not a cassette.
@@ -37,11 +37,12 @@ impl Cassette {
 struct Reading {
     started: Option<u64>,
     channels: BTreeMap<u16, ReadChannel>,
-    /// Connections by device and number; the first value is the order of appearance.
+    /// Connections by device and number. The first value gives the order in which they appear.
     connections: BTreeMap<(Device, usize), (usize, Connection)>,
     /// Total of missing events, from the end of the file.
     dropped: u64,
-    /// Missing events after the last event of a connection: true for its stream, and their number.
+    /// Missing events after the last event of a connection: the connection, true for its stream,
+    /// and the number of events.
     missing_at_end: Vec<((Device, usize), bool, u64)>,
 }
 
@@ -184,7 +185,7 @@ impl Connection {
     }
 }
 
-/// Returns transport, connection and sender of a topic; true for a stream.
+/// Returns the transport (true for a stream), the connection and the sender of a topic.
 fn parse_topic(topic: &str) -> Option<(bool, (Device, usize), Side)> {
     let mut parts = topic.strip_prefix('/')?.split('/');
     let stream = match parts.next()? {

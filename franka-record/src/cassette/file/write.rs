@@ -23,8 +23,8 @@ use crate::cassette::{Cassette, Device, Event, Payload, Side};
 /// | metadata `franka cassette end` | `dropped`: number of missing events; by channel name, the events missing after its last event |
 ///
 /// Channels have no schema, and the message encoding `franka`. `log_time` is `started` plus a
-/// monotonic clock, so it does not step when the wall clock is set. `sequence` counts the events of
-/// a channel, missing ones included.
+/// monotonic clock, so it does not jump when the wall clock is set. `sequence` counts the events of
+/// a channel, missing events included.
 #[derive(Debug)]
 pub struct CassetteWriter<W: Write + Seek> {
     mcap: Mcap<W>,
@@ -47,11 +47,11 @@ struct Channel {
     id: u16,
     topic: String,
     sequence: u32,
-    /// Number of missing events since the last event.
+    /// Number of missing events since the last recorded event.
     missing: u64,
 }
 
-/// A connection, true for its stream, and true for its client.
+/// Number of a connection, true for its stream, and true for its client.
 type Key = (usize, bool, bool);
 
 impl<W: Write + Seek> CassetteWriter<W> {
@@ -82,8 +82,8 @@ impl<W: Write + Seek> CassetteWriter<W> {
         })
     }
 
-    /// Writes an event of the connection with this number, which must be unique. The device of a
-    /// connection is the device of its first event.
+    /// Writes an event of the connection with this number. Each connection must have a different
+    /// number. The device of a connection is the device of its first event.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -142,7 +142,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(())
     }
 
-    /// Ends the chunk: everything up to here can be read even if the process crashes.
+    /// Ends the chunk. Everything written so far can then be read, even if the process crashes.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -165,7 +165,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(self.mcap.0.into_inner())
     }
 
-    /// Returns the channel of this key; creates it if necessary.
+    /// Returns the channel of this key, and creates the channel if necessary.
     fn channel(&mut self, key: Key, device: Device) -> Result<&mut Channel, CassetteError> {
         let (connection, stream, client) = key;
         let channel = match self.channels.entry(key) {
@@ -233,7 +233,7 @@ fn metadata<const N: usize>(name: &str, fields: [(&str, String); N]) -> mcap::re
     }
 }
 
-/// Returns the nanoseconds for the file; 584 years are sufficient.
+/// Returns the nanoseconds for the file. They last for 584 years.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -16,11 +16,11 @@ use super::Cassette;
 
 pub use write::to_capture;
 
-/// The reason why a capture cannot be converted to a cassette.
+/// Reason why a capture cannot be converted to a cassette.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaptureError {
-    /// The bytes are not a capture.
+    /// The bytes are not a network capture.
     #[error("not a readable pcap or pcapng file: {what}")]
     Format {
         /// The error.
@@ -42,13 +42,13 @@ pub enum CaptureError {
 /// Converts a capture, pcap or pcapng, to a cassette. Supported link types: Ethernet, Linux cooked
 /// (also version 2), loopback, and raw IP.
 ///
-/// TCP segments are put in order, and repeated ones are dropped. IP fragments, which carry the
-/// states of protocol 5, are reassembled.
+/// The conversion orders TCP segments and drops repeated segments. It reassembles IP fragments,
+/// which carry the states of protocol 5.
 /// [`Connection::missing_stream`](super::Connection::missing_stream) counts the segments that were
-/// not captured, and [`Cassette::truncated`] the packets that were captured only partly, as with a
-/// snap length. Datagrams belong to the connection whose `Connect` announced their port, so the
-/// capture must contain this message. A truncated file is read up to its end: see
-/// [`Cassette::damage`].
+/// not captured. [`Cassette::truncated`] counts the packets that were captured only partly, for
+/// example because of a snap length. Datagrams belong to the connection whose `Connect` announced
+/// their port, so the capture must contain this message. A truncated file is read up to the cut:
+/// see [`Cassette::damage`].
 ///
 /// # Errors
 /// [`CaptureError`] if the bytes are not a capture, or contain no client and robot.
@@ -72,7 +72,7 @@ pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
     Ok(cassette)
 }
 
-/// Returns the end of a sentence about partly captured packets.
+/// Returns the end of an error text, which describes partly captured packets.
 fn captured_in_part(packets: u64) -> String {
     match packets {
         0 => String::new(),
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(from_capture(&capture).unwrap(), cassette);
     }
 
-    /// The connection cannot be played, neither before nor after writing.
+    /// The connection cannot be played, neither before nor after it is written.
     #[test]
     fn a_segment_that_was_not_captured_is_missing_in_the_file_too() {
         let mut cassette = sample();

@@ -12,7 +12,8 @@ use pcap_parser::{Block, Linktype, PcapBlockOwned, PcapError, create_reader};
 
 use super::CaptureError;
 
-/// The packets of a file, in its order. Packets that are neither TCP nor UDP are [`Body::Other`].
+/// The packets of a file, in the order of the file. Packets that are neither TCP nor UDP are
+/// [`Body::Other`].
 pub(super) struct Packets<'a> {
     reader: Box<dyn PcapReaderIterator + 'a>,
     interfaces: Vec<Interface>,
@@ -43,7 +44,7 @@ pub(super) enum Body {
         to: SocketAddr,
         payload: Vec<u8>,
     },
-    /// A datagram that was captured only partly, as with a snap length.
+    /// A datagram that was captured only partly, for example because of a snap length.
     Cut {
         from: SocketAddr,
         to: SocketAddr,
@@ -80,7 +81,7 @@ impl<'a> Packets<'a> {
         })
     }
 
-    /// Number of packets so far that are shorter than their headers state.
+    /// Number of packets so far that are shorter than their headers declare.
     pub(super) fn truncated(&self) -> u64 {
         self.truncated
     }
@@ -207,8 +208,8 @@ fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
     }
 }
 
-/// Returns the program that compressed a file, by its first bytes: Wireshark reads and writes
-/// compressed captures.
+/// Returns the program that compressed a file, from the first bytes of the file. Wireshark reads
+/// and writes compressed captures.
 fn compression(file: &[u8]) -> Option<&'static str> {
     match file {
         [0x1f, 0x8b, ..] => Some("gzip"),
@@ -278,7 +279,8 @@ fn describe(error: &PcapError<&[u8]>) -> String {
     }
 }
 
-/// Bounds of the reader's buffer: at least a header, at most more than any record.
+/// Bounds of the size of the reader's buffer. The lower bound is above the size of a header, the
+/// upper bound above the size of any record.
 const BUFFER_MIN: usize = 64;
 const BUFFER_MAX: usize = 1 << 20;
 

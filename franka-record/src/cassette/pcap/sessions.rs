@@ -1,4 +1,4 @@
-//! Groups packets into connections: orders the streams, and finds the datagrams by the port in
+//! Groups packets into connections. It orders the streams, and assigns datagrams by the port in
 //! `Connect`.
 
 use std::collections::{BTreeMap, HashMap};
@@ -15,7 +15,7 @@ pub(super) struct Sessions {
     sessions: Vec<Session>,
     /// Open connections, by client and device.
     open: HashMap<(SocketAddr, SocketAddr), usize>,
-    /// Connections by the client's address for datagrams, and the robot's.
+    /// Connections by the client's address for datagrams and the robot's IP address.
     announced: HashMap<(SocketAddr, IpAddr), usize>,
 }
 
@@ -32,7 +32,7 @@ struct Session {
 /// One direction of a TCP stream.
 #[derive(Default)]
 struct Stream {
-    /// The number of the next byte.
+    /// Sequence number of the next byte.
     next: Option<u32>,
     /// Segments that arrived too early.
     early: BTreeMap<u32, Vec<u8>>,
@@ -193,18 +193,20 @@ impl Stream {
         events
     }
 
-    /// Number of pieces that do not continue the data before them.
+    /// Number of pieces that do not directly follow the preceding data.
     fn missing(&self) -> u64 {
         self.early.len() as u64
     }
 }
 
-/// Returns the distance of `one` ahead of `other` in a stream's numbers, which wrap.
+/// Returns the distance of `one` ahead of `other` in a stream's sequence numbers, which wrap
+/// around.
 fn ahead(one: u32, other: u32) -> i32 {
     one.wrapping_sub(other).cast_signed()
 }
 
-/// Largest number of segments that wait for a missing segment: a stream with a gap is lost anyway.
+/// Largest number of segments that wait for a missing segment. A stream with a gap cannot be played
+/// anyway.
 const EARLY_MAX: usize = 1024;
 
 #[cfg(test)]
@@ -224,7 +226,7 @@ mod tests {
         }
     }
 
-    /// The segments arrive in any order, also where the numbers wrap.
+    /// The segments arrive in any order, even where the sequence numbers wrap around.
     #[test]
     fn segments_are_put_in_order_and_repeated_ones_left_out() {
         let begin = u32::MAX - 2;

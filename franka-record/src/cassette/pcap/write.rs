@@ -29,7 +29,7 @@ pub fn to_capture(cassette: &Cassette) -> Vec<u8> {
     file
 }
 
-/// The ports of a connection, and the positions in its streams.
+/// The ports of a connection, and the current positions in its streams.
 struct Conversation {
     client_tcp: u16,
     client_udp: u16,

@@ -1,4 +1,4 @@
-//! Compares a client's messages with the recorded ones.
+//! Compares a client's messages with the recorded messages.
 
 use super::{Matching, Mismatch, Player, Step, counter};
 
@@ -31,7 +31,8 @@ impl Player {
         Ok(())
     }
 
-    /// Returns the difference between a message and the recorded one, if it matters.
+    /// Returns the difference between a message and the recorded message, if the difference
+    /// matters.
     fn difference(&self, recorded: &[u8], got: &[u8], connect: bool) -> Option<String> {
         let device = self.script.device;
         let name = self.script.describe(&Step::Request(got.to_vec()));
@@ -90,8 +91,8 @@ impl Player {
         Ok(())
     }
 
-    /// Accepts a command in place of all recorded ones up to its state. A command that ends a
-    /// motion also replaces all others of that motion.
+    /// Accepts a command in place of all recorded commands up to the state that it answers. A
+    /// command that ends a motion also replaces all other commands of this motion.
     pub(super) fn accept_command(&mut self, id: Option<u64>, got: &[u8]) {
         let finishes = self.script.finishes(got);
         while let Some(step) = self.next_command() {

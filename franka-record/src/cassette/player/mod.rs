@@ -15,27 +15,27 @@ use pace::Gate;
 /// The output of a player.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// Bytes over TCP.
+    /// Bytes to send over TCP.
     Stream(Vec<u8>),
-    /// A datagram over UDP, to [`Player::udp_port`] of the client.
+    /// A datagram to send over UDP to the client's port, [`Player::udp_port`].
     Datagram(Vec<u8>),
-    /// The end of the TCP stream.
+    /// Close the TCP stream.
     End,
 }
 
-/// A client deviated from the recording.
+/// Error: a client deviated from the recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the client of the {device} differs from the recording: got {got}, expected {expected}")]
 pub struct Mismatch {
     /// The device of the connection.
     pub device: Device,
-    /// The client's actual step.
+    /// What the client did.
     pub got: String,
-    /// The recorded step.
+    /// What the recorded client did.
     pub expected: String,
 }
 
-/// Counts of a player.
+/// Counts of one playback.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Tally {
@@ -43,9 +43,9 @@ pub struct Tally {
     pub requests: u64,
     /// Number of commands that arrived.
     pub commands: u64,
-    /// Number of states sent, including held ones.
+    /// Number of states sent, including repeated states.
     pub states: u64,
-    /// Number of states repeated while a request was missing.
+    /// Number of states that were repeated while a request was missing.
     pub held: u64,
 }
 
@@ -54,41 +54,42 @@ pub struct Tally {
 /// * Input: [`Self::on_stream`], [`Self::on_datagram`], [`Self::on_end`].
 /// * Output: [`Self::poll`] until it returns `None`, after every input and at [`Self::deadline`].
 ///
-/// `now` is the time since any moment, and must not decrease. An error is final.
+/// `now` is the time since any fixed moment, and must not decrease. After an error the playback has
+/// ended.
 #[derive(Clone, Debug)]
 pub struct Player {
     script: Script,
     options: PlayOptions,
-    /// The next step.
+    /// Index of the next step.
     position: usize,
-    /// Time at which it is due according to the recording.
+    /// Time at which the next step is due according to the recording.
     due: Duration,
-    /// Time since which the client's step is missing, if it is.
+    /// Time since which a step of the client is missing, if one is.
     blocked: Option<Duration>,
-    /// The requests and commands before these steps have arrived.
+    /// Indices of steps; all requests, or commands, before them have arrived.
     requested: usize,
     commanded: usize,
     client_ended: bool,
     udp_port: Option<u16>,
     received: Vec<u8>,
-    /// Maps recorded request ids to the ids of this client.
+    /// Ids of this client's requests, by the ids of the recorded requests.
     ids: HashMap<[u8; 4], [u8; 4]>,
     last_state: Option<(Duration, Vec<u8>)>,
     /// Difference between the ids of sent and recorded states.
     shift: u64,
-    /// Ids of states sent, and the recorded ids; `None` if held.
+    /// Ids of the states sent, and the recorded ids; `None` for a repeated state.
     sent: VecDeque<(u64, Option<u64>)>,
-    /// True if a command did not arrive in time, and no other has arrived since.
+    /// True if a command did not arrive in time, and no later command has arrived.
     silent: bool,
     failure: Option<Mismatch>,
     tally: Tally,
 }
 
 impl Player {
-    /// Creates a player of a recorded connection, which begins at `now`.
+    /// Creates a player for a recorded connection. Playback begins at `now`.
     ///
     /// # Errors
-    /// [`Unplayable`] if the recording is incomplete or not from a client.
+    /// [`Unplayable`] if the recording is incomplete or does not begin with a client's `Connect`.
     pub fn new(
         connection: &Connection,
         options: PlayOptions,
@@ -115,13 +116,13 @@ impl Player {
         })
     }
 
-    /// Returns the client's port for datagrams, once it has sent `Connect`.
+    /// Returns the client's port for datagrams, once the client has sent `Connect`.
     #[must_use]
     pub fn udp_port(&self) -> Option<u16> {
         self.udp_port
     }
 
-    /// True if everything has been played.
+    /// True if every step has been played.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.position == self.script.steps.len()
@@ -142,7 +143,7 @@ impl Player {
     /// Processes bytes of the client's stream.
     ///
     /// # Errors
-    /// [`Mismatch`] if they contain a request that differs from the recording.
+    /// [`Mismatch`] if the bytes contain a request that differs from the recording.
     pub fn on_stream(&mut self, bytes: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.received.extend_from_slice(bytes);
@@ -169,7 +170,7 @@ impl Player {
     /// Processes a datagram of the client.
     ///
     /// # Errors
-    /// [`Mismatch`] if the command differs from the recorded one.
+    /// [`Mismatch`] if the command differs from the recorded command.
     pub fn on_datagram(&mut self, datagram: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.silent = false;
@@ -195,7 +196,8 @@ impl Player {
     /// Processes the end of the client's stream.
     ///
     /// # Errors
-    /// [`Mismatch`] if the recording has more requests, or with [`Matching::Strict`] commands.
+    /// [`Mismatch`] if the recording has more requests; with [`Matching::Strict`], also if it has
+    /// more commands.
     pub fn on_end(&mut self) -> Result<(), Mismatch> {
         self.checked()?;
         self.client_ended = true;
@@ -214,7 +216,7 @@ impl Player {
     /// input.
     ///
     /// # Errors
-    /// [`Mismatch`] if the client deviated from the recording, or did not command in time.
+    /// [`Mismatch`] if the client deviated from the recording, or did not send a command in time.
     pub fn poll(&mut self, now: Duration) -> Result<Option<Output>, Mismatch> {
         self.checked()?;
         while let Some((_, step)) = self.script.steps.get(self.position) {
@@ -239,7 +241,8 @@ impl Player {
         Ok(None)
     }
 
-    /// Returns the time of the next output without further input; `None` if never.
+    /// Returns the time of the next output if no further input arrives; `None` if no output will
+    /// come.
     #[must_use]
     pub fn deadline(&self) -> Option<Duration> {
         let held = || {
@@ -254,7 +257,7 @@ impl Player {
         }
     }
 
-    /// Returns the time limit for a missing command.
+    /// Returns the time at which the player stops waiting for a missing command.
     fn given_up_at(&self) -> Option<Duration> {
         let since = self.blocked?;
         Some(since.saturating_add(self.options.patience))

@@ -1,11 +1,11 @@
-//! The timing of a player's robot, and its output.
+//! Timing of the player's robot side, and its output.
 
 use std::time::Duration;
 
 use super::{Matching, Mismatch, Output, Pace, Player, Step, counter};
 
 impl Player {
-    /// Decides whether the step of a missing command may be passed.
+    /// Decides whether the playback may pass the step of a missing command.
     pub(super) fn command_gate(&mut self, now: Duration) -> Result<Gate, Mismatch> {
         if self.position < self.commanded {
             return Ok(Gate::Open);
@@ -33,16 +33,16 @@ impl Player {
         Ok(Gate::Open)
     }
 
-    /// True if a step is the last command of a motion and lenient playback must wait for it as for
-    /// a request.
+    /// True if a step is the last command of a motion. Lenient playback must wait for this command
+    /// as for a request.
     pub(super) fn is_unfinished_motion(&self, step: usize) -> bool {
         let waits = self.options.matching == Matching::Lenient && step >= self.commanded;
         waits
             && matches!(&self.script.steps[step].1, Step::Command(bytes) if self.script.finishes(bytes))
     }
 
-    /// Advances to the next step, which is due after the recorded interval. Delays by the client
-    /// postpone all later steps.
+    /// Advances to the next step, which is due after the recorded interval. A delay of the client
+    /// postpones all later steps.
     pub(super) fn pass(&mut self, now: Duration) {
         let steps = &self.script.steps;
         let (at, step) = &steps[self.position];
@@ -78,7 +78,7 @@ impl Player {
         }
     }
 
-    /// Repeats the last state, if it is due while the client's step is missing.
+    /// Repeats the last state, if a state is due while the client's step is missing.
     pub(super) fn hold(&mut self, now: Duration) -> Option<Output> {
         self.blocked.get_or_insert(now);
         if self.options.pace == Pace::Lockstep {
@@ -117,7 +117,7 @@ impl Player {
     }
 }
 
-/// The decision about a step of the client.
+/// Decision about a step of the client.
 pub(super) enum Gate {
     Open,
     /// Wait, and send states meanwhile.
@@ -126,5 +126,5 @@ pub(super) enum Gate {
     Wait,
 }
 
-/// Number of state ids that are remembered: four seconds. Clients do not answer older ones.
+/// Number of state ids that are remembered: four seconds. Clients do not answer older states.
 const REMEMBERED: usize = 4096;

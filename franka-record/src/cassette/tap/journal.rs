@@ -18,7 +18,7 @@ pub(super) struct Journal {
     thread: JoinHandle<Outcome>,
 }
 
-/// A sender of notes to the journal.
+/// Sends events of one lane to the journal.
 #[derive(Clone, Debug)]
 pub(super) struct Recorder {
     start: Instant,
@@ -33,7 +33,7 @@ pub(super) struct Lane {
     missing: u32,
 }
 
-/// The origin of an event.
+/// The connection, transport and direction of an event.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     pub(super) connection: usize,
@@ -67,7 +67,7 @@ impl Journal {
         self.recorder.clone()
     }
 
-    /// Ends the file once all lanes are dropped; returns the numbers of recorded and missing
+    /// Ends the file once all lanes are dropped. Returns the numbers of recorded and missing
     /// events.
     pub(super) fn finish(self) -> Outcome {
         drop(self.recorder);
@@ -94,7 +94,7 @@ impl Lane {
         self.recorder.start.elapsed()
     }
 
-    /// Records an event, unless the queue is full.
+    /// Records an event. If the queue is full, the event is dropped and counted.
     pub(super) fn note(&mut self, at: Duration, what: Payload) {
         let from = self.source.from;
         let note = Note {
@@ -124,8 +124,8 @@ impl Drop for Lane {
     }
 }
 
-/// Writes notes until all senders are dropped. After an error it continues to receive them, so that
-/// no sender waits.
+/// Writes events until all senders are dropped. After an error it still receives events, so no
+/// sender waits.
 fn write(notes: &Receiver<Note>, mut writer: Writer) -> Outcome {
     let (mut events, mut dropped) = (0, 0);
     let mut flushed = Instant::now();
@@ -184,5 +184,5 @@ fn put(writer: &mut Writer, note: &Note) -> Result<(), CassetteError> {
 /// Capacity of the queue in events: about two seconds of one robot in motion, 7 MB at most.
 const QUEUE: usize = 4096;
 
-/// Interval of flushes: the largest loss in a power failure.
+/// Interval of flushes. A power failure loses at most the events of this time.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);

@@ -32,16 +32,16 @@ impl Link<'_> {
         self.stop.load(Ordering::Relaxed) || self.over.load(Ordering::Relaxed)
     }
 
-    /// True if a silent stream must be closed: the other has ended, and this one did not follow, as
-    /// after a power failure.
+    /// True if a silent stream must be closed, because the other stream has ended some time ago.
+    /// This occurs, for example, after a power failure.
     fn abandoned(&self) -> bool {
         let ended = self.ended.get();
         self.stopped() || ended.is_some_and(|ended| ended.elapsed() > LINGER)
     }
 }
 
-/// Forwards until both sides have closed, or the tap is stopped. An unreachable robot is logged,
-/// and the client's connection ends at once.
+/// Forwards until both sides have closed, or the tap is stopped. If the robot is unreachable, this
+/// logs it and ends the client's connection immediately.
 pub(super) fn serve(
     client: TcpStream,
     route: Route,
@@ -175,7 +175,7 @@ fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket,
     }
 }
 
-/// Forwards the client's datagrams to the origin of the newest state.
+/// Forwards the client's datagrams to the address from which the newest state came.
 fn pass_commands(
     link: &Link<'_>,
     client: IpAddr,
@@ -200,7 +200,7 @@ fn pass_commands(
     }
 }
 
-/// Returns a datagram and its sender; `None` if none arrived for a while.
+/// Returns a datagram and its sender; `None` if no datagram arrived within the socket's timeout.
 fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)> {
     match socket.recv_from(buffer) {
         Ok(received) => Some(received),
@@ -215,7 +215,7 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
     }
 }
 
-/// The client's stream up to `Connect`, whose port is replaced.
+/// The client's stream up to `Connect`. The port in `Connect` is replaced.
 struct Handshake {
     device: Device,
     port: u16,
@@ -233,7 +233,7 @@ impl Handshake {
         }
     }
 
-    /// Returns the bytes to forward for these bytes.
+    /// Returns the bytes to forward in place of these bytes.
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         let Some(mut waiting) = self.waiting.take() else {
             return bytes.to_vec();
@@ -265,8 +265,8 @@ const CONNECT_TIME_MAX: Duration = Duration::from_secs(1);
 /// Time for which one side may stay open after the other has closed.
 const LINGER: Duration = Duration::from_secs(1);
 
-/// Size of the stream buffer: a model library of protocol 5 has one megabyte; all other messages
-/// fit at once.
+/// Size of the stream buffer. All messages fit, except a model library of protocol 5, which has one
+/// megabyte.
 const STREAM_BUFFER: usize = 64 << 10;
 
 /// Size of the datagram buffer, above the longest datagram of 2373 bytes.

@@ -17,12 +17,12 @@ use super::{CassetteError, CassetteWriter, Device};
 
 /// A tap on the connections to a robot and its end effectors, with its own threads.
 ///
-/// A client connects to the tap instead of the robot, and the tap connects to the robot. Bytes are
-/// forwarded unchanged, except for the UDP port in `Connect`, so that states and commands also pass
-/// through the tap. The recording contains the sender's bytes. A separate thread records, and never
-/// delays the bytes: events that it cannot record in time are counted as missing.
+/// A client connects to the tap instead of the robot, and the tap connects to the robot. The tap
+/// forwards bytes unchanged, except for the UDP port in `Connect`, because states and commands must
+/// also pass through the tap. The recording contains the bytes as they were sent. A separate thread
+/// records and never delays the bytes. Events that it cannot record in time count as missing.
 ///
-/// Dropping it ends all connections, as [`Self::finish`] does.
+/// Dropping the tap ends all connections, as [`Self::finish`] does.
 #[derive(Debug)]
 pub struct Tap {
     stop: Arc<AtomicBool>,
@@ -32,7 +32,7 @@ pub struct Tap {
     journal: Option<Journal>,
 }
 
-/// The address for clients of a device, and the address of the device.
+/// Address at which clients connect to a device through the tap, and address of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Route {
     /// The device.
@@ -43,15 +43,15 @@ pub struct Route {
     pub robot: SocketAddr,
 }
 
-/// The result of a tap's recording.
+/// Result of a tap's recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TapReport {
-    /// Connections of clients.
+    /// Number of client connections.
     pub connections: usize,
-    /// Events in the file.
+    /// Number of events in the file.
     pub events: u64,
-    /// Events that are missing in the file.
+    /// Number of events that are missing in the file.
     pub dropped: u64,
 }
 
@@ -71,8 +71,8 @@ impl Tap {
     /// Starts a tap that records into a new file at `path`.
     ///
     /// # Errors
-    /// [`CassetteError`] if an address is not free or the file cannot be created. An existing file
-    /// is not overwritten.
+    /// [`CassetteError`] if an address is not free or the file cannot be created. The tap does not
+    /// overwrite an existing file.
     pub fn start(routes: &[Route], path: impl AsRef<Path>) -> Result<Self, CassetteError> {
         let listeners = routes.iter().map(|route| {
             let listener = TcpListener::bind(route.listen)?;
@@ -113,10 +113,10 @@ impl Tap {
         found.map(|(_, address)| *address)
     }
 
-    /// Ends all connections and the file.
+    /// Ends all connections and completes the file.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file could not be written; all data was still forwarded.
+    /// [`CassetteError`] if the file could not be written. The tap forwarded all data nevertheless.
     pub fn finish(mut self) -> Result<TapReport, CassetteError> {
         self.end()
     }
@@ -171,7 +171,7 @@ fn accept(
     }
 }
 
-/// Starts to serve a client. If it cannot be served, its connection is closed.
+/// Starts to serve a client. If this is not possible, it closes the client's connection.
 fn start(
     client: TcpStream,
     number: usize,

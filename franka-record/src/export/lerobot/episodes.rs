@@ -15,16 +15,16 @@ use crate::export::parquet::{Field, Kind, TableWriter, Values};
 pub(super) struct Episode {
     pub(super) index: u64,
     pub(super) task: String,
-    /// Index of its first frame in the dataset.
+    /// Index of the episode's first frame in the dataset.
     pub(super) begin: u64,
     pub(super) length: u64,
-    /// The number of its data file.
+    /// Number of the episode's data file.
     pub(super) file: FileNumber,
     /// Statistics of each feature, in the order of [`meta::widths`].
     pub(super) stats: Vec<Stats>,
 }
 
-/// A file of a dataset, counted through all chunks.
+/// Number of a file of a dataset, counted through all chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct FileNumber(pub(super) u64);
 
@@ -85,7 +85,8 @@ fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBu
     Ok(found)
 }
 
-/// Writes the table of these episodes to `folder`, as the next table of the dataset in `root`.
+/// Writes a table with these episodes as the next table of the dataset in `root`. The file goes to
+/// `folder`.
 pub(super) fn write(
     root: &Path,
     folder: &Path,

@@ -6,7 +6,7 @@ use super::Action;
 use crate::sample::{Sample, told};
 
 /// Returns the names of the numbers of a state or an action: joints, pose of the end effector
-/// (position and quaternion), and the width of the gripper if it has one.
+/// (position and quaternion), and the width of the gripper if `gripper` is true.
 pub(super) fn names(gripper: bool) -> Vec<String> {
     let joints = (1..=7).map(|joint| format!("joint_{joint}.pos"));
     let pose = ["x", "y", "z", "qx", "qy", "qz", "qw"].map(|axis| format!("ee_{axis}.pos"));
@@ -30,9 +30,9 @@ struct Moment {
 }
 
 impl Frames {
-    /// Computes the frames of a dataset with this rate, the first at the first sample. The action
-    /// of a frame is the target at the next frame. If the targets are references, samples before
-    /// the first reference and after the last are left out.
+    /// Computes frames at this rate, starting at the first sample. The action of a frame is the
+    /// target at the next frame. If the targets are references, samples before the first and after
+    /// the last reference are left out.
     ///
     /// # Errors
     /// The reason why the samples are invalid.
@@ -85,7 +85,7 @@ fn uncontrolled(sample: &Sample) -> String {
     )
 }
 
-/// Returns the samples at the times of the frames, and the last of all.
+/// Returns the samples at the times of the frames, and the last sample.
 fn resampled(
     samples: impl IntoIterator<Item = Sample>,
     fps: u16,
@@ -129,12 +129,12 @@ fn resampled(
 /// Text for an episode without widths in a dataset with a gripper.
 const NO_WIDTH: &str = "its first cycles have no state of the Hand, expected one for each cycle, since the dataset has the width of a gripper";
 
-/// Longest gap between cycles that is filled at any rate, `[ms]`: the robot itself tolerates this
-/// number of lost states.
+/// Longest gap between cycles that is filled at any rate, `[ms]`. The robot itself tolerates this
+/// many lost states.
 const GAP_MIN: f64 = 20.0;
 
-/// Returns rows of numbers. Quaternions keep their sign from row to row; the first takes the sign
-/// of the pose `nearest`.
+/// Returns rows of numbers. Quaternions keep their sign from row to row. The first quaternion takes
+/// the sign of the pose `nearest`.
 fn rows(
     moments: impl Iterator<Item = Result<Moment, String>>,
     gripper: bool,
@@ -159,8 +159,9 @@ fn rows(
     Ok(rows)
 }
 
-/// Returns the quaternion that determines the sign of the first one. Without another pose, it is
-/// the quaternion of a hand that points down: near it, signs do not change between episodes.
+/// Returns the quaternion that determines the sign of the first row. Without another pose, it is
+/// the quaternion of a hand that points down. Near this orientation, signs do not change between
+/// episodes.
 fn first_sign(nearest: Option<&Isometry3<f64>>) -> Vector4<f64> {
     let down = Vector4::new(1.0, 0.0, 0.0, 0.0);
     match nearest {

@@ -22,10 +22,10 @@ pub(super) const VERSION: &str = "v3.0";
 /// Number of files in a folder `chunk-…`.
 pub(super) const FILES_IN_CHUNK: u64 = 1000;
 
-/// Size from which a data file gets no more episodes, `[MB]`.
+/// Size above which a data file gets no more episodes, `[MB]`.
 pub(super) const DATA_FILE_MB: usize = 100;
 
-/// Numbers of each frame that do not describe the robot, in the order of the columns.
+/// Columns of each frame that do not describe the robot, in their order.
 pub(super) const BOOKKEEPING: [(&str, &str); 5] = [
     ("timestamp", "float32"),
     ("frame_index", "int64"),
@@ -37,7 +37,7 @@ pub(super) const BOOKKEEPING: [(&str, &str); 5] = [
 /// Flags of each frame.
 pub(super) const FLAGS: [&str; 2] = ["next.done", "next.success"];
 
-/// Columns of numbers of the robot.
+/// Columns that describe the robot.
 pub(super) const VECTORS: [&str; 2] = ["observation.state", "action"];
 
 /// The current contents of a dataset.
@@ -63,7 +63,7 @@ fn features(gripper: bool) -> Value {
     Value::Object(all.map(|(name, it)| (name.to_owned(), it)).collect())
 }
 
-/// Writes tasks, statistics and, last, `info.json`.
+/// Writes tasks and statistics, and finally `info.json`.
 pub(super) fn write(
     root: &Path,
     options: &DatasetOptions,
@@ -148,8 +148,8 @@ pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, Ex
     })
 }
 
-/// Returns the difference between a dataset's features and the written ones, with the action to
-/// take; `None` if they are the same.
+/// Returns the difference between a dataset's features and the features to write, and what the user
+/// can do; `None` if they are the same.
 fn difference(got: &Value, gripper: bool) -> Option<String> {
     let expected = features(gripper);
     if *got == expected {
@@ -204,7 +204,7 @@ pub(super) fn widths(gripper: bool) -> impl Iterator<Item = (&'static str, usize
     vectors.into_iter().chain(flags).chain(rest)
 }
 
-/// Writes the tasks by their number. Pandas uses the texts as the index of the table.
+/// Writes the tasks by their number. Pandas uses the task texts as the index of the table.
 fn write_tasks(path: &Path, tasks: &[String]) -> Result<(), ExportError> {
     let column = |name: &str, kind: &str, numpy: &str| json!({ "name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": null });
     let pandas = json!({

@@ -33,7 +33,7 @@ use meta::{BOOKKEEPING, Contents, FLAGS, VECTORS};
 use staging::Staging;
 use stats::Stats;
 
-/// The common settings of all episodes of a dataset.
+/// Settings that all episodes of a dataset share.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DatasetOptions {
@@ -41,24 +41,24 @@ pub struct DatasetOptions {
     pub fps: u16,
     /// Name of the robot: `franka_fr3`, `franka_fer`.
     pub robot_type: String,
-    /// True if the width of the gripper is part of states and actions.
+    /// True if states and actions include the width of the gripper.
     pub gripper: bool,
-    /// The kind of actions.
+    /// Source of a frame's action.
     pub action: Action,
 }
 
-/// The kind of a frame's action.
+/// Source of a frame's action.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Action {
-    /// The target of the arm at the next frame. Needs a controlled arm.
+    /// The target of the arm at the next frame. This requires an arm that was under control.
     #[default]
     Reference,
-    /// The measured position of the arm at the next frame: for demonstrations by hand.
+    /// The measured position of the arm at the next frame. Use it for demonstrations by hand.
     Measured,
 }
 
 impl DatasetOptions {
-    /// Creates options: 30 frames per second, with the gripper, and references as actions.
+    /// Creates options: 30 frames per second, gripper included, and references as actions.
     pub fn new(robot_type: impl Into<String>) -> Self {
         Self {
             fps: 30,
@@ -68,21 +68,21 @@ impl DatasetOptions {
         }
     }
 
-    /// Sets the frames per second.
+    /// Sets the number of frames per second.
     #[must_use]
     pub fn fps(mut self, fps: u16) -> Self {
         self.fps = fps;
         self
     }
 
-    /// Sets whether the width of the gripper is part of states and actions.
+    /// Sets whether states and actions include the width of the gripper.
     #[must_use]
     pub fn gripper(mut self, gripper: bool) -> Self {
         self.gripper = gripper;
         self
     }
 
-    /// Sets the kind of actions.
+    /// Sets the source of actions.
     #[must_use]
     pub fn action(mut self, action: Action) -> Self {
         self.action = action;
@@ -90,14 +90,14 @@ impl DatasetOptions {
     }
 }
 
-/// A dataset to which episodes are added. New episodes become part of it when it is
-/// [finished](Self::finish). If it is dropped before, or the process is killed, the dataset stays
-/// unchanged.
+/// Writer that adds episodes to a dataset. New episodes become part of the dataset with
+/// [`finish`](Self::finish). If the writer is dropped earlier, or the process is killed, the
+/// dataset stays unchanged.
 ///
 /// Each frame contains `observation.state` and `action`, `next.done` and `next.success`, and the
 /// fields common to all datasets. The numbers of a state or action are `joint_1.pos` to
 /// `joint_7.pos` in rad, `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and
-/// `gripper.pos` in metres. It has no images.
+/// `gripper.pos` in metres. The dataset has no images.
 pub struct Dataset {
     root: PathBuf,
     staging: Staging,
@@ -107,7 +107,7 @@ pub struct Dataset {
     next_file: FileNumber,
     /// The current data file.
     data: Option<TableWriter>,
-    /// Data files that are complete except for their names.
+    /// Data files that are complete, but do not have their final names yet.
     full: Vec<TableWriter>,
     added: Vec<Episode>,
 }
@@ -141,12 +141,12 @@ impl Dataset {
         ))
     }
 
-    /// Opens the dataset in the folder `root`, to add episodes to it. Another program may have
-    /// written it, if it has the same features.
+    /// Opens the dataset in the folder `root` to add episodes. Another program may have written the
+    /// dataset, if it has the same features.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if it differs in version, robot, rate or features, or if its files
-    /// do not contain the stated frames.
+    /// [`ExportError::Dataset`] if the dataset differs in version, robot, rate or features, or if
+    /// its files do not contain the declared number of frames.
     pub fn open(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
@@ -190,19 +190,19 @@ impl Dataset {
         }
     }
 
-    /// Number of episodes, including new ones.
+    /// Number of episodes, new episodes included.
     pub fn episodes(&self) -> u64 {
         self.contents.episodes
     }
 
-    /// Number of frames, including new ones.
+    /// Number of frames, new frames included.
     pub fn frames(&self) -> u64 {
         self.contents.frames
     }
 
-    /// Adds an episode: the description of the task, its success, and every cycle. Returns the
-    /// number of frames. `next.done` is true in the last frame, and so is `next.success` if the
-    /// episode is known to have succeeded.
+    /// Adds an episode: the description of the task, the success, and every cycle. Returns the
+    /// number of frames. `next.done` is true in the last frame. `next.success` is true in the last
+    /// frame if the episode is known to have succeeded.
     ///
     /// # Errors
     /// [`ExportError::Episode`] for invalid samples: no samples, gaps of more than a frame, no
@@ -273,10 +273,11 @@ impl Dataset {
         Ok(count)
     }
 
-    /// Writes the new episodes.
+    /// Makes the new episodes part of the dataset.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`].
+    /// [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`] if a file
+    /// cannot be written.
     pub fn finish(mut self) -> Result<(), ExportError> {
         if self.contents.episodes == 0 {
             let why = "got no episodes, expected at least one".to_owned();
@@ -336,7 +337,7 @@ fn checked(options: &DatasetOptions) -> Result<(), ExportError> {
     })
 }
 
-/// Returns the columns of an episode: vectors, flags, and the bookkeeping.
+/// Returns the columns of an episode: vectors, flags, and the other numbers of each frame.
 fn columns(
     frames: &Frames,
     before: &Contents,

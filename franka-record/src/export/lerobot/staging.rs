@@ -14,14 +14,14 @@ use std::path::{Path, PathBuf};
 use crate::export::error::ExportError;
 use crate::export::new_file::sync_folder_of;
 
-/// A running export to the dataset `root`. Only one may run at a time; dropping it deletes its
-/// files.
+/// A running export to the dataset `root`. Only one export may run at a time. Dropping this value
+/// deletes the files of the export.
 #[derive(Debug)]
 pub(super) struct Staging {
     root: PathBuf,
-    /// The folder of its files.
+    /// Folder of the export's files.
     pub(super) folder: PathBuf,
-    /// Held until this value is dropped. `None` if folders cannot be locked.
+    /// Lock that is held until this value is dropped; `None` if folders cannot be locked.
     _lock: Option<File>,
 }
 
@@ -57,7 +57,7 @@ impl Staging {
         })
     }
 
-    /// Makes the files part of the dataset.
+    /// Makes the files of the export part of the dataset.
     pub(super) fn commit(self) -> Result<(), ExportError> {
         for file in files(&self.folder)? {
             let to = self.root.join(&file);
@@ -79,8 +79,8 @@ impl Drop for Staging {
     }
 }
 
-/// Moves the files of a complete export to their places in the dataset `root`; does nothing without
-/// such an export.
+/// Moves the files of a complete export to their places in the dataset `root`. Does nothing if
+/// there is no complete export.
 fn publish(root: &Path) -> Result<(), ExportError> {
     let complete = root.join(COMPLETE);
     if !complete.exists() {
@@ -98,7 +98,7 @@ fn publish(root: &Path) -> Result<(), ExportError> {
     fs::remove_dir_all(&complete).map_err(ExportError::at(&complete))
 }
 
-/// Returns the files below a folder, relative to it.
+/// Returns the files below a folder, with paths relative to the folder.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(next) = folders.pop() {

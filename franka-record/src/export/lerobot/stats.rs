@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-/// Statistics that are combined over episodes as the mean, weighted by the numbers of frames.
+/// Quantiles. Statistics of several episodes combine them as means, weighted by the numbers of
+/// frames.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
     ("q10", 0.10),
@@ -16,7 +17,7 @@ pub(super) const NAMES: [&str; 9] = [
     "min", "max", "mean", "std", "q01", "q10", "q50", "q90", "q99",
 ];
 
-/// Statistics of one feature over some frames: for each of [`NAMES`], a value per number of the
+/// Statistics of one feature over some frames: for each of [`NAMES`], one value per number of the
 /// feature.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stats {
@@ -72,7 +73,7 @@ impl Stats {
         Self { values, count }
     }
 
-    /// Converts to the format of `meta/stats.json`.
+    /// Converts the statistics to the format of `meta/stats.json`.
     pub(super) fn to_json(&self) -> Value {
         let values = NAMES.iter().zip(&self.values);
         let mut object: Map<String, Value> = values
@@ -82,7 +83,8 @@ impl Stats {
         object.into()
     }
 
-    /// Reads from `meta/stats.json`; `None` if a value is missing or has the wrong width.
+    /// Reads statistics from the format of `meta/stats.json`; `None` if a value is missing or has
+    /// the wrong width.
     pub(super) fn from_json(value: &Value, width: usize) -> Option<Self> {
         let numbers = |name: &str| -> Option<Vec<f64>> {
             let numbers = value.get(name)?.as_array()?.iter().map(number);
@@ -97,7 +99,7 @@ impl Stats {
     }
 }
 
-/// The place of the mean in [`NAMES`].
+/// Index of the mean in [`NAMES`].
 const MEAN: usize = 2;
 
 /// Returns a number, or a flag as a number.
@@ -105,7 +107,7 @@ fn number(value: &Value) -> Option<f64> {
     value.as_f64().or(value.as_bool().map(f64::from))
 }
 
-/// Returns the value below which a `share` of `sorted` lies, interpolated linearly.
+/// Returns the value below which a `share` of the `sorted` values lies, with linear interpolation.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let below = sorted[place.floor() as usize];
