@@ -1,9 +1,9 @@
-//! The commands of a robot, and the common parts of the commands of all services.
+//! The commands of a robot, and what the commands of all services have in common.
 
 use core::fmt;
 
 /// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each
-/// request. Replies are matched by this counter alone.
+/// request. Only this counter matches replies to requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CommandId(pub u32);
 
@@ -15,16 +15,16 @@ impl fmt::Display for CommandId {
 
 /// A command of a service. `Display` is its name.
 pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
-    /// `Connect`.
+    /// The command `Connect`.
     const CONNECT: Self;
 
-    /// The beginning of libfranka's messages about this service.
+    /// The name of this service with which libfranka's messages begin.
     const SERVICE: &'static str;
 
     /// Writes libfranka's text about a reply with an undefined status.
     ///
     /// # Errors
-    /// Returns the errors of the formatter.
+    /// The errors of the formatter.
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
         write!(f, "{service}: Unexpected response while handling command!")
@@ -38,7 +38,7 @@ pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
 pub enum Command {
     /// Opens a session.
     Connect,
-    /// Starts a motion; replied to twice.
+    /// Starts a motion. It has two replies.
     Move,
     /// Stops the motion.
     StopMove,
@@ -50,7 +50,7 @@ pub enum Command {
     SetJointImpedance,
     /// Sets the stiffness of the robot's Cartesian controller.
     SetCartesianImpedance,
-    /// Sets which axes a hand may guide.
+    /// Sets the axes in which a person may guide the hand.
     SetGuidingMode,
     /// Sets the stiffness frame.
     SetEEToK,
@@ -88,8 +88,8 @@ impl Command {
         Self::LoadModelLibrary,
     ];
 
-    /// libfranka's name in its messages. `Connect` and `LoadModelLibrary` have no name in
-    /// libfranka, and their texts do not use one.
+    /// Name of the command in libfranka's messages. `Connect` and `LoadModelLibrary` have no name
+    /// in libfranka, and its messages do not use one.
     #[must_use]
     pub fn display_name(self) -> &'static str {
         match self {
@@ -135,5 +135,5 @@ impl ServiceCommand for Command {
     }
 }
 
-/// libfranka's text about a library that the robot does not provide. It names no command.
+/// libfranka's text about a library that the robot does not provide. The text names no command.
 pub(crate) const NO_LIBRARY: &str = "Server reports error when loading model library.";

@@ -1,7 +1,7 @@
 //! Splits a byte stream into whole messages.
 //!
-//! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload; the header's
-//! `size` counts both. The headers of end effectors have 10 bytes: see
+//! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload. The header's
+//! `size` is the length of both. The headers of end effectors have 10 bytes: see
 //! [`gripper::next_message`](crate::gripper::next_message).
 //!
 //! ```
@@ -31,17 +31,17 @@ pub const MAX_MESSAGE_SIZE: usize = 8 << 20;
 
 /// The longest request that a robot waits for, in bytes.
 ///
-/// The longest defined request, `SetCollisionBehavior`, has 428 bytes. The rest is room for a
-/// client that pads.
+/// The longest defined request, `SetCollisionBehavior`, has 428 bytes. The remaining space is for
+/// clients that pad their requests.
 pub const MAX_REQUEST_SIZE: usize = 1024;
 
 /// The header of every message on the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {
-    /// The version's number of the command. Replies repeat it; the number in a reply is not
-    /// checked.
+    /// The command's number in the version. A reply repeats this number, and the client does not
+    /// check it.
     pub command: u32,
-    /// Counter of the client's requests; a reply repeats it.
+    /// Counter of the client's requests. A reply repeats it.
     pub command_id: u32,
     /// Length of the whole message in bytes, this header included.
     pub size: u32,
@@ -51,7 +51,7 @@ impl Header {
     /// Length of a header on the robot's stream in bytes.
     pub const SIZE: usize = size_of::<wire::CommandHeader<U32>>();
 
-    /// The id of the request that this message is or answers.
+    /// The id of the request: for a reply, the request that it answers.
     #[must_use]
     pub fn id(&self) -> CommandId {
         CommandId(self.command_id)
@@ -84,7 +84,7 @@ pub struct Message<'a> {
 }
 
 impl Message<'_> {
-    /// Length of the whole message in bytes: the number of bytes to advance in the stream.
+    /// Length of the whole message in bytes. Advance the stream by this number.
     #[must_use]
     pub fn size(&self) -> usize {
         self.header.size as usize
@@ -95,32 +95,32 @@ impl Message<'_> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// The size is smaller than the header that carries it.
+    /// The size in a header is smaller than the header itself.
     #[error("libfranka: Incorrect TCP message size.")]
     TooShort {
-        /// The size that the header claims, in bytes.
+        /// The size in the header, in bytes.
         got: u32,
     },
-    /// The size is larger than any message needs.
+    /// The size in a header is larger than the longest message allowed.
     #[error("the header announces a message of {got} bytes, expected {limit} at most")]
     TooLong {
-        /// The size that the header claims, in bytes.
+        /// The size in the header, in bytes.
         got: u32,
         /// The longest message allowed, in bytes.
         limit: usize,
     },
 }
 
-/// Returns the first message in `received`, or `None` while it is incomplete.
+/// Returns the first message in `received`, or `None` while the message is incomplete.
 ///
 /// # Errors
 /// [`FrameError`] if the message size is smaller than the header or larger than
-/// [`MAX_MESSAGE_SIZE`]. This is detected as soon as the header has arrived.
+/// [`MAX_MESSAGE_SIZE`]. The error occurs as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_within(received, MAX_MESSAGE_SIZE)
 }
 
-/// Like [`next_message`], with the caller's bound, such as [`MAX_REQUEST_SIZE`].
+/// Like [`next_message`], with a bound from the caller, such as [`MAX_REQUEST_SIZE`].
 ///
 /// # Errors
 /// [`FrameError`] if the size is smaller than the header or larger than `limit`.

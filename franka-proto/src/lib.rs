@@ -1,9 +1,9 @@
-//! The wire protocol (FCI) of Franka robots as values: decodes and encodes the messages of both
-//! sides.
+//! The wire protocol (FCI) of Franka robots as values: this crate decodes and encodes the messages
+//! of both sides.
 //!
-//! Protocols 10 (Franka Research 3) and 5 (Franka Emika Robot) in one crate. The crate does no
-//! input or output and has no clock, threads or allocation: it turns bytes into values and values
-//! into bytes. The real-time thread, an asynchronous shell, a simulator and tests use the same
+//! One crate contains protocol 10 (Franka Research 3) and protocol 5 (Franka Emika Robot). It does
+//! no input or output and has no clock, threads or allocation: it converts bytes to values and
+//! values to bytes. The real-time thread, an asynchronous shell, a simulator and tests use the same
 //! code.
 //!
 //! ```text
@@ -58,9 +58,9 @@
 //!
 //! # Panics and bad bytes
 //!
-//! Decoding never panics on any input. An undecodable message is an error with the received and the
-//! expected value. Lengths are checked before data is read. A message that announces more than
-//! [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
+//! Decoding never panics on any input. A message that cannot be decoded gives an error with the
+//! received and the expected value. Decoders check lengths before they read data. They refuse a
+//! message that announces more than [`framing::MAX_MESSAGE_SIZE`] before they collect it.
 //!
 //! # Features
 //!
@@ -69,8 +69,8 @@
 //!
 //! # What is not here
 //!
-//! Sockets and deadlines; the choice of the states to accept and the time of the answers (the
-//! control cycle decides both); limits and filters.
+//! This crate has no sockets, deadlines, limits or filters. The control cycle, not this crate,
+//! decides which states to accept and when to answer.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]

@@ -50,7 +50,7 @@ impl fmt::Display for General {
 const DIGITS: usize = 6;
 const DIGITS_I32: i32 = DIGITS as i32;
 
-/// Room for the scientific notation of a number with [`DIGITS`] digits, such as `1.23457e-308`.
+/// Buffer for the scientific notation of a number with [`DIGITS`] digits, such as `1.23457e-308`.
 #[derive(Default)]
 struct Scientific {
     bytes: [u8; DIGITS + 8],

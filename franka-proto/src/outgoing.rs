@@ -11,8 +11,8 @@ use crate::wire::{self, CommandNumber};
 
 /// One TCP message, header and payload, to send with one write.
 ///
-/// The longest is `SetCollisionBehavior` with 428 bytes. The buffer is inline, so creating a
-/// message allocates nothing. The variable part of a model reply is not included: see
+/// The longest message is `SetCollisionBehavior` with 428 bytes. The buffer is inline, so creating
+/// a message allocates nothing. The variable part of a model reply is not included: see
 /// [`server::Session::model_header`](crate::server::Session::model_header).
 #[derive(Clone, PartialEq, Eq)]
 pub struct Outgoing {
@@ -22,7 +22,7 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// Size of the inline buffer in bytes: room for the longest fixed message.
+    /// Size of the inline buffer in bytes. It is enough for the longest fixed message.
     pub const CAPACITY: usize = 440;
 
     /// Creates a message of the robot's service: a header followed by `payload`. The header's size
@@ -58,7 +58,7 @@ impl Outgoing {
         Self { bytes, len, id }
     }
 
-    /// The command id of the message. Replies are matched by this id.
+    /// The command id of the message. The replies carry the same id.
     #[must_use]
     pub fn id(&self) -> CommandId {
         self.id

@@ -4,9 +4,9 @@ use crate::command::CommandId;
 
 /// Limit of requests of one session that may wait for replies at the same time.
 ///
-/// A client that waits for each reply has at most two pending requests: one motion and one other.
-/// An asynchronous client also has a few setters. The bound keeps the table inline and a lookup
-/// short.
+/// A client that waits for each reply has at most two pending requests: a motion and one other
+/// request. An asynchronous client may also have a few setters pending. The bound keeps the table
+/// inline and lookups short.
 pub(crate) const LIMIT: usize = 32;
 
 /// A request that waits for a reply.
@@ -18,7 +18,7 @@ pub(crate) struct Entry<C> {
     pub(crate) started: bool,
 }
 
-/// The table: a bounded set of entries, in no order.
+/// The table: a bounded set of entries without an order.
 #[derive(Clone, Debug)]
 pub(crate) struct Pending<C> {
     entries: [Option<Entry<C>>; LIMIT],
@@ -39,7 +39,7 @@ impl<C: Copy> Pending<C> {
         self.entries.iter().all(Option::is_some)
     }
 
-    /// Adds a request; returns false, without a change, if the table is full.
+    /// Adds a request. Returns false and changes nothing if the table is full.
     pub(crate) fn insert(&mut self, id: CommandId, command: C) -> bool {
         let free = self.entries.iter_mut().find(|entry| entry.is_none());
         let Some(free) = free else { return false };
@@ -55,14 +55,14 @@ impl<C: Copy> Pending<C> {
         self.entries.iter().flatten().find(|e| e.id == id).copied()
     }
 
-    /// Notes that the first of two answers has been given.
+    /// Records that the first of two answers has been given.
     pub(crate) fn start(&mut self, id: CommandId) {
         if let Some(entry) = self.entries.iter_mut().flatten().find(|e| e.id == id) {
             entry.started = true;
         }
     }
 
-    /// Removes a request; returns true if a request with this id existed.
+    /// Removes a request. Returns true if a request with this id existed.
     pub(crate) fn remove(&mut self, id: CommandId) -> bool {
         let entry = self
             .entries

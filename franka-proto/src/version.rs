@@ -4,7 +4,7 @@ use core::fmt;
 
 /// A version of the robot's protocol (FCI) that this crate speaks.
 ///
-/// `Display` is the number.
+/// `Display` gives the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Version {
@@ -15,7 +15,7 @@ pub enum Version {
 }
 
 impl Version {
-    /// All versions, ascending.
+    /// All versions, in ascending order.
     pub const ALL: [Self; 2] = [Self::V5, Self::V10];
 
     /// TCP port of the robot in all versions.

@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The driver owns the sockets. It sends what [`Session::connect`] and [`Session::request`] return,
-//! each with one write. It cuts the received bytes into messages
-//! ([`framing::next_message`](crate::framing::next_message)), passes each to
-//! [`Session::on_message`] and acts on the [`Event`]. The session has no clock: a driver whose wait
-//! for a reply times out calls [`Session::abandon`].
+//! each with one write. It splits the received bytes into messages
+//! ([`framing::next_message`](crate::framing::next_message)), passes each message to
+//! [`Session::on_message`] and acts on the [`Event`]. The session has no clock. If no reply arrives
+//! in time, the driver calls [`Session::abandon`].
 
 mod session;
 

@@ -11,8 +11,8 @@ use crate::protocol::{DecodeError, RequestError, Violation};
 use crate::protocol::{Progress, Protocol};
 use crate::version::Version;
 
-/// One connection to a device, from its first byte to its last. The device is a robot, unless `P`
-/// is another protocol.
+/// One connection to a device, from its first byte to its last. The device is a robot, or an end
+/// effector if `P` is its protocol.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -37,15 +37,15 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The version of the session.
         version: P,
     },
-    /// The device speaks another version. The connection is no longer usable: open another one. Use
-    /// the robot's version if [`Version::from_number`] knows it.
+    /// The device speaks another version. The connection is no longer usable. Open another
+    /// connection, with the robot's version if [`Version::from_number`] knows it.
     Incompatible(IncompatibleVersion<P>),
     /// The answer to a request.
     ///
     /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted) is the first of two answers.
-    /// Every other reply is the last one with its id.
+    /// Every other reply is the last with its id.
     Reply {
-        /// The request.
+        /// The id of the request.
         id: CommandId,
         /// The command of the request.
         command: P::Command,
@@ -61,7 +61,7 @@ pub enum Event<'a, P: Protocol = Version> {
 }
 
 impl<P: Protocol> Session<P> {
-    /// Limit of requests that may wait for replies at the same time.
+    /// Largest number of requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
     /// Creates a session that announces `version`.
@@ -81,13 +81,13 @@ impl<P: Protocol> Session<P> {
         self.version
     }
 
-    /// True if the handshake is done.
+    /// True if the handshake has succeeded.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.phase == ConnectionPhase::Open
     }
 
-    /// Number of requests that wait for a reply. A motion counts until its last reply.
+    /// Number of requests that wait for a reply. A `Move` counts until its last reply.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.pending.len()
@@ -110,7 +110,7 @@ impl<P: Protocol> Session<P> {
     /// Returns the message of a request, with the next id.
     ///
     /// # Errors
-    /// [`RequestError`]; the session is then unchanged.
+    /// [`RequestError`] if the request cannot be sent. The session is then unchanged.
     pub fn request(&mut self, request: &P::Request) -> Result<Outgoing, RequestError> {
         if P::handshake(request).is_some() {
             return Err(RequestError::Handshake);
@@ -139,7 +139,8 @@ impl<P: Protocol> Session<P> {
     /// Returns the meaning of a message from the device.
     ///
     /// # Errors
-    /// [`Violation`]; [`Violation::is_fatal`] is true if the connection is no longer usable.
+    /// [`Violation`] if the device violated the protocol. [`Violation::is_fatal`] is true if the
+    /// connection is no longer usable.
     pub fn on_message<'a>(
         &mut self,
         message: Message<'a>,

@@ -18,12 +18,12 @@ use crate::command::ServiceCommand;
 pub enum Failure<C> {
     /// The device could not complete the action.
     Failed {
-        /// The command.
+        /// The command whose action failed.
         command: C,
     },
     /// Another command, such as a stop, ended the action.
     Aborted {
-        /// The command.
+        /// The command whose action was aborted.
         command: C,
     },
 }

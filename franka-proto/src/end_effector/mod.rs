@@ -1,5 +1,5 @@
-//! The common parts of the protocols of the Franka Hand and of the vacuum gripper: the 10-byte
-//! header, 16-bit statuses, and one reply to every command when the action has ended.
+//! What the protocols of the Franka Hand and of the vacuum gripper share: the 10-byte header,
+//! 16-bit statuses, and one reply to each command when its action has ended.
 
 mod failure;
 mod service;
@@ -13,13 +13,13 @@ use zerocopy::byteorder::little_endian::U16;
 
 use crate::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_of};
 
-/// Returns the first message in `received`, or `None` while it is incomplete.
+/// Returns the first message in `received`, or `None` while the message is incomplete.
 ///
 /// No message of these services is longer than 50 bytes; the bound is [`MAX_REQUEST_SIZE`].
 ///
 /// # Errors
-/// [`FrameError`] if the message size is smaller than the header or larger than the bound. This is
-/// detected as soon as the header has arrived.
+/// [`FrameError`] if the message size is smaller than the header or larger than the bound. The
+/// error occurs as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_of::<U16>(received, MAX_REQUEST_SIZE)
 }

@@ -15,7 +15,8 @@ use crate::protocol::{DecodeError, ReplyError, RequestError};
 use crate::protocol::{FieldDevice, Progress, Protocol, sealed};
 use crate::wire;
 
-/// The differences between the Hand and the vacuum gripper. This trait is sealed.
+/// An end effector's protocol: what differs between the Hand and the vacuum gripper. This trait is
+/// sealed.
 pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The commands. The number of a command is its position in [`Self::COMMANDS`].
     type Command: ServiceCommand;
@@ -29,13 +30,13 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The vendor's name of the device.
     const DEVICE: &'static str;
 
-    /// The handshake.
+    /// Creates the request for the handshake.
     fn hello(version: u16, udp_port: u16) -> Self::Request;
 
-    /// Version and UDP port of a handshake.
+    /// Returns the version and the UDP port of a handshake; `None` for other requests.
     fn announced(request: &Self::Request) -> Option<(u16, u16)>;
 
-    /// The command of a request.
+    /// Returns the command of a request.
     fn command(request: &Self::Request) -> Self::Command;
 
     /// Writes the parameters of a request.
@@ -51,7 +52,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     ) -> Result<Self::Request, DecodeError<Self::Command>>;
 }
 
-/// A message whose header is known.
+/// A message with a complete header and without a payload.
 #[derive(Clone, Copy, Debug)]
 pub struct Draft {
     number: u32,
@@ -59,7 +60,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    /// The message of a handshake.
+    /// Completes the message as a handshake.
     pub(crate) fn handshake(self, version: u16, udp_port: u16) -> Outgoing {
         self.with(&wire::service::ConnectRequest {
             version: version.into(),
@@ -67,7 +68,7 @@ impl Draft {
         })
     }
 
-    /// The message with this payload.
+    /// Completes the message with this payload.
     pub(crate) fn with<P: IntoBytes + Immutable>(self, payload: &P) -> Outgoing {
         Outgoing::with_header::<U16, P>(self.number, self.id, payload, 0)
     }
@@ -94,7 +95,8 @@ impl<E: EndEffector> Protocol for E {
         E::NUMBER
     }
 
-    /// The advice of libfranka 0.21: an end effector has the same protocol on both robots.
+    /// The advice of libfranka 0.21. It fits both robots, because an end effector has the same
+    /// protocol on both.
     fn incompatible_advice(self) -> [&'static str; 2] {
         crate::Version::V10.incompatible_advice()
     }
@@ -181,19 +183,19 @@ impl<E: EndEffector> Protocol for E {
     }
 }
 
-/// The number of a command: its position in the list, which has all of them.
+/// Returns the number of a command: its position in the list of all commands.
 fn number<E: EndEffector>(command: E::Command) -> u32 {
     let position = E::COMMANDS.iter().position(|&known| known == command);
     position.unwrap_or_default() as u32
 }
 
-/// The command of a number.
+/// Returns the command with this number.
 fn command<E: EndEffector>(number: u32) -> Option<E::Command> {
     let index = usize::try_from(number).ok()?;
     E::COMMANDS.get(index).copied()
 }
 
-/// The status of a number.
+/// Returns the status with this number.
 fn meaning<T: Copy>(statuses: &[T], number: u16) -> Option<T> {
     statuses.get(usize::from(number)).copied()
 }

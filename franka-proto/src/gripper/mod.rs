@@ -1,9 +1,9 @@
 //! The protocol of the Franka Hand: TCP port 1338, version 3, the same on both robots.
 //!
-//! A client sends requests over TCP and gets one reply to each when the action has ended. It can
-//! send `Stop` while another action runs; the hand then answers that action as aborted. The hand
-//! sends its [`State`] by UDP to the port announced in the handshake. The client sends no UDP
-//! datagrams.
+//! A client sends requests over TCP. The hand replies to each request when its action has ended.
+//! The client can send `Stop` while another action runs; the hand then answers this action as
+//! aborted. The hand sends its [`State`] by UDP to the port announced in the handshake. The client
+//! sends no UDP datagrams.
 //!
 //! ```
 //! use franka_proto::gripper::{Client, Command, Request, Server, Status, Version, next_message};

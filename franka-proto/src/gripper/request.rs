@@ -12,7 +12,7 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// The commands of the Hand. Each has one reply, sent when the action has ended.
+/// The commands of the Hand. The Hand replies once to each command, when the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
@@ -20,7 +20,7 @@ pub enum Command {
     Connect,
     /// Opens and closes the fingers to find their range.
     Homing,
-    /// Closes or opens the fingers on an object.
+    /// Grasps an object by closing or opening the fingers.
     Grasp,
     /// Moves the fingers to a width.
     Move,
@@ -28,18 +28,19 @@ pub enum Command {
     Stop,
 }
 
-/// A request with its parameters. Ranges are not checked here: the Hand checks them.
+/// A request with its parameters. This crate does not check ranges; the Hand does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port where it expects states.
+    /// Opens a session: the client's version and the port on which it expects states.
     Connect {
         /// Protocol version of the client.
         version: u16,
         /// UDP port of the client.
         udp_port: u16,
     },
-    /// Opens and closes the fingers to find their range; required after a change of fingers.
+    /// Opens and closes the fingers to find their range. This is required after a change of
+    /// fingers.
     Homing,
     /// Grasps an object.
     Grasp(Grasp),
@@ -49,8 +50,8 @@ pub enum Request {
     Stop,
 }
 
-/// The parameters of a grasp. An object counts as grasped if the fingers end at a distance `d` with
-/// `width - epsilon_inner < d < width + epsilon_outer`.
+/// The parameters of a grasp. An object counts as grasped if the final distance `d` of the fingers
+/// satisfies `width - epsilon_inner < d < width + epsilon_outer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grasp {
@@ -67,7 +68,7 @@ pub struct Grasp {
 }
 
 impl Grasp {
-    /// libfranka's default of both tolerances `[m]`.
+    /// libfranka's default value of both tolerances `[m]`.
     pub const EPSILON: f64 = 0.005;
 
     /// Creates a grasp with libfranka's tolerances: width `[m]`, speed `[m/s]`, force `[N]`.

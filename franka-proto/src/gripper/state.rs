@@ -1,4 +1,4 @@
-//! The datagram of the Hand.
+//! The datagram that the Hand sends.
 
 use core::fmt;
 
@@ -16,7 +16,7 @@ pub struct State {
     pub message_id: u32,
     /// Distance of the fingers `[m]`.
     pub width: f64,
-    /// Distance of the open fingers `[m]`, estimated by homing.
+    /// Distance of the fully open fingers `[m]`, measured by homing.
     pub max_width: f64,
     /// True if the hand holds an object of the requested width.
     pub is_grasped: bool,
@@ -28,7 +28,7 @@ impl State {
     /// Length of the datagram in bytes.
     pub const SIZE: usize = size_of::<GripperState>();
 
-    /// Reads a datagram of the Hand. Bytes beyond the struct are ignored.
+    /// Reads a datagram of the Hand. Additional bytes are ignored.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.

@@ -41,13 +41,13 @@ pub enum DecodeError<C: ServiceCommand = Command> {
     UnknownValue {
         /// The vendor's name of the field.
         field: &'static str,
-        /// Its value.
+        /// The value of the field.
         value: u32,
     },
     /// A status in a reply is not defined in the version.
     #[error("{}", Unexpected(*command))]
     UnknownStatus {
-        /// The command that is answered.
+        /// The command to which the reply belongs.
         command: C,
         /// The number of the status.
         status: u16,
@@ -88,7 +88,7 @@ impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
     }
 }
 
-/// A datagram that cannot be encoded.
+/// A datagram could not be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodeError {
@@ -100,7 +100,7 @@ pub enum EncodeError {
         /// Length of the datagram in bytes.
         needed: usize,
     },
-    /// The version has no such field or value.
+    /// The version does not have this field or value.
     #[error("this protocol version cannot carry {what}")]
     Unsupported {
         /// The vendor's name of the field.
@@ -108,11 +108,11 @@ pub enum EncodeError {
     },
 }
 
-/// A request that the client session does not send. No part of it has been encoded.
+/// The client session does not send a request. No part of the request has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequestError {
-    /// The version has no such command, or does not support these parameters.
+    /// The version does not have this command, or does not support these parameters.
     #[error("protocol {version} ({}) has no {what}", version.robot())]
     Unsupported {
         /// The requested command or parameter.
@@ -120,10 +120,11 @@ pub enum RequestError {
         /// The version of the session.
         version: Version,
     },
-    /// The handshake is not done.
+    /// The handshake has not succeeded yet.
     #[error("the session is not connected")]
     NotConnected,
-    /// `Connect` is sent by [`client::Session::connect`](crate::client::Session::connect).
+    /// The request is a `Connect`. Send it with
+    /// [`client::Session::connect`](crate::client::Session::connect).
     #[error("got a handshake, expected a request of an open session")]
     Handshake,
     /// The session cannot track any more requests that wait for replies.
@@ -137,20 +138,20 @@ pub enum RequestError {
     },
 }
 
-/// A reply that the server session does not send. No part of it has been encoded.
+/// The server session does not send a reply. No part of the reply has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplyError<C: ServiceCommand = Command> {
     /// No request with this id waits for a reply.
     #[error("no request {id} waits for a reply")]
     NotPending {
-        /// The id.
+        /// The id of the reply.
         id: CommandId,
     },
     /// The request requires another kind of reply.
     #[error("the reply does not fit request {id}: {command} has another kind of reply")]
     Mismatch {
-        /// The id.
+        /// The id of the reply.
         id: CommandId,
         /// The command of the request.
         command: C,
@@ -158,7 +159,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     /// A `Move` has already received its first answer.
     #[error("the motion of request {id} is already reported as started")]
     AlreadyStarted {
-        /// The id.
+        /// The id of the reply.
         id: CommandId,
     },
     /// The version has no such status.
@@ -167,10 +168,10 @@ pub enum ReplyError<C: ServiceCommand = Command> {
         /// The version of the session.
         version: Version,
     },
-    /// A model that is too long. Models are sent with
+    /// The message would be too long for a model. Send models with
     /// [`server::Session::model_header`](crate::server::Session::model_header) or
     /// [`server::Session::library_header`](crate::server::Session::library_header), which also
-    /// limit their length.
+    /// limit the length.
     #[error("the model has {len} bytes, which does not fit into a reply")]
     TextLength {
         /// Length of the model in bytes.
@@ -178,7 +179,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     },
 }
 
-/// A peer violated the protocol. No caller can cause this.
+/// The other side of the connection violated the protocol. The caller cannot cause this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation<C: ServiceCommand = Command> {
@@ -188,7 +189,7 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The number of the status.
         status: u16,
     },
-    /// The device agreed to our version and reports another version as its own.
+    /// The device accepted the client's version, but reports another version as its own.
     #[error("the device accepted protocol {announced}, but reports protocol {reported} as its own")]
     ForeignVersion {
         /// The version that the client announced.
@@ -196,18 +197,18 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The version that the device reports.
         reported: u16,
     },
-    /// The answer to a request cannot be decoded. The request has ended with this error.
+    /// The answer to a request cannot be decoded. The request ends with this error.
     #[error("{error}")]
     Reply {
-        /// The request.
+        /// The id of the request.
         id: CommandId,
         /// The decoding error.
         error: DecodeError<C>,
     },
-    /// A motion is reported as started for the second time. It still runs.
+    /// The device reported for a second time that a motion has started. The motion still runs.
     #[error("libfranka: Move received unexpected motion started message.")]
     SecondMotionStarted {
-        /// The request.
+        /// The id of the request.
         id: CommandId,
     },
     /// A client's message cannot be decoded.
@@ -224,16 +225,16 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The command received.
         got: C,
     },
-    /// A client sends `Connect` in an open session.
+    /// A client sent `Connect` in an open session.
     #[error("got a second Connect, expected one for each session")]
     SecondConnect,
-    /// A client uses the id of a request that has not been answered yet.
+    /// A client used the id of a request that has not been answered yet.
     #[error(
         "got the request id {id} twice, expected a new id while the first request waits for \
         its reply"
     )]
     RepeatedId {
-        /// The id.
+        /// The repeated id.
         id: CommandId,
     },
     /// A client has more open requests than a server can track.
@@ -245,8 +246,8 @@ pub enum Violation<C: ServiceCommand = Command> {
 }
 
 impl<C: ServiceCommand> Violation<C> {
-    /// The request that this violation belongs to. It has ended, except after
-    /// [`Violation::SecondMotionStarted`].
+    /// The id of the request to which this violation belongs, if any. The request has ended, except
+    /// after [`Violation::SecondMotionStarted`].
     #[must_use]
     pub fn id(&self) -> Option<CommandId> {
         match *self {

@@ -7,8 +7,9 @@ use crate::version::Version;
 
 /// The device speaks another version than the client announced.
 ///
-/// `Display` is the text of the libfranka that speaks the client's version: 0.21 for 10, 0.9 for 5.
-/// [`IncompatibleVersion::explanation`] explains the number in plain words.
+/// `Display` gives the text of the libfranka version that speaks the client's version: 0.21 for
+/// protocol 10, 0.9 for protocol 5. [`IncompatibleVersion::explanation`] explains the version
+/// numbers in plain words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct IncompatibleVersion<P: Protocol = Version> {
     /// The device's version.
@@ -18,8 +19,8 @@ pub struct IncompatibleVersion<P: Protocol = Version> {
 }
 
 impl<P: Protocol> IncompatibleVersion<P> {
-    /// Returns an explanation: the device and the system image that speak the device's version, and
-    /// the action to take.
+    /// Returns an explanation: which device and which system image speak the device's version, and
+    /// what the user can do.
     ///
     /// ```
     /// use franka_proto::{IncompatibleVersion, Version};

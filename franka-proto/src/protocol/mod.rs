@@ -1,4 +1,4 @@
-//! The common parts of all services: the trait between sessions and protocols, the errors, and the
+//! What all services have in common: the trait between sessions and protocols, the errors, and the
 //! handshake.
 
 mod error;
@@ -17,7 +17,7 @@ use crate::outgoing::Outgoing;
 /// A protocol of a TCP service: a version of the robot's protocol, or the protocol of the Hand or
 /// of the vacuum gripper.
 ///
-/// The sessions of both sides are generic over this trait. It is sealed:
+/// The sessions of both sides are generic over this trait. The trait is sealed:
 /// [`Version`](crate::Version), [`gripper::Version`](crate::gripper::Version) and
 /// [`vacuum::Version`](crate::vacuum::Version) are its only implementors.
 pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
@@ -28,42 +28,42 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// An answer to a request.
     type Reply<'a>: Copy + fmt::Debug + PartialEq;
 
-    /// The number that the handshake carries.
+    /// Returns the version number for the handshake.
     fn number(self) -> u16;
 
-    /// The name of the device that speaks this protocol, for messages.
+    /// Returns the name of the device that speaks this protocol, for messages.
     fn device(self) -> &'static str;
 
-    /// The device in the field that speaks the version `number`, if one is known.
+    /// Returns the real device that speaks the version `number`, if one is known.
     fn field(number: u16) -> Option<FieldDevice>;
 
-    /// The versions of this protocol that this crate speaks, ascending.
+    /// Returns the versions of this protocol that this crate speaks, in ascending order.
     fn spoken() -> &'static [u16];
 
-    /// The sources that libfranka's text about an incompatible version names: for updates, and for
-    /// the table of system images.
+    /// Returns the sources that libfranka's text about an incompatible version names: for updates,
+    /// and for the table of system images.
     fn incompatible_advice(self) -> [&'static str; 2];
 
-    /// The command of a request.
+    /// Returns the command of a request.
     fn command_of(request: &Self::Request) -> Self::Command;
 
-    /// The handshake of a client that expects states on `udp_port`.
+    /// Returns the handshake of a client that expects states on `udp_port`.
     fn connect(self, udp_port: u16) -> Self::Request;
 
-    /// The version and the UDP port that a request announces, if it is the handshake.
+    /// Returns the version and the UDP port in a handshake; `None` for other requests.
     fn handshake(request: &Self::Request) -> Option<(u16, u16)>;
 
-    /// The answer to a handshake.
+    /// Returns the answer to a handshake.
     fn answer_handshake(self, status: ConnectStatus) -> Self::Reply<'static>;
 
-    /// The answer of a device to a request with an undefined enumerator; `None` for an unknown
-    /// command.
+    /// Returns the answer of a device to a request with an undefined enumerator; `None` for an
+    /// unknown command.
     fn rejection(self, message: &Message<'_>) -> Option<(Self::Command, Self::Reply<'static>)>;
 
-    /// The effect of a reply on its request.
+    /// Returns the effect of a reply on its request.
     fn progress(reply: &Self::Reply<'_>) -> Progress;
 
-    /// The message of a request.
+    /// Encodes a request as a message.
     ///
     /// # Errors
     /// [`RequestError::Unsupported`] if the protocol has no such command.
@@ -73,17 +73,17 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
         id: CommandId,
     ) -> Result<Outgoing, RequestError>;
 
-    /// The request in a message of a client.
+    /// Decodes the request in a client's message.
     ///
     /// # Errors
-    /// [`DecodeError`] if the message holds no valid request.
+    /// [`DecodeError`] if the message contains no valid request.
     fn decode_request(
         self,
         message: &Message<'_>,
     ) -> Result<Self::Request, DecodeError<Self::Command>>;
 
-    /// Returns the message of a reply to `command`. The header's size includes `extra` bytes that
-    /// the caller sends afterwards.
+    /// Encodes a reply to `command` as a message. The header's size includes `extra` bytes that the
+    /// caller sends afterwards.
     ///
     /// # Errors
     /// [`ReplyError`] if the reply does not suit the command or the protocol.
@@ -95,10 +95,10 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
         extra: usize,
     ) -> Result<Outgoing, ReplyError<Self::Command>>;
 
-    /// The reply to `command` in a message of a device.
+    /// Decodes the reply to `command` in a device's message.
     ///
     /// # Errors
-    /// [`DecodeError`] if the message holds no valid reply to `command`.
+    /// [`DecodeError`] if the message contains no valid reply to `command`.
     fn decode_reply<'a>(
         self,
         command: Self::Command,
@@ -117,22 +117,23 @@ pub enum ConnectStatus {
 }
 
 impl ConnectStatus {
-    /// All statuses in wire order, the same in all versions of all protocols.
+    /// All statuses in the order of the protocol, which is the same in all versions of all
+    /// protocols.
     pub(crate) const ALL: [Self; 2] = [Self::Success, Self::IncompatibleLibraryVersion];
 }
 
 /// The effect of a reply on its request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// The handshake has ended; the device reports this version as its own.
+    /// The handshake has ended. The second value is the version that the device reports as its own.
     Handshake(ConnectStatus, u16),
-    /// The first of two answers.
+    /// The request has its first of two answers.
     Started,
-    /// The last answer.
+    /// The request has its last answer.
     Ended,
 }
 
-/// A device in the field that speaks some version of a protocol.
+/// A real device that speaks a certain version of a protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldDevice {
     /// The vendor's name of the device.

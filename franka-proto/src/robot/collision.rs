@@ -23,21 +23,21 @@ macro_rules! for_thresholds {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionBehavior {
-    /// Contact, joint torques while accelerating `[N m]`.
+    /// Contact threshold of the joint torques while accelerating `[N m]`.
     pub lower_torque_thresholds_acceleration: [f64; 7],
-    /// Collision, joint torques while accelerating `[N m]`.
+    /// Collision threshold of the joint torques while accelerating `[N m]`.
     pub upper_torque_thresholds_acceleration: [f64; 7],
-    /// Contact, joint torques at constant velocity `[N m]`.
+    /// Contact threshold of the joint torques at constant velocity `[N m]`.
     pub lower_torque_thresholds_nominal: [f64; 7],
-    /// Collision, joint torques at constant velocity `[N m]`.
+    /// Collision threshold of the joint torques at constant velocity `[N m]`.
     pub upper_torque_thresholds_nominal: [f64; 7],
-    /// Contact, wrench while accelerating `[N, N m]`.
+    /// Contact threshold of the wrench while accelerating `[N, N m]`.
     pub lower_force_thresholds_acceleration: [f64; 6],
-    /// Collision, wrench while accelerating `[N, N m]`.
+    /// Collision threshold of the wrench while accelerating `[N, N m]`.
     pub upper_force_thresholds_acceleration: [f64; 6],
-    /// Contact, wrench at constant velocity `[N, N m]`.
+    /// Contact threshold of the wrench at constant velocity `[N, N m]`.
     pub lower_force_thresholds_nominal: [f64; 6],
-    /// Collision, wrench at constant velocity `[N, N m]`.
+    /// Collision threshold of the wrench at constant velocity `[N, N m]`.
     pub upper_force_thresholds_nominal: [f64; 6],
 }
 
@@ -62,9 +62,10 @@ impl CollisionBehavior {
         }
     }
 
-    /// Returns thresholds at which a light push stops the robot: contact and collision at 10 N and
-    /// 10 N m, or at 20 while the arm accelerates. They suit motions of the robot's own
-    /// controllers; compliant control presses harder. The values come from the vendor's examples.
+    /// Returns thresholds at which a light push stops the robot: 10 N and 10 N m for contact and
+    /// collision, or 20 while the arm accelerates. They suit motions of the robot's own
+    /// controllers. Compliant control presses harder than this. The values come from the vendor's
+    /// examples.
     #[must_use]
     pub fn careful() -> Self {
         Self {
@@ -76,9 +77,9 @@ impl CollisionBehavior {
         }
     }
 
-    /// Returns thresholds for pushing an arm by hand under compliant control. Contact is at 20 N
-    /// and 20 N m, collision at 60. The collision threshold is above the default force cap plus the
-    /// apparent force of friction.
+    /// Returns thresholds with which a person can push an arm under compliant control. The contact
+    /// threshold is 20 N and 20 N m, the collision threshold 60. The collision threshold exceeds
+    /// the driver's default force limit plus the apparent force of friction.
     #[must_use]
     pub fn compliant() -> Self {
         Self::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6])
@@ -91,7 +92,7 @@ impl CollisionBehavior {
         Self::uniform([100.0; 7], [100.0; 7], [100.0; 6], [100.0; 6])
     }
 
-    /// Smallest force at which the robot stops itself, `[N]`, along an axis.
+    /// Returns the smallest force along an axis at which the robot stops itself, `[N]`.
     #[must_use]
     pub fn least_force(&self) -> f64 {
         let [moving, even] = [

@@ -5,18 +5,18 @@ use core::fmt;
 use super::{Errors, MoveStatus, Refusal, Status};
 use crate::number_text::General;
 
-/// A motion that ended abnormally, with the contents of the log of its last cycles.
+/// A motion that ended abnormally, with data from the log of its last cycles.
 ///
-/// `Display` is the message of libfranka's `ControlException`: the refusal's text, and after a
+/// `Display` gives the message of libfranka's `ControlException`: the refusal's text, and after a
 /// reflex the errors and the success rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ControlFailure {
     /// The robot's answer to the `Move`.
     pub refusal: Refusal,
-    /// `reflex_reason` of the state in which the client saw the end.
+    /// `reflex_reason` of the state in which the client saw the end of the motion.
     pub reflex_reason: Errors,
-    /// From the last two records of the log; `None` if it has fewer.
+    /// Success rate, from the last two records of the log; `None` if the log has fewer.
     pub success_rate: Option<SuccessRate>,
 }
 
@@ -37,7 +37,7 @@ impl core::error::Error for ControlFailure {}
 
 /// The command success rate at the end of a motion.
 ///
-/// `Display` is the last part of libfranka's message, including the preceding line break.
+/// `Display` gives the last part of libfranka's message, including the preceding line break.
 ///
 /// ```
 /// use franka_proto::SuccessRate;
@@ -56,9 +56,9 @@ pub struct SuccessRate {
 }
 
 impl SuccessRate {
-    /// Computes the success rate as libfranka 0.21 does, from the last two records of its log. It
-    /// is the success rate in the record before the last, minus 0.01 for every state lost between
-    /// the two. The result is at least 0, where libfranka's can be negative. Times are
+    /// Computes the success rate as libfranka 0.21 does, from the last two records of its log. The
+    /// result is the rate in the record before the last, minus 0.01 for every state lost between
+    /// the two records. It is at least 0; libfranka's result can be negative. Times are
     /// `message_id`s `[ms]`.
     #[must_use]
     pub fn of_log(success_rate: f64, time: u64, last_time: u64) -> Self {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::robot::{Errors, RobotError};
 
-/// libfranka's name of the error.
+/// Serialises as libfranka's name of the error.
 impl Serialize for RobotError {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.name())
@@ -35,7 +35,7 @@ impl<'de> Deserialize<'de> for RobotError {
     }
 }
 
-/// The names of the errors, in wire order.
+/// Serialises as the names of the errors, in the order of the protocol.
 impl Serialize for Errors {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(self.iter())

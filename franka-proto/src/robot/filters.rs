@@ -3,7 +3,8 @@
 use crate::wire::service::SetFilters;
 
 /// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz. A value of
-/// 1000 disables a filter. Protocol 5 only, and deprecated: filter on the client's side instead.
+/// 1000 disables a filter. Only protocol 5 has these filters, and they are deprecated: filter on
+/// the client's side instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filters {

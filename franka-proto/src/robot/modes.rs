@@ -4,19 +4,19 @@ use core::fmt;
 
 /// The overall mode of the robot.
 ///
-/// Numbers 0 to 6 on the wire, in this order; other numbers read as [`RobotMode::Other`], as in
-/// libfranka 0.21.
+/// The bytes on the wire are 0 to 6, in this order. Other bytes are read as [`RobotMode::Other`],
+/// as in libfranka 0.21.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RobotMode {
-    /// Any other mode: in practice the brakes are closed or the robot is not ready.
+    /// Any other mode. In practice the brakes are closed, or the robot is not ready.
     #[default]
     Other,
     /// Ready for a motion.
     Idle,
     /// A motion runs.
     Move,
-    /// Guided by hand.
+    /// A person guides the arm by hand.
     Guiding,
     /// Stopped by a reflex; only a recovery ends this mode.
     Reflex,
@@ -38,7 +38,7 @@ impl RobotMode {
         Self::AutomaticErrorRecovery,
     ];
 
-    /// The mode of a wire byte; bytes without a meaning read as [`RobotMode::Other`].
+    /// Returns the mode of a wire byte; [`RobotMode::Other`] for an undefined byte.
     #[must_use]
     pub fn from_byte(byte: u8) -> Self {
         Self::ALL
@@ -47,7 +47,7 @@ impl RobotMode {
             .unwrap_or(Self::Other)
     }
 
-    /// The wire byte of this mode.
+    /// Returns the wire byte of this mode.
     #[must_use]
     pub fn byte(self) -> u8 {
         self as u8
@@ -72,8 +72,9 @@ impl fmt::Display for RobotMode {
 /// The motion generator that a state reports, in the numbering of states.
 ///
 /// A `Move` request numbers the same generators differently: see
-/// [`MoveGeneratorMode`](crate::MoveGeneratorMode), whose
-/// [`in_state`](crate::MoveGeneratorMode::in_state) gives the value to wait for.
+/// [`MoveGeneratorMode`](crate::MoveGeneratorMode). Its method
+/// [`in_state`](crate::MoveGeneratorMode::in_state) returns the value that states report during the
+/// motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MotionGeneratorMode {
@@ -97,8 +98,8 @@ pub enum MotionGeneratorMode {
 impl MotionGeneratorMode {
     /// True if the client must send motion commands: any mode except `Idle` and `None`.
     ///
-    /// Protocol 5 has no `None`, and its byte 5 decodes as `Unknown`, so one rule works for both
-    /// versions.
+    /// This rule works for both versions: protocol 5 has no `None`, and its byte 5 decodes as
+    /// `Unknown`.
     #[must_use]
     pub fn is_running(self) -> bool {
         !matches!(self, Self::Idle | Self::None)
@@ -115,7 +116,7 @@ pub enum ControllerMode {
     CartesianImpedance,
     /// The client's torques.
     ExternalController,
-    /// Any other controller: the value of an idle robot.
+    /// Any other controller. An idle robot reports this value.
     #[default]
     Other,
     /// A byte that the protocol does not define.
@@ -123,13 +124,13 @@ pub enum ControllerMode {
 }
 
 impl ControllerMode {
-    /// True if the client must send torques. The robot's own controllers never count.
+    /// True if the client must send torques. The robot's own controllers require no torques.
     #[must_use]
     pub fn is_running(self) -> bool {
         self == Self::ExternalController
     }
 
-    /// The mode of a wire byte; the same in both versions.
+    /// Returns the mode of a wire byte, which is the same in both versions.
     #[must_use]
     pub fn from_byte(byte: u8) -> Self {
         match byte {
@@ -141,7 +142,7 @@ impl ControllerMode {
         }
     }
 
-    /// The wire byte of this mode.
+    /// Returns the wire byte of this mode.
     #[must_use]
     pub fn byte(self) -> u8 {
         match self {

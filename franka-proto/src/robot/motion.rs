@@ -15,7 +15,7 @@ use crate::wire::{self, from_wire, to_wire};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MoveRequest {
-    /// The joint controller.
+    /// Controller of the motion: one of the robot's own controllers, or the client's torques.
     pub controller: MoveControllerMode,
     /// The kind of commands that the client sends.
     pub generator: MoveGeneratorMode,
@@ -23,8 +23,8 @@ pub struct MoveRequest {
     pub maximum_path_deviation: Deviation,
     /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
-    /// Joint velocities `[rad/s]` for a robot that plans between sparse joint targets; `None`
-    /// for one command per cycle. Protocol 10 only.
+    /// Largest joint velocities `[rad/s]` of an asynchronous motion, in which the robot itself
+    /// plans between sparse joint targets. `None` for one command per cycle. Protocol 10 only.
     pub asynchronous: Option<[f64; 7]>,
 }
 
@@ -55,8 +55,8 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// The deviations that libfranka 0.9 and 0.21 send with every motion: so large that they never
-    /// apply.
+    /// The deviations that libfranka 0.9 and 0.21 send with every motion. They are so large that no
+    /// motion exceeds them.
     pub const LIBFRANKA: Self = Self {
         translation: 10.0,
         rotation: 3.12,
@@ -99,7 +99,7 @@ impl MoveControllerMode {
         Self::ExternalController,
     ];
 
-    /// The mode in the robot's states while the motion runs.
+    /// Returns the mode that states report while the motion runs.
     #[must_use]
     pub fn in_state(self) -> ControllerMode {
         match self {
@@ -135,7 +135,7 @@ impl MoveGeneratorMode {
         Self::None,
     ];
 
-    /// The mode in the robot's states while the motion runs.
+    /// Returns the mode that states report while the motion runs.
     #[must_use]
     pub fn in_state(self) -> MotionGeneratorMode {
         match self {
@@ -156,7 +156,7 @@ pub(crate) struct MoveCodec {
 }
 
 impl MoveCodec {
-    /// Creates the codec of the layout with the tail `A`.
+    /// Creates the codec of the layout that ends with `A`.
     pub(crate) const fn of<A: AsynchronousPart>() -> Self {
         Self {
             decode: decode::<A>,
@@ -165,13 +165,14 @@ impl MoveCodec {
     }
 }
 
-/// The fields that a version appends to a `Move` for robots that plan between targets.
+/// The fields that a version appends to a `Move` for an asynchronous motion, in which the robot
+/// plans between targets.
 pub(crate) trait AsynchronousPart:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
     /// True if the version has these fields.
     const EXISTS: bool;
-    /// Number of modes of [`MoveGeneratorMode::ALL`] that the version has.
+    /// Number of the first modes of [`MoveGeneratorMode::ALL`] that the version has.
     const GENERATORS: usize;
     fn velocities(&self) -> Option<[f64; 7]>;
     fn of(velocities: Option<[f64; 7]>) -> Option<Self>;

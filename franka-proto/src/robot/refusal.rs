@@ -11,9 +11,9 @@ use crate::robot::RobotMode;
 
 /// A command that the robot refused or aborted.
 ///
-/// `Display` is libfranka's text byte for byte, with its quirks (libfranka 0.21, `robot_impl.h`).
-/// If a safety function refuses a stop or a recovery, the text names `Move`. For setters the text
-/// ends in a space.
+/// `Display` gives libfranka's text byte for byte, quirks included (libfranka 0.21,
+/// `robot_impl.h`). For example, if a safety function refuses a stop or a recovery, the text names
+/// `Move`. For setters the text ends in a space.
 ///
 /// ```
 /// use franka_proto::{Command, Refusal, RobotMode, SetterStatus, Status};
@@ -60,13 +60,13 @@ impl Refusal {
         self.command
     }
 
-    /// The robot's answer; never a success.
+    /// The robot's answer. It is never a success.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
     }
 
-    /// The robot's mode at that time.
+    /// The robot's mode when it refused the command.
     #[must_use]
     pub fn mode(&self) -> RobotMode {
         self.mode
@@ -205,13 +205,13 @@ impl fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// The part of the text after the command's name.
+/// Part of the text after the command's name.
 enum Reason {
     Text(&'static str),
     NotPossible,
-    /// The safety text with the name `Move`, regardless of the command.
+    /// The text about a safety function. It names `Move`, regardless of the command.
     MoveSafety,
-    /// The text of the model library, which names no command.
+    /// The text about the model library. It names no command.
     Library,
 }
 

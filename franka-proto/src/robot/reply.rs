@@ -23,7 +23,7 @@ pub enum Reply<'a> {
         /// Protocol version of the robot.
         version: u16,
     },
-    /// Answer to `Move`: two answers, unless the first is a refusal.
+    /// Answer to `Move`. A `Move` has two answers, unless the first is a refusal.
     Move(MoveStatus),
     /// Answer to `StopMove`.
     StopMove(StopStatus),
@@ -55,7 +55,7 @@ pub enum Reply<'a> {
 }
 
 impl<'a> Reply<'a> {
-    /// The status; `None` for `Connect`, whose refusal has a separate text:
+    /// The status; `None` for `Connect`. A refused `Connect` has a text of its own:
     /// [`IncompatibleVersion`](crate::IncompatibleVersion).
     #[must_use]
     pub fn status(&self) -> Option<Status> {
@@ -156,8 +156,8 @@ impl<'a> Reply<'a> {
         })
     }
 
-    /// Decodes the reply to `command` from a message of the robot; bytes after a fixed reply are
-    /// ignored.
+    /// Decodes the reply to `command` from a message of the robot. Bytes after a reply of fixed
+    /// length are ignored.
     ///
     /// # Errors
     /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownStatus`]
@@ -210,13 +210,13 @@ impl<'a> Reply<'a> {
     }
 }
 
-/// The byte of a status: its position among the version's statuses.
+/// Returns the byte of a status: its position among the version's statuses.
 fn byte<T: PartialEq>(statuses: &[T], status: T) -> Option<u8> {
     let position = statuses.iter().position(|known| *known == status)?;
     u8::try_from(position).ok()
 }
 
-/// The status of a byte.
+/// Returns the status of a byte.
 fn meaning<T: Copy>(statuses: &[T], byte: u8) -> Option<T> {
     statuses.get(usize::from(byte)).copied()
 }

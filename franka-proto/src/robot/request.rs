@@ -11,15 +11,15 @@ use crate::wire::{self, from_wire, to_wire};
 
 /// A request with its parameters.
 ///
-/// Ranges are not checked here: the robot checks them and answers.
+/// This crate does not check ranges. The robot checks them and answers.
 // A box would require an allocator, and few requests exist at a time.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port where it expects states.
+    /// Opens a session: the client's version and the port on which it expects states.
     Connect {
-        /// Protocol version of the client; it may be unknown to this crate.
+        /// Protocol version of the client. It may be unknown to this crate.
         version: u16,
         /// UDP port of the client.
         udp_port: u16,
@@ -30,25 +30,25 @@ pub enum Request {
     StopMove,
     /// Sets the thresholds of contact and collision.
     SetCollisionBehavior(CollisionBehavior),
-    /// Joint stiffnesses of the robot's own controller, 0 to 14250 `[N m/rad]`.
+    /// Sets the joint stiffnesses of the robot's own controller, 0 to 14250 `[N m/rad]`.
     SetJointImpedance([f64; 7]),
-    /// Stiffnesses of the robot's own Cartesian controller in the stiffness frame: 10 to 3000
-    /// `[N/m]`, then 1 to 300 `[N m/rad]`.
+    /// Sets the stiffnesses of the robot's own Cartesian controller in the stiffness frame: 10 to
+    /// 3000 `[N/m]`, then 1 to 300 `[N m/rad]`.
     SetCartesianImpedance([f64; 6]),
     /// Sets the axes that can be guided by hand.
     SetGuidingMode {
-        /// x, y, z, roll, pitch, yaw; true is free.
+        /// The axes x, y, z, roll, pitch, yaw; true is free.
         guiding_mode: [bool; 6],
         /// The elbow; true is free.
         nullspace: bool,
     },
-    /// `EE_T_K`, column-major `[m]`.
+    /// Sets the stiffness frame, `EE_T_K`, column-major `[m]`.
     SetEEToK([f64; 16]),
-    /// `NE_T_EE`, column-major `[m]`.
+    /// Sets the end-effector frame, `NE_T_EE`, column-major `[m]`.
     SetNEToEE([f64; 16]),
     /// Sets the load.
     SetLoad(Load),
-    /// Clears errors after a reflex; answered when the recovery has ended.
+    /// Clears errors after a reflex. The robot answers when the recovery has ended.
     AutomaticErrorRecovery,
     /// Fetches the robot's description as URDF text; protocol 10 only.
     GetRobotModel,
@@ -174,7 +174,7 @@ impl Request {
         })
     }
 
-    /// Decodes the request from a client's message; bytes after its struct are ignored.
+    /// Decodes the request from a client's message. Bytes after the request's struct are ignored.
     ///
     /// # Errors
     /// [`DecodeError::UnknownCommand`] if the version has no command with this number,

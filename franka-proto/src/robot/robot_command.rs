@@ -9,8 +9,9 @@ use crate::wire::{self, from_wire, to_wire};
 
 /// The client's command for one cycle; the field names are the vendor's.
 ///
-/// Only the fields of the active generator and controller count; the others stay zero. The robot
-/// reads every field of the half that it uses and ignores the other half.
+/// Only the fields of the active generator and controller count; leave the other fields zero. A
+/// command has two halves, for the generator and the controller. The robot reads every field of a
+/// half that it uses and ignores the other half.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotCommand {
@@ -36,12 +37,12 @@ pub struct RobotCommand {
 }
 
 impl RobotCommand {
-    /// Length of the longest datagram of any version in bytes. A buffer of this size is always
+    /// Length in bytes of the longest datagram of any version. A buffer of this size is always
     /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotCommand<u8>>();
 
-    /// Decodes a datagram of a client. Bytes beyond the struct are ignored, because the kernel
-    /// truncates real datagrams in the same way.
+    /// Decodes a datagram of a client. Additional bytes are ignored. The kernel truncates real
+    /// datagrams in the same way.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command has.

@@ -7,7 +7,7 @@ macro_rules! robot_errors {
     ($($variant:ident = $text:literal,)*) => {
         /// One of the 41 reasons for which a robot stops itself.
         ///
-        /// The order is the wire order, the same in protocols 5 and 10; the texts come from
+        /// The order is that of the wire, the same in protocols 5 and 10. The texts come from
         /// libfranka 0.21.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u8)]
@@ -106,7 +106,7 @@ impl fmt::Display for RobotError {
 
 /// A set of robot errors.
 ///
-/// `Display` is libfranka's list: `["joint_reflex", "cartesian_reflex"]`, or `[]`.
+/// `Display` gives libfranka's list: `["joint_reflex", "cartesian_reflex"]`, or `[]`.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Errors(u64);
 
@@ -124,7 +124,7 @@ impl Errors {
         Self(bits)
     }
 
-    /// The flags of the wire: one byte each, 0 or 1.
+    /// Returns the flags for the wire: one byte each, 0 or 1.
     #[must_use]
     pub fn to_flags(self) -> [u8; 41] {
         core::array::from_fn(|index| u8::from(self.0 >> index & 1 != 0))
@@ -136,12 +136,12 @@ impl Errors {
         self.0 & error.bit() != 0
     }
 
-    /// Adds `error`.
+    /// Adds `error` to the set.
     pub fn insert(&mut self, error: RobotError) {
         self.0 |= error.bit();
     }
 
-    /// Removes `error`.
+    /// Removes `error` from the set.
     pub fn remove(&mut self, error: RobotError) {
         self.0 &= !error.bit();
     }
@@ -164,7 +164,7 @@ impl Errors {
         self.0.count_ones() as usize
     }
 
-    /// The set as an integer: bit `n` is the error with index `n`.
+    /// Returns the set as an integer: bit `n` is the error with index `n`.
     #[must_use]
     pub fn bits(self) -> u64 {
         self.0
@@ -176,7 +176,7 @@ impl Errors {
         Self(bits & ((1 << RobotError::ALL.len()) - 1))
     }
 
-    /// The errors in wire order.
+    /// Returns the errors in the order of the wire.
     pub fn iter(self) -> impl Iterator<Item = RobotError> {
         RobotError::ALL
             .into_iter()

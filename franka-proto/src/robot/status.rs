@@ -1,13 +1,13 @@
 //! The robot's answers, independent of the version. The version table contains their bytes.
 
-/// Answer to `Move`. If the motion starts, [`MoveStatus::MotionStarted`] comes first and another
-/// status follows when the motion ends. Otherwise the only answer is another status.
+/// Answer to `Move`. If the motion starts, the first answer is [`MoveStatus::MotionStarted`], and a
+/// second answer follows when the motion ends. Otherwise, another status is the only answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveStatus {
-    /// The motion ended as the client asked.
+    /// The motion ended as the client requested.
     Success,
-    /// The motion starts; another answer follows at its end.
+    /// The motion starts. Another answer follows when it ends.
     MotionStarted,
     /// A stop ended the motion.
     Preempted,
@@ -15,19 +15,19 @@ pub enum MoveStatus {
     PreemptedDueToActivatedSafetyFunctions,
     /// A safety function forbids the motion; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
-    /// The robot's mode does not allow it.
+    /// The robot's mode does not allow a motion.
     CommandNotPossibleRejected,
     /// A Cartesian motion cannot start at a singular pose.
     StartAtSingularPoseRejected,
     /// A deviation or mode is out of range.
     InvalidArgumentRejected,
-    /// A reflex ended the motion; the state's `reflex_reason` contains the cause.
+    /// A reflex ended the motion. The state's `reflex_reason` contains the cause.
     ReflexAborted,
     /// The user stop ended the motion.
     EmergencyAborted,
     /// A command was invalid.
     InputErrorAborted,
-    /// Something else ended the motion.
+    /// Another event ended the motion.
     Aborted,
 }
 
@@ -37,9 +37,9 @@ pub enum MoveStatus {
 pub enum StopStatus {
     /// The arm stops.
     Success,
-    /// The robot's mode does not allow it.
+    /// The robot's mode does not allow a stop.
     CommandNotPossibleRejected,
-    /// A safety function forbids it; protocol 10 only.
+    /// A safety function forbids the stop; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
     /// The user stop ended the motion first.
     EmergencyAborted,
@@ -53,13 +53,13 @@ pub enum StopStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetterStatus {
-    /// The value applies from now on.
+    /// The robot uses the new value from now on.
     Success,
-    /// The robot's mode does not allow it.
+    /// The robot's mode does not allow the change.
     CommandNotPossibleRejected,
     /// The value is out of range.
     InvalidArgumentRejected,
-    /// A safety function forbids it; protocol 10 only.
+    /// A safety function forbids the change; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
 }
 
@@ -69,9 +69,9 @@ pub enum SetterStatus {
 pub enum RecoveryStatus {
     /// The errors are cleared.
     Success,
-    /// The robot's mode does not allow it.
+    /// The robot's mode does not allow a recovery.
     CommandNotPossibleRejected,
-    /// A safety function forbids it; protocol 10 only.
+    /// A safety function forbids the recovery; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
     /// A person must move the arm first.
     ManualErrorRecoveryRequiredRejected,
@@ -79,7 +79,7 @@ pub enum RecoveryStatus {
     ReflexAborted,
     /// The user stop ended the recovery.
     EmergencyAborted,
-    /// Something else ended the recovery.
+    /// Another event ended the recovery.
     Aborted,
 }
 
@@ -89,9 +89,9 @@ pub enum RecoveryStatus {
 pub enum ModelStatus {
     /// The description follows.
     Success,
-    /// The robot's mode does not allow it.
+    /// The robot's mode does not allow the request.
     CommandNotPossibleRejected,
-    /// A safety function forbids it.
+    /// A safety function forbids the request.
     CommandRejectedDueToActivatedSafetyFunctions,
 }
 

@@ -1,6 +1,6 @@
 //! The version table: one row per version, with all differences between versions.
 //!
-//! Numbers of commands and statuses are positions in the lists. Sources: libfranka-common,
+//! The number of a command or a status is its position in its list. Sources: libfranka-common,
 //! `research_interface/robot/service_types.h` and `rbk_types.h`, as libfranka 0.9 (protocol 5) and
 //! 0.21 (protocol 10) use them.
 
@@ -16,16 +16,16 @@ use crate::protocol::ConnectStatus;
 use crate::version::Version;
 use crate::wire::{self, F32, F64};
 
-/// The version-specific properties.
+/// Properties that depend on the version.
 impl Version {
-    /// Number of a command; `None` if the version does not have it.
+    /// Number of a command; `None` if the version does not have this command.
     #[must_use]
     pub fn command_number(self, command: Command) -> Option<u32> {
         let position = self.table().commands.iter().position(|&c| c == command)?;
         u32::try_from(position).ok()
     }
 
-    /// Command with this number; `None` if the version does not have it.
+    /// Command with this number; `None` if the version does not have such a command.
     #[must_use]
     pub fn command_from_number(self, number: u32) -> Option<Command> {
         let index = usize::try_from(number).ok()?;
@@ -38,29 +38,29 @@ impl Version {
         self.table().commands.contains(&command)
     }
 
-    /// Length of a state's datagram in bytes.
+    /// Length in bytes of the datagram of a state.
     #[must_use]
     pub fn state_size(self) -> usize {
         self.table().state_codec.size
     }
 
-    /// Length of a command's datagram in bytes.
+    /// Length in bytes of the datagram of a command.
     #[must_use]
     pub fn command_size(self) -> usize {
         self.table().command_codec.size
     }
 
-    /// Returns the motion generator to request when the client commands torques alone.
+    /// Returns the motion generator to request if the client commands only torques.
     ///
     /// Protocol 10 has `MoveGeneratorMode::None`, and the motion ends with
     /// `torque_command_finished`. In protocol 5 a joint velocity generator runs in parallel with
-    /// the torques. It receives zeros, and its `motion_generation_finished` ends the motion.
+    /// the torques. Send it zeros; `motion_generation_finished` ends the motion.
     #[must_use]
     pub fn torque_generator(self) -> MoveGeneratorMode {
         self.table().torque_generator
     }
 
-    /// True if a robot can plan between sparse joint targets:
+    /// True if a robot of this version can itself plan between sparse joint targets:
     /// [`MoveRequest::asynchronous`](crate::MoveRequest::asynchronous).
     #[must_use]
     pub fn has_asynchronous_motion(self) -> bool {
@@ -89,7 +89,7 @@ impl Version {
     }
 }
 
-/// One version's row.
+/// One row of the version table.
 pub(crate) struct Table {
     /// Commands by number.
     pub(crate) commands: &'static [Command],
@@ -101,7 +101,7 @@ pub(crate) struct Table {
     pub(crate) recovery: &'static [RecoveryStatus],
     pub(crate) model: &'static [ModelStatus],
     pub(crate) library: &'static [LibraryStatus],
-    /// Layouts.
+    /// Layouts of the datagrams and of `Move`.
     pub(crate) state_codec: StateCodec,
     pub(crate) command_codec: CommandCodec,
     pub(crate) move_codec: MoveCodec,

@@ -3,11 +3,11 @@
 use crate::wire::service::CartesianLimit;
 use crate::wire::{from_wire, to_wire};
 
-/// A cuboid that the robot must not leave, configured in Desk. Protocol 5 only.
+/// A virtual wall: a cuboid that the robot must not leave, configured in Desk. Protocol 5 only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VirtualWall {
-    /// Corner of the cuboid in its own frame `[m]`.
+    /// Corner of the cuboid in the cuboid's frame `[m]`.
     pub object_world_size: [f64; 3],
     /// Pose of the cuboid in the base frame, column-major `[m]` (libfranka's `p_frame`).
     pub object_frame: [f64; 16],

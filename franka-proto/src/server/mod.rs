@@ -7,10 +7,10 @@
 //!     +----+ Connect, other version: refused
 //! ```
 //!
-//! The driver owns the sockets and the robot. It cuts the received bytes into messages
-//! ([`framing::next_message_within`](crate::framing::next_message_within)) and passes each to
-//! [`Session::on_message`]. It sends the messages in the events and the results of
-//! [`Session::reply`], each with one write.
+//! The driver owns the sockets and the robot. It splits the received bytes into messages
+//! ([`framing::next_message_within`](crate::framing::next_message_within)) and passes each message
+//! to [`Session::on_message`]. It sends the messages that the events contain and that
+//! [`Session::reply`] returns, each with one write.
 
 mod session;
 

@@ -12,8 +12,8 @@ use crate::protocol::{Progress, Protocol};
 use crate::robot::{LibraryStatus, ModelStatus, Reply};
 use crate::version::Version;
 
-/// One connection of a client, from its first byte to its last. The device is a robot, unless `P`
-/// is another protocol.
+/// One connection of a client, from its first byte to its last. The device is a robot, or an end
+/// effector if `P` is its protocol.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -39,41 +39,41 @@ pub enum Event<P: Protocol = Version> {
         id: CommandId,
         /// UDP port of the client.
         udp_port: u16,
-        /// The answer of the session.
+        /// The answer to send.
         reply: Outgoing,
     },
     /// A client of another version connected. Send `reply`; the client then closes the connection.
     Incompatible {
         /// The version that the client announces.
         version: u16,
-        /// The answer of the session.
+        /// The answer to send.
         reply: Outgoing,
     },
     /// A request to process. Answer it with [`Session::reply`], or with `Session::model_header` for
     /// a model.
     Request {
-        /// The id for the answer.
+        /// The id to use in the answer.
         id: CommandId,
         /// The request.
         request: P::Request,
     },
-    /// A request with an undefined enumerator, such as a `Move` with an unknown mode. A robot
-    /// answers it as an invalid argument. Send `reply`; the request is then complete.
+    /// A request with an undefined enumerator, such as a `Move` with an unknown mode. As a robot
+    /// does, `reply` reports an invalid argument. Send `reply`; the request is then complete.
     Rejected {
         /// The id of the request.
         id: CommandId,
         /// The decoding error.
         error: DecodeError<P::Command>,
-        /// The answer of the session.
+        /// The answer to send.
         reply: Outgoing,
     },
 }
 
 impl<P: Protocol> Session<P> {
-    /// Limit of requests that may wait for replies at the same time.
+    /// Largest number of requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
-    /// A session of a device that speaks `version`.
+    /// Creates a session of a device that speaks `version`.
     #[must_use]
     pub fn new(version: P) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl<P: Protocol> Session<P> {
         self.version
     }
 
-    /// True if the handshake is done.
+    /// True if the handshake has succeeded.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.phase == ConnectionPhase::Open
@@ -98,7 +98,7 @@ impl<P: Protocol> Session<P> {
     /// Processes a message of the client and returns the resulting event.
     ///
     /// # Errors
-    /// [`Violation`]: disconnect the client.
+    /// [`Violation`] if the client violated the protocol. Disconnect the client.
     pub fn on_message(&mut self, message: Message<'_>) -> Result<Event<P>, Violation<P::Command>> {
         let id = message.header.id();
         let request = match self.version.decode_request(&message) {
@@ -123,12 +123,12 @@ impl<P: Protocol> Session<P> {
     /// Returns the message that answers a request.
     ///
     /// A robot answers `Move` twice:
-    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then the result. It answers
-    /// a refused `Move` once. Models are sent with [`Session::model_header`] or
-    /// [`Session::library_header`] instead, unless they are refused.
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then the result. A robot
+    /// answers a refused `Move` once. To send a model, use [`Session::model_header`] or
+    /// [`Session::library_header`] instead; use this method to refuse one.
     ///
     /// # Errors
-    /// [`ReplyError`]; the session is then unchanged.
+    /// [`ReplyError`] if the reply cannot be sent. The session is then unchanged.
     pub fn reply(
         &mut self,
         id: CommandId,
@@ -176,7 +176,8 @@ impl<P: Protocol> Session<P> {
         }
     }
 
-    /// Answers a message with an undefined enumerator; other unreadable messages get no answer.
+    /// Answers a message with an undefined enumerator. Other messages that cannot be decoded get no
+    /// answer.
     fn on_unreadable(
         &mut self,
         message: &Message<'_>,

@@ -12,7 +12,8 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// The commands of the vacuum gripper. Each has one reply, sent when the action has ended.
+/// The commands of the vacuum gripper. The gripper replies once to each command, when the action
+/// has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
@@ -26,11 +27,11 @@ pub enum Command {
     Stop,
 }
 
-/// A request with its parameters. Ranges are not checked here: the gripper checks them.
+/// A request with its parameters. This crate does not check ranges; the gripper does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port where it expects states.
+    /// Opens a session: the client's version and the port on which it expects states.
     Connect {
         /// Protocol version of the client.
         version: u16,
@@ -76,7 +77,7 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// The profile of a wire byte.
+    /// Returns the profile of a wire byte.
     ///
     /// # Errors
     /// `UndefinedProfile` if the byte is above 3.
@@ -93,7 +94,8 @@ impl Profile {
     }
 }
 
-/// An undefined profile. The text is libfranka's; libfranka sends no request in this case.
+/// Error: the profile is not defined. The text is libfranka's. Like libfranka, the client then
+/// sends no request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("Vacuum Gripper: Vacuum profile not defined!")]
 pub struct UndefinedProfile(pub u8);

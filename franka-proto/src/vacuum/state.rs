@@ -1,4 +1,4 @@
-//! The datagram of the vacuum gripper.
+//! The datagram that the vacuum gripper sends.
 
 use core::fmt;
 
@@ -22,9 +22,9 @@ pub struct State {
     pub part_present: bool,
     /// Status light of the device.
     pub device_status: DeviceStatus,
-    /// Power of the pump `[%]`. libfranka narrows it to 16 bits without a sign.
+    /// Power of the pump `[%]`. libfranka converts it to 16 bits without a sign.
     pub actual_power: i32,
-    /// Vacuum `[mbar]`. libfranka narrows it to 16 bits without a sign.
+    /// Vacuum `[mbar]`. libfranka converts it to 16 bits without a sign.
     pub vacuum: i32,
 }
 
@@ -46,7 +46,7 @@ pub enum DeviceStatus {
 }
 
 impl DeviceStatus {
-    /// The status of a wire byte.
+    /// Returns the status of a wire byte.
     #[must_use]
     pub fn from_byte(byte: u8) -> Self {
         match byte {
@@ -87,7 +87,7 @@ impl State {
     /// Length of the datagram in bytes.
     pub const SIZE: usize = size_of::<VacuumGripperState>();
 
-    /// Reads a datagram of the vacuum gripper. Bytes beyond the struct are ignored.
+    /// Reads a datagram of the vacuum gripper. Additional bytes are ignored.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.

@@ -47,7 +47,7 @@ pub struct GripperState {
     pub message_id: U32,
     /// Distance of the fingers `[m]`.
     pub width: F64,
-    /// Distance of the open fingers `[m]`, estimated by homing.
+    /// Distance of the fully open fingers `[m]`, measured by homing.
     pub max_width: F64,
     /// Non-zero if the hand holds an object.
     pub is_grasped: u8,

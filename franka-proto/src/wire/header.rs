@@ -10,22 +10,22 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct CommandHeader<N> {
-    /// Number of the command, by version.
+    /// Number of the command, which depends on the version.
     pub command: N,
     /// Counter of the client's requests.
     pub command_id: U32,
-    /// Length of the message in bytes, with this header.
+    /// Length of the message in bytes, header included.
     pub size: U32,
 }
 
-/// The number of a command in a header, with the width of the service.
+/// Number of a command in a header. Its width depends on the service.
 pub trait CommandNumber:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
     /// The number as `u32`.
     fn get(self) -> u32;
 
-    /// Creates the wire number. Excess bits are cut off; no service has so large a number.
+    /// Creates the wire number. Excess bits are cut off, but no service has such large numbers.
     fn new(number: u32) -> Self;
 }
 

@@ -1,11 +1,11 @@
 //! The wire structs: little-endian, packed, declared once for all versions and services.
 //!
-//! Type parameters cover the differences between the versions. They are the width of a state's
-//! numbers ([`Real`]), and the parts that protocol 10 appended and protocol 5 fills with `()`. The
-//! field names are the vendor's. Size, alignment and every offset are asserted at compile time.
+//! Type parameters cover the differences between the versions. These are the width of a state's
+//! numbers ([`Real`]), and the parts that only protocol 10 has; protocol 5 has `()` in their place.
+//! The field names are the vendor's. Size, alignment and every offset are asserted at compile time.
 //!
 //! All types here are plain bytes: `zerocopy` reads them from any sufficiently long slice, and no
-//! accessor can panic. Meaning (enums, options, `f64`) is added one level above.
+//! accessor can panic. The types outside of this module add meaning: enums, options, `f64`.
 
 /// Asserts at compile time that a wire struct has no padding and its fields have the expected
 /// offsets.

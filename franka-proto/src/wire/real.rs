@@ -9,14 +9,14 @@ pub type F32 = zerocopy::byteorder::little_endian::F32;
 /// both versions.
 pub type F64 = zerocopy::byteorder::little_endian::F64;
 
-/// A floating-point number on the wire, with the width of the version.
+/// A floating-point number on the wire. Its width depends on the version.
 pub trait Real:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
-    /// Returns the exact value.
+    /// Returns the value as `f64`, without loss.
     fn widen(self) -> f64;
 
-    /// Returns the nearest value with the wire's width.
+    /// Returns the nearest value with the width of the wire.
     fn narrow(value: f64) -> Self;
 
     /// Returns the sum, rounded to the wire's width.

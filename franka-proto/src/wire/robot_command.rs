@@ -1,4 +1,4 @@
-//! The client's datagram: one per state while a motion runs.
+//! The client's datagram. The client sends one for each state while a motion runs.
 #![allow(non_snake_case)]
 
 use zerocopy::byteorder::little_endian::U64;
@@ -28,7 +28,7 @@ pub struct MotionGeneratorCommand {
 
 /// The client's command for a torque controller.
 ///
-/// `Finish` is the byte that protocol 10 appended; protocol 5 has `()` in its place.
+/// `Finish` is the byte that only protocol 10 has; protocol 5 has `()` in its place.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct ControllerCommand<Finish> {
@@ -44,9 +44,9 @@ pub struct ControllerCommand<Finish> {
 pub struct RobotCommand<Finish> {
     /// `message_id` of the state that this command answers.
     pub message_id: U64,
-    /// The half for the motion generator.
+    /// Part for the motion generator.
     pub motion: MotionGeneratorCommand,
-    /// The half for the torque controller.
+    /// Part for the torque controller.
     pub control: ControllerCommand<Finish>,
 }
 

@@ -1,4 +1,4 @@
-//! The robot's datagram: one per millisecond.
+//! The robot's datagram. The robot sends one per millisecond.
 #![allow(non_snake_case)]
 
 use zerocopy::byteorder::little_endian::U64;
@@ -9,7 +9,7 @@ use super::{F32, F64};
 /// `RobotState` of `research_interface/robot/rbk_types.h`, protocols 5 and 10.
 ///
 /// `R` is the number type of the version: [`F32`] in protocol 10, [`F64`] in protocol 5. `A` is the
-/// block that protocol 10 inserted, [`Accelerometers`]; protocol 5 has `()` in its place. Units and
+/// block that only protocol 10 has, [`Accelerometers`]; protocol 5 has `()` in its place. Units and
 /// frames are the same as in [`crate::RobotState`].
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
@@ -60,13 +60,13 @@ pub struct RobotState<R, A> {
     pub dq_d: [R; 7],
     /// Desired joint accelerations.
     pub ddq_d: [R; 7],
-    /// Contact level of each joint, now: 0 or 1.
+    /// Current contact level of each joint: 0 or 1.
     pub joint_contact: [R; 7],
-    /// Contact level of each Cartesian axis, now: 0 or 1.
+    /// Current contact level of each Cartesian axis: 0 or 1.
     pub cartesian_contact: [R; 6],
-    /// Collision level of each joint, latched until the recovery: 0 or 1.
+    /// Collision level of each joint: 0 or 1. It stays set until the recovery.
     pub joint_collision: [R; 7],
-    /// Collision level of each Cartesian axis, latched until the recovery: 0 or 1.
+    /// Collision level of each Cartesian axis: 0 or 1. It stays set until the recovery.
     pub cartesian_collision: [R; 6],
     /// Estimated external joint torques, low-passed.
     pub tau_ext_hat_filtered: [R; 7],
@@ -94,13 +94,13 @@ pub struct RobotState<R, A> {
     pub theta: [R; 7],
     /// Motor velocities.
     pub dtheta: [R; 7],
-    /// The accelerometers, if the version has them.
+    /// The accelerometers; `()` if the version has none.
     pub accelerometers: A,
     /// Active motion generator, in the numbering of states.
     pub motion_generator_mode: u8,
     /// Active controller, in the numbering of states.
     pub controller_mode: u8,
-    /// Errors now, one flag each.
+    /// Errors that block the robot at present, one flag each.
     pub errors: [u8; 41],
     /// Errors that ended the last motion, one flag each.
     pub reflex_reason: [u8; 41],

@@ -14,7 +14,7 @@ pub(crate) struct StateCodec {
     pub(crate) size: usize,
     pub(super) decode: fn(&[u8]) -> Result<RobotState, DecodeError>,
     pub(super) encode: fn(&RobotState, &mut [u8]) -> Result<usize, EncodeError>,
-    /// Adds two numbers in the precision of the layout.
+    /// Adds two numbers with the precision of the layout.
     pub(super) add: fn(f64, f64) -> f64,
 }
 
@@ -37,7 +37,7 @@ pub(crate) trait AccelerometerBlock:
 {
     /// True if the layout has accelerometers.
     const EXISTS: bool;
-    /// The upper and the lower sensors; zero without accelerometers.
+    /// Readings of the upper and the lower sensors; zero without accelerometers.
     fn values(&self) -> [[[f32; 3]; 6]; 2];
     fn of(top: &[[f32; 3]; 6], bottom: &[[f32; 3]; 6]) -> Self;
 }
@@ -71,7 +71,7 @@ impl AccelerometerBlock for () {
     fn of(_: &[[f32; 3]; 6], _: &[[f32; 3]; 6]) -> Self {}
 }
 
-/// The motion generator modes of a version; the byte is the position in the list.
+/// The motion generator modes of a version. The byte of a mode is its position in the list.
 pub(crate) trait GeneratorModes {
     const MODES: &'static [MotionGeneratorMode];
 }

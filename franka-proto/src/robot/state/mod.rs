@@ -25,7 +25,7 @@ use crate::wire;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotState {
-    /// The robot's clock: milliseconds, one more with each cycle.
+    /// The robot's clock in milliseconds. It advances by one with each cycle.
     pub message_id: u64,
     /// Measured pose of the end effector in the base frame; column-major, `[m]`.
     pub O_T_EE: [f64; 16],
@@ -71,13 +71,13 @@ pub struct RobotState {
     pub dq_d: [f64; 7],
     /// Desired joint accelerations; `[rad/s^2]`.
     pub ddq_d: [f64; 7],
-    /// Contact level of each joint, now: 0 or 1.
+    /// Current contact level of each joint: 0 or 1.
     pub joint_contact: [f64; 7],
-    /// Contact level of each Cartesian axis, now: 0 or 1.
+    /// Current contact level of each Cartesian axis: 0 or 1.
     pub cartesian_contact: [f64; 6],
-    /// Collision level of each joint, latched until the recovery: 0 or 1.
+    /// Collision level of each joint: 0 or 1. It stays set until the recovery.
     pub joint_collision: [f64; 7],
-    /// Collision level of each Cartesian axis, latched until the recovery: 0 or 1.
+    /// Collision level of each Cartesian axis: 0 or 1. It stays set until the recovery.
     pub cartesian_collision: [f64; 6],
     /// Estimated external joint torques, low-passed; `[N m]`.
     pub tau_ext_hat_filtered: [f64; 7],
@@ -95,15 +95,15 @@ pub struct RobotState {
     pub O_dP_EE_d: [f64; 6],
     /// Acceleration of the base, gravity included; `[m/s^2]`.
     pub O_ddP_O: [f64; 3],
-    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. Zeros under joint
-    /// setpoints: see [`commanded_elbow`](Self::commanded_elbow).
+    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. Zero while the client
+    /// commands joint motions: see [`commanded_elbow`](Self::commanded_elbow).
     pub elbow_c: [f64; 2],
     /// Velocity of the commanded elbow: velocity of joint 3 `[rad/s]`, then 0.
     pub delbow_c: [f64; 2],
     /// Acceleration of the commanded elbow: acceleration of joint 3 `[rad/s^2]`, then 0.
     pub ddelbow_c: [f64; 2],
-    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. Zeros under
-    /// joint setpoints: see [`commanded_pose`](Self::commanded_pose).
+    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. Zero while
+    /// the client commands joint motions: see [`commanded_pose`](Self::commanded_pose).
     pub O_T_EE_c: [f64; 16],
     /// Last commanded twist of the end effector in the base frame; linear then angular, `[m/s,
     /// rad/s]`.
@@ -124,7 +124,7 @@ pub struct RobotState {
     pub motion_generator_mode: MotionGeneratorMode,
     /// Active controller.
     pub controller_mode: ControllerMode,
-    /// Errors that block the robot now (libfranka's `current_errors`).
+    /// Errors that block the robot at present (libfranka's `current_errors`).
     pub errors: Errors,
     /// Errors that ended the last motion (libfranka's `last_motion_errors`).
     pub reflex_reason: Errors,
@@ -135,12 +135,12 @@ pub struct RobotState {
 }
 
 impl RobotState {
-    /// Length of the longest datagram of any version in bytes. A buffer of this size is always
+    /// Length in bytes of the longest datagram of any version. A buffer of this size is always
     /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotState<wire::F64, ()>>();
 
-    /// Decodes a datagram of the robot. Bytes beyond the struct are ignored. The kernel truncates
-    /// them in the same way for a client with a buffer of the struct's size.
+    /// Decodes a datagram of the robot. Additional bytes are ignored. The kernel truncates
+    /// datagrams in the same way for a client with a buffer of the struct's size.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
@@ -151,8 +151,8 @@ impl RobotState {
 
     /// Writes the datagram for a client into `buffer` and returns its length in bytes.
     ///
-    /// Numbers are rounded to the width of the version. Protocol 5 has no accelerometers, so they
-    /// are omitted.
+    /// Numbers are rounded to the precision of the version. Protocol 5 has no accelerometers, so
+    /// they are omitted.
     ///
     /// # Errors
     /// `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] is always
@@ -165,9 +165,9 @@ impl RobotState {
     /// Last commanded pose of the end effector, column-major: the first of `O_T_EE_c` and
     /// `O_T_EE_d` that is a rigid transformation, or else `O_T_EE`.
     ///
-    /// Robots leave `O_T_EE_c` at zero while they move by joint setpoints (recorded on a Franka
-    /// Research 3), and a zero matrix is not a pose. A matrix with a number that is not finite is
-    /// returned unchanged: no caller may continue from a broken state.
+    /// Robots leave `O_T_EE_c` at zero while the client commands joint motions (recorded on a
+    /// Franka Research 3), and a zero matrix is not a pose. A matrix with a non-finite number is
+    /// returned unchanged, so that no caller continues from a broken state.
     #[must_use]
     pub fn commanded_pose(&self) -> &[f64; 16] {
         let poses = [&self.O_T_EE_c, &self.O_T_EE_d];
@@ -178,8 +178,8 @@ impl RobotState {
         found.unwrap_or(&self.O_T_EE)
     }
 
-    /// Last commanded elbow: `elbow_c`, or else `elbow_d`, or else `elbow`. Robots leave `elbow_c`
-    /// at zero whenever `O_T_EE_c` is zero.
+    /// Last commanded elbow: `elbow_c` if it is set, otherwise `elbow_d` if it is set, otherwise
+    /// `elbow`. Robots leave `elbow_c` at zero whenever `O_T_EE_c` is zero.
     #[must_use]
     pub fn commanded_elbow(&self) -> [f64; 2] {
         let elbows = [self.elbow_c, self.elbow_d];
@@ -200,7 +200,7 @@ impl RobotState {
     }
 
     /// True if a motion of the client runs: [`generator_running`](Self::generator_running) or
-    /// [`controller_running`](Self::controller_running). A motion has ended when this becomes
+    /// [`controller_running`](Self::controller_running). A motion has ended when the value becomes
     /// false, regardless of [`RobotState::robot_mode`] (libfranka 0.21).
     #[must_use]
     pub fn motion_running(&self) -> bool {
@@ -210,8 +210,8 @@ impl RobotState {
     /// The estimated external wrench in the axes of the base, with the torque about the origin of
     /// the stiffness frame; positive when the robot pushes the environment, `[N, N m]`.
     ///
-    /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) has the torque about the origin of the base, where a
-    /// force of 10 N at half a metre counts as 5 N m.
+    /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) has the torque about the origin of the base: a force
+    /// of 10 N at a distance of half a metre adds 5 N m.
     #[must_use]
     pub fn wrench_at_stiffness_frame(&self) -> [f64; 6] {
         let [x, y, z, ..] = self.O_F_ext_hat_K;
@@ -220,11 +220,11 @@ impl RobotState {
         [x, y, z, a, b, c]
     }
 
-    /// Returns end effector and load as one body, bit-identical to libfranka's result for a state
-    /// of this version.
+    /// Returns end effector and load as one body. The result is bit-identical to libfranka's result
+    /// for a state of this version.
     ///
-    /// The masses are added in the precision of the version's numbers, as in libfranka; everything
-    /// else is computed as `f64`.
+    /// As in libfranka, the masses are added with the precision of the version's numbers.
+    /// Everything else is computed as `f64`.
     #[must_use]
     pub fn total_load(&self, version: Version) -> TotalLoad {
         let m_total = (version.table().state_codec.add)(self.m_ee, self.m_load);
@@ -238,7 +238,7 @@ fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 /// True if a column-major matrix is a rigid transformation, within the rounding of the vendor's
-/// constants. `franka_model::transform` also accepts every matrix that passes here.
+/// constants. Every matrix that passes is also valid for `franka_model::transform`.
 fn is_rigid(pose: &[f64; 16]) -> bool {
     let [x, y, z] = [0, 4, 8].map(|i| [pose[i], pose[i + 1], pose[i + 2]]);
     if [pose[3], pose[7], pose[11], pose[15]] != [0.0, 0.0, 0.0, 1.0] {

@@ -6,9 +6,9 @@ use super::RobotState;
 use crate::number_text::General;
 use crate::version::Version;
 
-/// A state in the format of libfranka's `operator<<`: a JSON object on one line.
+/// Prints a state in the format of libfranka's `operator<<`: a JSON object on one line.
 ///
-/// Numbers have six significant digits. Created by [`RobotState::text`].
+/// Numbers have six significant digits. [`RobotState::text`] creates this value.
 #[derive(Clone, Copy, Debug)]
 pub struct StateText<'a> {
     state: &'a RobotState,

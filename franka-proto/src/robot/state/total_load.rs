@@ -18,8 +18,8 @@ pub struct TotalLoad {
 
 impl TotalLoad {
     /// Computes the sums of libfranka 0.21, `load_calculations.cpp`, in its order of operations.
-    /// The centre of mass is the weighted mean of both bodies. Each inertia is moved to it by the
-    /// parallel axis theorem. A body without mass has no inertia.
+    /// The centre of mass is the weighted mean of both bodies. The parallel axis theorem moves each
+    /// inertia to this mean. A body without mass has no inertia.
     pub(super) fn of(state: &RobotState, m_total: f64) -> Self {
         // The sum as `f64`; in protocol 10, `m_total` has single precision.
         let mass = state.m_ee + state.m_load;
@@ -58,8 +58,8 @@ fn about_flange(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> [f64; 9] {
 }
 
 /// `mass * S(x)^2` with the skew matrix `S`: minus the inertia of a point mass at `x` about the
-/// origin. Column-major; Eigen multiplies the first factor by the mass, and this order determines
-/// the last bit.
+/// origin. The result is column-major. Eigen multiplies the first factor by the mass, and this
+/// order determines the last bit.
 fn skew_squared(mass: f64, [x, y, z]: &[f64; 3]) -> [f64; 9] {
     let (mx, my, mz) = (mass * x, mass * y, mass * z);
     [

@@ -17,9 +17,9 @@ pub struct GetCartesianLimit {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct CartesianLimit {
-    /// Status of the request; the other fields are valid after a success only.
+    /// Status of the request. The other fields are valid only after a success.
     pub status: u8,
-    /// Corner of the cuboid in its frame `[m]`.
+    /// Corner of the cuboid in the cuboid's frame `[m]`.
     pub object_world_size: [F64; 3],
     /// Pose of the cuboid in the base frame, column-major `[m]`.
     pub object_frame: [F64; 16],

@@ -17,13 +17,14 @@ pub struct Deviation {
     pub elbow: F64,
 }
 
-/// The fields that protocol 10 appended to a `Move`: the robot plans between sparse joint targets.
+/// The fields that only protocol 10 has in a `Move`, for an asynchronous motion: the robot plans
+/// between sparse joint targets.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct AsynchronousMotion {
-    /// Non-zero if the robot plans.
+    /// Non-zero for an asynchronous motion.
     pub use_async_motion_generator: u8,
-    /// Joint velocities of the plan `[rad/s]`; zero without a plan.
+    /// Largest joint velocities of the robot's plan `[rad/s]`; zero without an asynchronous motion.
     pub maximum_velocity: [F64; 7],
 }
 
@@ -39,7 +40,7 @@ pub struct MoveRequest<A> {
     pub maximum_path_deviation: Deviation,
     /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
-    /// The robot's planning, if the version has it.
+    /// Fields of an asynchronous motion; `()` if the version has none.
     pub asynchronous: A,
 }
 

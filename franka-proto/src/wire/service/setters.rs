@@ -9,21 +9,21 @@ use crate::wire::F64;
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetCollisionBehavior {
-    /// Contact, joint torques while accelerating `[N m]`.
+    /// Contact threshold of the joint torques while accelerating `[N m]`.
     pub lower_torque_thresholds_acceleration: [F64; 7],
-    /// Collision, joint torques while accelerating `[N m]`.
+    /// Collision threshold of the joint torques while accelerating `[N m]`.
     pub upper_torque_thresholds_acceleration: [F64; 7],
-    /// Contact, joint torques at constant velocity `[N m]`.
+    /// Contact threshold of the joint torques at constant velocity `[N m]`.
     pub lower_torque_thresholds_nominal: [F64; 7],
-    /// Collision, joint torques at constant velocity `[N m]`.
+    /// Collision threshold of the joint torques at constant velocity `[N m]`.
     pub upper_torque_thresholds_nominal: [F64; 7],
-    /// Contact, wrench while accelerating `[N, N m]`.
+    /// Contact threshold of the wrench while accelerating `[N, N m]`.
     pub lower_force_thresholds_acceleration: [F64; 6],
-    /// Collision, wrench while accelerating `[N, N m]`.
+    /// Collision threshold of the wrench while accelerating `[N, N m]`.
     pub upper_force_thresholds_acceleration: [F64; 6],
-    /// Contact, wrench at constant velocity `[N, N m]`.
+    /// Contact threshold of the wrench at constant velocity `[N, N m]`.
     pub lower_force_thresholds_nominal: [F64; 6],
-    /// Collision, wrench at constant velocity `[N, N m]`.
+    /// Collision threshold of the wrench at constant velocity `[N, N m]`.
     pub upper_force_thresholds_nominal: [F64; 6],
 }
 
