@@ -1,46 +1,47 @@
-//! The recommended changes of settings.
+//! Recommended changes of settings and programs.
 
 use franka_rt::driver::Commander;
 
-/// A recommended change, so that the next motion does not end in the same way.
+/// A recommended change that should prevent the same end of the next motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Advice {
-    /// Commands to the motion generator must continue without a jump.
+    /// Motion commands must continue without a jump.
     Smooth,
-    /// Torques must continue without a step.
+    /// Torque commands must continue without a step.
     SmoothTorques,
-    /// Commands are too fast, although they do not jump.
+    /// The motion must be slower: commands are too fast, although they do not jump.
     SlowDown,
     /// The first command must match the robot's position.
     StartWhereItIs,
     /// The last command must be at rest.
     FinishAtRest,
-    /// Datagrams get lost between the two computers.
+    /// Check the network: datagrams get lost between the two computers.
     Network,
-    /// This computer answers too late.
+    /// Check this computer: it answers too late.
     Host,
-    /// A contact occurred, or appeared to occur.
+    /// Check the thresholds: a contact occurred, or appeared to occur.
     Thresholds,
-    /// The contact exceeded the force that the joints can hold.
+    /// Yield to contacts: the contact exceeded the force that the joints can hold.
     GiveWay,
-    /// The pose is close to a singularity.
+    /// Avoid poses close to a singularity.
     AvoidSingularity,
-    /// A joint is near the end of its range.
+    /// Stay away from the ends of the joint ranges.
     StayInRange,
-    /// The arm comes close to itself.
+    /// Keep the links of the arm away from each other.
     StayClearOfItself,
-    /// The load or the motion requires too much torque or power.
+    /// Reduce the load or the motion: they require too much torque or power.
     LessEffort,
-    /// The gains are too high for this pose or contact.
+    /// Reduce the gains: they are too high for this pose or contact.
     SofterGains,
-    /// A setting in Desk that a client cannot change.
+    /// Check a setting in Desk, which a client cannot change.
     Desk,
 }
 
 impl Advice {
-    /// The advice as text, with the settings of this driver that apply to `commander`.
+    /// Returns the advice as text. It names the settings of this driver that apply to `commander`,
+    /// the source of the commands.
     pub fn text(self, commander: Commander) -> &'static str {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {

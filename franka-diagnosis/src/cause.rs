@@ -1,4 +1,4 @@
-//! The causes in a diagnosis, and their text. `reflex_reason` selects them.
+//! Causes in a diagnosis, and their text. `reasoning` selects them.
 
 use core::fmt;
 use core::time::Duration;
@@ -12,99 +12,100 @@ pub(super) fn is_slow(turnaround: Duration) -> bool {
     turnaround.as_secs_f64() > CYCLE
 }
 
-/// An event in the log that led to the end of a motion. Cycles are the `message_id`s of states.
+/// An event in the log that led to the end of a motion. A cycle is given as the `message_id` of its
+/// state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Cause {
-    /// A command jumps away from the robot's commanded state.
+    /// A command jumps: it differs from the state that the robot last published as commanded.
     TargetStep {
-        /// The part that jumps.
+        /// The part of the command that jumps.
         subject: Subject,
         /// The quantity that jumps: position, velocity, acceleration or torque.
         quantity: Quantity,
-        /// Size of the jump in the unit of the quantity: the difference from an unchanged
+        /// Size of the jump, in the unit of the quantity: the difference from an unchanged
         /// continuation.
         size: f64,
-        /// Cycle of the state that the command answers.
+        /// Cycle of the state that this command answers.
         cycle: u64,
     },
     /// The first command did not match the robot's position.
     WrongStart {
-        /// The part with the difference.
+        /// The part of the command that differs.
         subject: Subject,
-        /// The quantity with the difference.
+        /// The quantity that differs.
         quantity: Quantity,
         /// Size of the difference, in the unit of the quantity.
         offset: f64,
-        /// Cycle of the state that the command answers.
+        /// Cycle of the state that this command answers.
         cycle: u64,
     },
     /// The command that ended the motion was still moving.
     FinishedMoving {
-        /// The part that moves.
+        /// The part that was moving.
         subject: Subject,
-        /// Its velocity, `[rad/s]` or `[m/s]`.
+        /// Velocity of this part, `[rad/s]` or `[m/s]`.
         velocity: f64,
-        /// Cycle of the state that the command answers.
+        /// Cycle of the state that this command answers.
         cycle: u64,
     },
-    /// Cycles that passed without a command.
+    /// Some cycles passed without a command.
     LostPackets {
-        /// States that did not arrive and were therefore not answered.
+        /// Number of states that did not arrive and were therefore not answered.
         states: u64,
-        /// Commands that were sent and did not arrive in time, according to the robot's success
-        /// rate.
+        /// Number of commands that were sent and did not arrive in time, according to the robot's
+        /// success rate.
         commands: u64,
-        /// States that arrived and were not answered.
+        /// Number of states that arrived and were not answered.
         unanswered: u64,
-        /// Largest number of consecutive cycles among them.
+        /// Largest number of consecutive cycles without a command.
         longest_run: u64,
-        /// The first of them.
+        /// First cycle without a command.
         first: u64,
-        /// The last of them.
+        /// Last cycle without a command.
         last: u64,
         /// `control_command_success_rate` of the last received state of the motion, in `[0, 1]`.
         success_rate: f64,
     },
-    /// Commands left this host after the next state was due, at any time in the motion.
+    /// Some commands left this host after the next state was due, at any time in the motion.
     LateCommands {
         /// Number of late commands.
         count: u64,
-        /// Longest time from the state's availability in the thread to its command.
+        /// Longest time from a state's arrival in the control thread to its command.
         worst_turnaround: Duration,
     },
-    /// The estimated external force or torque was above the lower threshold.
+    /// The estimated external force or torque exceeded the lower threshold.
     Contact {
-        /// The joint, or the axis of the base frame.
+        /// The joint, or the axis of the base frame, with the contact.
         subject: Subject,
-        /// The largest estimate in these cycles: `[N·m]` for a joint or a rotation, `[N]` for a
-        /// translation. It is positive when the robot pushes the environment.
+        /// Largest estimate in the cycles of the contact: `[N·m]` for a joint or a rotation, `[N]`
+        /// for a translation. It is positive when the robot pushes the environment.
         value: f64,
         /// First cycle of the uninterrupted time above the lower threshold.
         since: u64,
     },
-    /// A Cartesian motion in a pose where small motions require fast joints.
+    /// A Cartesian motion is in a pose in which small motions require fast joints.
     Singularity {
-        /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed;
-        /// 0.14 to 0.23 in ordinary poses.
+        /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed.
+        /// Ordinary poses have 0.14 to 0.23.
         smallest: f64,
-        /// Angle of joint 4 from the position where the arm is stretched, `[rad]`.
+        /// Angle of joint 4 from the position in which the arm is stretched, `[rad]`.
         stretch: f64,
-        /// The cycle of the state with this desired pose.
+        /// Cycle of the state with this desired pose.
         cycle: u64,
     },
-    /// A joint near the end of its range, where the speed towards it is reduced.
+    /// A joint is near the end of its range, where its speed towards this end is limited.
     Limit {
         /// Number of the joint, 1 to 7.
         joint: u8,
-        /// True if it is the upper end.
+        /// True for the upper end of the range.
         upper: bool,
         /// Remaining distance, `[rad]`; negative beyond the end.
         distance: f64,
         /// Largest speed towards the end at this position, `[rad/s]`.
         speed: f64,
-        /// The cycle of the state.
+        /// Cycle of the state with this joint position.
         cycle: u64,
     },
 }
@@ -237,7 +238,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// A number of things, with its noun.
+/// A number of things, and the noun for them.
 struct Count(u64, &'static str);
 
 impl fmt::Display for Count {

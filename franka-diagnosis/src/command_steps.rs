@@ -56,7 +56,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
     }
 }
 
-/// Returns the jump of the command of a finding, if it jumps.
+/// Returns the jump of the command of a finding; `None` if it does not jump.
 fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     if !evidence.commander.commands_every_cycle() {
         return None;
@@ -116,8 +116,8 @@ fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     }
 }
 
-/// Returns the jump of a Cartesian command: the translation or rotation that jumps further relative
-/// to its limits.
+/// Returns the jump of a Cartesian command: of its translation or its rotation, whichever is larger
+/// relative to the limits.
 fn cartesian_leap(
     evidence: &Evidence<'_>,
     sample: &Sample<'_>,
@@ -151,9 +151,9 @@ fn cartesian_leap(
     Some((axis, quantity, size))
 }
 
-/// Returns the jumping quantity of a command: the commanded quantity itself if the acceleration is
-/// too large as well, otherwise the acceleration. An acceleration that grew to its limit within the
-/// jerk limit is not a jump: the motion is too fast.
+/// Returns the quantity of a command that jumps. If the acceleration is also too large, it is the
+/// commanded quantity itself, otherwise the acceleration. If the acceleration grew to its limit
+/// within the jerk limit, the command does not jump; the motion is too fast.
 fn leap_of(
     sample: &Sample<'_>,
     motion: &Derivatives<1>,
@@ -179,8 +179,8 @@ fn leap_of(
     }
 }
 
-/// Returns the rule violation of a finding's command: a jump, or a last command that still moves,
-/// because the robot would have to stand still after it.
+/// Returns the error of a finding's command: a jump, or a last command that still moves. After the
+/// last command the robot would have to stand still.
 pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let leap = leap(evidence, finding);
     match finished_moving(evidence, finding) {
@@ -193,7 +193,8 @@ pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Opti
     }
 }
 
-/// Returns the command that a finding about differences refers to, if it is the last of the motion.
+/// Returns the command to which a finding about differences refers, if this command is the last of
+/// the motion.
 fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample<'a>> {
     let of_differences = matches!(finding.quantity, Quantity::Acceleration | Quantity::Jerk);
     let every_cycle = evidence.commander.commands_every_cycle();
@@ -201,8 +202,8 @@ fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample
     (of_differences && every_cycle && sample.is_finished()).then_some(sample)
 }
 
-/// Returns the cause that the last command moves, and true if at least half of its velocity is its
-/// own change.
+/// Returns the cause that the last command still moves. The flag is true if the command itself
+/// changes at least half of its velocity.
 fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause, bool)> {
     let sample = last_command(evidence, finding)?;
     let (subject, velocity, acceleration) = match commanded::joints(&sample) {
@@ -246,8 +247,8 @@ fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<C
     })
 }
 
-/// Returns the cause that the motion's last command came before the arm was at rest, for motions
-/// with the client's torques and the errors that report it.
+/// Returns the cause that the last command came before the arm was at rest. This applies to motions
+/// with the client's torques, and to the errors that report it.
 pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError) -> Option<Cause> {
     let says_so = matches!(
         error,
@@ -270,8 +271,8 @@ pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError
 }
 
 /// Returns the largest step of the commanded torques before a cycle, if it is more than half of the
-/// limit. A torque with about the same change in an adjacent cycle is on a ramp. A change of
-/// exactly the limit comes from the limiter, which turns steps into ramps.
+/// limit. A torque with about the same change in an adjacent cycle is part of a ramp. A change of
+/// exactly the limit comes from the rate limiter, which turns steps into ramps.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let is_limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
@@ -301,19 +302,21 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
     }
 }
 
-/// Measured joint velocity, `[rad/s]`, above which an arm is not at rest: the simulator's value.
+/// Measured joint velocity, `[rad/s]`, above which an arm is not at rest. The simulator uses the
+/// same value.
 const AT_REST: f64 = 0.1;
 
-/// Largest commanded velocity, `[rad/s]` or `[m/s]`, at which a motion may end: a stop within one
-/// cycle is then below every jerk limit of the arms.
+/// Largest commanded velocity, `[rad/s]` or `[m/s]`, at which a motion may end. A stop from this
+/// velocity within one cycle is below every jerk limit of the arms.
 const STANDSTILL: f64 = 0.003;
 
 /// Relative distance from the limit within which a value counts as limited.
 const LIMITED: f64 = 2e-3;
 
-/// A torque is on a ramp if the adjacent cycle has at least this share of its change.
+/// Least change in an adjacent cycle, as a share of a torque's change, for the torque to be part of
+/// a ramp.
 const RAMP: f64 = 0.9;
 
-/// An offset that every robot accepts, `[rad]` or `[m]`. The vendor does not publish the tolerance,
-/// but clients also start at measured positions.
+/// Offset of a first command that every robot accepts, `[rad]` or `[m]`. The vendor does not
+/// publish the tolerance, but clients also start at measured positions.
 const AT_THE_START: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! The differences of commands, as the robot computes them.
 //!
-//! Backward differences over one cycle, from the commanded values in the answered state (FCI
-//! documentation, control parameters). Limits are the nominal ones.
+//! The robot uses backward differences over one cycle, from the commanded values in the answered
+//! state (FCI documentation, control parameters). Limits are the nominal limits.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::MotionLimits;
@@ -34,7 +34,7 @@ impl<const N: usize> Derivatives<N> {
         }
     }
 
-    /// Standstill from one cycle to the next, as after a finished command.
+    /// Derivatives of a standstill in the next cycle, as after a finished command.
     pub(super) fn at_rest_next(&self) -> Self {
         Self::of(SVector::zeros(), self.velocity, self.acceleration)
     }
@@ -108,8 +108,8 @@ pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
 }
 
 /// Joint positions of a Cartesian command and their derivatives, by Newton's iteration from the
-/// commanded joint positions. The robot's own method is not published; its result is known to be
-/// close to the smallest step.
+/// commanded joint positions. The robot's own method is not published; the method's result is known
+/// to be close to the smallest step.
 pub(super) fn resulting(
     model: &Model,
     sample: &Sample<'_>,
@@ -156,8 +156,8 @@ pub(super) fn resulting(
     Some((q, Derivatives::of((q - from) / CYCLE, dq_d, ddq_d)))
 }
 
-/// Change of a command's torques relative to the torques in the state, `[N·m]`; for the first
-/// command relative to zero.
+/// Change of a command's torques relative to the torques in the state, `[N·m]`. For the first
+/// command it is relative to zero.
 pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     if !sample.before.controller_running() {
         return None;
@@ -175,7 +175,7 @@ pub(super) fn end_effector(state: &RobotState) -> EndEffector {
     EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
 }
 
-/// The difference of a command.
+/// Selects the order of the difference of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Which {
     Velocity,
@@ -183,12 +183,12 @@ pub(super) enum Which {
     Jerk,
 }
 
-/// All commands of a log, each with the limit of its `which` derivative.
+/// Readings of all joint commands of a log, each with the limit of its `which` derivative.
 pub(super) fn joint_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Commanded, which, joints)
 }
 
-/// Joint readings of Cartesian commands.
+/// Readings of the joint motion that results from Cartesian commands.
 pub(super) fn resulting_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Desired, which, |sample| {
         resulting(evidence.model, sample)
@@ -240,7 +240,7 @@ fn of_joints(
     readings
 }
 
-/// Commanded positions relative to the ranges of the joints.
+/// Readings of the commanded positions relative to the ranges of the joints.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let mut readings = Vec::new();
     for sample in evidence.samples() {
@@ -258,7 +258,7 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// All Cartesian commands of a log.
+/// Readings of all Cartesian commands of a log.
 pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     evidence
         .samples()
@@ -270,9 +270,9 @@ pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<R
         .collect()
 }
 
-/// Possible effect of rounding on a derivative of this order of a joint command: the position and
-/// the previous position, over the cycles between them. The previous derivatives are separate
-/// numbers.
+/// Possible effect of rounding on a derivative of this order of a joint command. The current and
+/// the previous position are rounded, and their difference is divided by powers of the cycle. The
+/// previous derivatives are separate numbers.
 fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order: i32) -> f64 {
     if !evidence.rounded {
         return 0.0;
@@ -286,8 +286,8 @@ fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order:
     2.0 * half / CYCLE.powi(order)
 }
 
-/// Possible effect of rounding on a derivative of a Cartesian command, whose previous derivatives
-/// are differences too.
+/// Possible effect of rounding on a derivative of a Cartesian command. The previous derivatives are
+/// differences, too.
 fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> f64 {
     let order = match which {
         _ if !evidence.rounded => return 0.0,
@@ -340,7 +340,7 @@ pub(super) fn cartesian_readings_of(
     readings
 }
 
-/// All commands of the elbow.
+/// Readings of all commands of the elbow.
 pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limits = &evidence.model.cartesian_limits().elbow;
     let mut readings = Vec::new();
@@ -363,7 +363,7 @@ pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// The torque rate of every joint and command.
+/// Readings of the torque rate of every joint and command.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque_rate;
     let mut readings = Vec::new();
@@ -385,7 +385,8 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// Readings of a command, and of the standstill after it if it is the last.
+/// Readings of a command. If it is the last command, readings of the standstill after it are
+/// included.
 fn with_rest<const N: usize>(
     asked: Derivatives<N>,
     sample: &Sample<'_>,
@@ -423,10 +424,11 @@ fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     )
 }
 
-/// Typical size of the larger numbers of a pose: `[m]`, or of a rotation.
+/// Typical magnitude of the larger numbers of a pose: of a position, `[m]`, or of an element of a
+/// rotation.
 const POSE: f64 = 0.5;
 
-/// Number of Newton steps for one cycle: two or three are sufficient away from singular poses.
+/// Number of Newton steps for one cycle. Two or three are enough away from singular poses.
 const ITERATIONS: usize = 4;
 
 /// Largest step of a joint in one Newton step, `[rad]`.

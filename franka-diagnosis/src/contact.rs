@@ -6,8 +6,8 @@ use super::cause::Cause;
 use super::evidence::Evidence;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// The joints, or the axes of the base at the stiffness frame. The vendor does not document the
-/// axes of the flags; the simulator assumes the same axes.
+/// Place where the robot senses a contact: the joints, or the axes of the base at the stiffness
+/// frame. The vendor does not document the axes of the flags; the simulator assumes the same axes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sense {
     Joints,
@@ -17,7 +17,7 @@ pub(super) enum Sense {
 impl Sense {
     const ALL: [Self; 2] = [Self::Joints, Self::Axes];
 
-    /// The loads; six of them for axes.
+    /// External loads in a state. For axes, only six of the numbers are used.
     fn load(self, state: &RobotState) -> [f64; 7] {
         match self {
             Self::Joints => state.tau_ext_hat_filtered,
@@ -54,7 +54,7 @@ impl Sense {
     }
 }
 
-/// The collision according to the flags of the last state.
+/// The collision, according to the flags of the last state.
 pub(super) fn collision(
     evidence: &Evidence<'_>,
     error: RobotError,
@@ -91,8 +91,8 @@ pub(super) fn collision(
     })
 }
 
-/// The contact at the end of the motion: the contact of the finding's subject, or else the
-/// strongest relative to the joint's torque.
+/// The contact at the end of the motion. It is the contact of the finding's subject, or otherwise
+/// the strongest contact relative to the joint's torque.
 pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
     let state = evidence.last()?;
     let named = of.and_then(|subject| {
@@ -126,7 +126,7 @@ pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Ca
     })
 }
 
-/// The largest of the loads whose flag is set.
+/// Index of the largest load whose flag is set.
 fn largest(loads: &[f64], flags: &[f64]) -> Option<usize> {
     (0..flags.len())
         .filter(|&i| flags[i] != 0.0 && loads[i].is_finite())

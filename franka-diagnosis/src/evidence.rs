@@ -1,4 +1,4 @@
-//! A log, prepared for the checks.
+//! Evidence: a log that is prepared for the checks.
 
 use franka_model::{JointVector, Model};
 use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
@@ -8,7 +8,7 @@ use franka_rt::driver::Commander;
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// The evidence of a diagnosis.
+/// Evidence of a diagnosis: a log that is prepared for the checks.
 pub(super) struct Evidence<'a> {
     pub(super) commander: Commander,
     /// Cycles, oldest first.
@@ -24,7 +24,7 @@ pub(super) struct Evidence<'a> {
 pub(super) struct Sample<'a> {
     pub(super) before: &'a RobotState,
     pub(super) command: &'a RobotCommand,
-    /// True if it is the first of the motion.
+    /// True if the command is the first of the motion.
     pub(super) first: bool,
 }
 
@@ -36,13 +36,13 @@ pub(super) struct Reading {
     pub(super) origin: Origin,
     pub(super) value: f64,
     pub(super) bound: Bound,
-    /// Ratio to the limit: above 1 if the limit is exceeded.
+    /// Ratio of the number to its limit; above 1 if the limit is exceeded.
     pub(super) score: f64,
     pub(super) cycle: u64,
 }
 
 impl<'a> Evidence<'a> {
-    /// The newest state, which shows the end.
+    /// The newest state. It shows the end of the motion.
     pub(super) fn last(&self) -> Option<&'a RobotState> {
         self.entries.last().map(|entry| &entry.state)
     }
@@ -52,13 +52,13 @@ impl<'a> Evidence<'a> {
         self.entries.iter().map(|entry| &entry.state)
     }
 
-    /// The newest state of the motion itself.
+    /// The newest state in which the motion still ran.
     pub(super) fn last_running(&self) -> Option<&'a RobotState> {
         self.states().rev().find(|state| state.motion_running())
     }
 
-    /// The motion generator of the motion. In protocol 5, a torque motion also shows a generator,
-    /// whose commands are at rest.
+    /// The motion generator of the motion. In protocol 5, a torque motion also has a generator; its
+    /// commands are at rest.
     pub(super) fn generator(&self) -> MotionGeneratorMode {
         self.last_running()
             .map_or(MotionGeneratorMode::Idle, |state| {
@@ -75,7 +75,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// The commands that reached the robot, according to its success rate, and whose state is in
-    /// the log. Differences must be taken from the commanded values in that state, because they
+    /// the log. Differences must be computed from the commanded values in this state, because they
     /// include the robot's extrapolation over cycles without a command.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
         self.entries.windows(2).filter_map(|pair| {
@@ -89,7 +89,7 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// The command that answers the state with this number.
+    /// The command that answers the state with the `message_id` `cycle`.
     pub(super) fn sample(&self, cycle: u64) -> Option<Sample<'a>> {
         self.samples().find(|sample| sample.cycle() == cycle)
     }
@@ -111,8 +111,8 @@ impl Sample<'_> {
 }
 
 impl Reading {
-    /// The reading if rounding may have changed its value by `error`: the limit of its score is
-    /// larger by this amount.
+    /// The same reading, if rounding may have changed its value by `error`. Its score is then
+    /// relative to a limit that is larger by this amount.
     pub(super) fn within(self, error: f64) -> Self {
         let limit = self.bound.limit().unwrap_or(0.0).abs();
         let share = if error > 0.0 {
@@ -153,7 +153,7 @@ impl Reading {
         }
     }
 
-    /// The finding for a reading at the end of the motion, without its causes.
+    /// The finding for a reading at the end of the motion.
     pub(super) fn finding(&self, error: RobotError) -> Finding {
         Finding {
             error,
@@ -168,8 +168,8 @@ impl Reading {
 }
 
 /// True if the command between two states did not reach the robot in time, according to its success
-/// rate. Only the `skipped` states between them were not answered. The state that shows the end of
-/// the motion is not conclusive.
+/// rate. `skipped` is the number of states between them that were not answered. The state that
+/// shows the end of the motion does not decide this.
 pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> bool {
     // The rate covers the last hundred cycles.
     let rate = before.control_command_success_rate - skipped as f64 / 100.0;
@@ -178,7 +178,7 @@ pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> 
         && after.control_command_success_rate < rate - SAME_RATE
 }
 
-/// The velocity of every joint relative to its limit at `q`.
+/// Readings of the velocity of every joint, relative to its limit at `q`.
 pub(super) fn velocities(
     model: &Model,
     origin: Origin,
@@ -196,7 +196,7 @@ pub(super) fn velocities(
         .collect()
 }
 
-/// The position of every joint relative to the nearer end of its range.
+/// Readings of the position of every joint, relative to the nearer end of its range.
 pub(super) fn positions(
     model: &Model,
     origin: Origin,
@@ -225,8 +225,9 @@ pub(super) fn positions(
         .collect()
 }
 
-/// The worst of some sensor readings, oldest first, as a finding, with the first of the consecutive
-/// cycles in which its limit was exceeded. `None` if no reading is near its limit.
+/// The finding for the worst of some sensor readings, which are given oldest first. It contains the
+/// first of the consecutive cycles in which the limit was exceeded. `None` if no reading is near
+/// its limit.
 pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let worst = readings
         .iter()
@@ -236,8 +237,8 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
 }
 
 /// The finding for readings of commands. The robot stops at the first command that exceeds a limit,
-/// so the newest excess counts. If no reading certainly exceeds its limit, the newest near one
-/// counts.
+/// so the newest excess counts. If no reading certainly exceeds its limit, the newest reading near
+/// its limit counts.
 pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let last = |least: f64| {
         let cycle = readings
@@ -272,7 +273,7 @@ fn since_first(error: RobotError, worst: &Reading, readings: &[Reading]) -> Find
 }
 
 impl Subject {
-    /// True if both are the same, ignoring the component of a vector that is its largest.
+    /// True if both are the same part. Components of the same vector count as the same part.
     fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Translation(_), Self::Translation(_))
@@ -282,12 +283,13 @@ impl Subject {
     }
 }
 
-/// Share of a limit from which it counts as reached. Single precision of the states changes a third
-/// difference by up to a twentieth of its limit, and the robot's own computation is not published.
+/// Share of a limit at which the limit counts as reached. Single precision of the states changes a
+/// third difference by up to a twentieth of its limit, and the robot's own computation is not
+/// published.
 const VISIBLE: f64 = 0.95;
 
-/// Distance of a position from a limit, divided by the complement of [`VISIBLE`], `[rad]`: half a
-/// hundredth of a radian counts as near.
+/// Scale that turns the distance of a position from its limit into a score, `[rad]`. With
+/// [`VISIBLE`], half a hundredth of a radian counts as near.
 const SCALE: f64 = 0.1;
 
 /// Difference of success rates below which they count as equal. One command in a hundred changes

@@ -1,20 +1,20 @@
-//! An exceeded limit: place, quantity, excess and beginning.
+//! An exceeded limit: the part of the arm, the quantity, the excess and the first cycle.
 
 use core::fmt;
 
 use franka_proto::RobotError;
 
-/// The place of a number.
+/// The part of the arm to which a number refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Subject {
     /// A joint, 1 to 7 from the base.
     Joint(u8),
-    /// The translation of the end effector. Limits hold for the norm of the vector; this is its
-    /// largest component.
+    /// The translation of the end effector. Limits apply to the norm of the vector; the axis is
+    /// that of its largest component.
     Translation(Axis),
-    /// The rotation of the end effector, with the same rule.
+    /// The rotation of the end effector, with the axis of the largest component.
     Rotation(Axis),
     /// The elbow: the angle of joint 3 in a Cartesian motion.
     Elbow,
@@ -36,7 +36,7 @@ pub enum Axis {
     Z,
 }
 
-/// The measured or commanded quantity of a [`Subject`].
+/// A measured or commanded quantity of a [`Subject`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -70,11 +70,11 @@ pub enum Quantity {
     Reversals,
 }
 
-/// The origin of a number.
+/// Origin of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Origin {
-    /// The commands: differences from the values published before, over one cycle.
+    /// The commands: differences from the values that the robot published before, over one cycle.
     Commanded,
     /// The joint positions of a Cartesian command, from this driver's inverse kinematics.
     Desired,
@@ -84,7 +84,7 @@ pub enum Origin {
     Estimated,
 }
 
-/// The limit of a number.
+/// Limit of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Bound {
@@ -92,10 +92,10 @@ pub enum Bound {
     AtMost(f64),
     /// The nominal limit of the robot's model on the negative side, or the lower end of a range.
     AtLeast(f64),
-    /// A threshold that no state shows: it lies between the magnitude that passed and the magnitude
-    /// that did not.
+    /// A threshold that no state shows. It is between two magnitudes: the first did not exceed it,
+    /// the second did.
     Between(f64, f64),
-    /// The limit is neither published nor shown by a state.
+    /// The limit is unknown: it is not published, and no state shows it.
     Unknown,
 }
 
@@ -104,26 +104,27 @@ pub enum Bound {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Finding {
-    /// The error of this finding.
+    /// The error that reports this.
     pub error: RobotError,
-    /// The joint, axis or part that exceeded it.
+    /// The joint, axis or part that exceeded the limit.
     pub subject: Subject,
     /// The quantity that exceeded the limit.
     pub quantity: Quantity,
     /// The origin of the value.
     pub origin: Origin,
-    /// The largest value, in the unit of its [`Quantity`].
+    /// Largest value, in the unit of its [`Quantity`].
     pub value: f64,
     /// The limit of the value, in the same unit.
     pub bound: Bound,
-    /// The first of the consecutive cycles in which the limit was exceeded: the `message_id` of the
-    /// state that the command answers, or that contains the measurement.
+    /// First of the consecutive cycles in which the limit was exceeded. It is the `message_id` of
+    /// the state that the command answers, or that contains the measurement.
     pub since: u64,
 }
 
 impl Finding {
-    /// Excess over the limit, in the unit of the quantity; `None` if the limit is unknown. Zero or
-    /// negative, by a few hundredths of the limit, if the precision of the state is not sufficient.
+    /// Excess over the limit, in the unit of the quantity; `None` if the limit is unknown. It is
+    /// zero or slightly negative, by a few hundredths of the limit, if the precision of the state
+    /// is too low.
     pub fn excess(&self) -> Option<f64> {
         self.bound.excess(self.value)
     }
@@ -137,7 +138,7 @@ impl Finding {
 }
 
 impl Bound {
-    /// The nominal limit, if known.
+    /// Returns the nominal limit, if known.
     pub fn limit(self) -> Option<f64> {
         match self {
             Self::AtMost(limit) | Self::AtLeast(limit) => Some(limit),
@@ -145,7 +146,7 @@ impl Bound {
         }
     }
 
-    /// Excess of a value over the limit; negative within it.
+    /// Returns the excess of a value over the limit; negative within the limit.
     pub(super) fn excess(self, value: f64) -> Option<f64> {
         match self {
             Self::AtMost(limit) => Some(value - limit),
@@ -218,7 +219,7 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// The same measure with more digits, if they are needed to distinguish it from `other`.
+    /// The same measure with more digits, if they are needed to tell it from `other`.
     fn told_from(self, other: f64) -> Self {
         let same = |&digits: &u8| Digits(self.value).with(digits) == Digits(other).with(digits);
         let digits = (DIGITS..=DIGITS_MAX).find(|digits| !same(digits));
@@ -255,11 +256,11 @@ pub(super) struct Digits(pub(super) f64);
 /// Significant digits of a number.
 const DIGITS: u8 = 4;
 
-/// Largest number of significant digits, for a number next to a similar one.
+/// Largest number of significant digits, for a number next to a similar number.
 const DIGITS_MAX: u8 = 8;
 
 impl Digits {
-    /// Formats the number with this number of significant digits.
+    /// Formats the number with `digits` significant digits.
     fn with(&self, digits: u8) -> String {
         let value = self.0;
         if value == 0.0 || !value.is_finite() {
@@ -322,7 +323,8 @@ impl fmt::Display for Origin {
 }
 
 impl fmt::Display for Finding {
-    /// `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times as much)`.
+    /// Formats as `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times as
+    /// much)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             subject,

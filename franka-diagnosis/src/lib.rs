@@ -1,5 +1,5 @@
-//! Explains why a Franka robot ended a motion, by a reflex or otherwise. It determines the limit
-//! that was exceeded, by how much and since when, the causes, and the changes to make. `reflex_reason`
+//! Explains why a Franka robot ended a motion, by a reflex or otherwise. A diagnosis names the
+//! exceeded limit, the excess and its first cycle, the causes, and the changes to make. `reasoning`
 //! combines the evidence.
 //!
 //! ```text
@@ -7,14 +7,13 @@
 //!                          +-> causes (steps | contact | lost cycles | posture) --> advice
 //! ```
 //!
-//! The robot only names errors, without a joint or a number. Joint and number are computed here
-//! from the log of the motion's last cycles, with the robot's differences and limits (FCI
-//! documentation). The precision is limited by the published data and by the single precision of
-//! the states. Nothing is guessed: if the log does not show the cause, the [`Diagnosis`] states
-//! this.
+//! The robot only names errors, without a joint or a number. This crate computes both from the log
+//! of the motion's last cycles, with the robot's differences and limits (FCI documentation). The
+//! published data and the single precision of the states limit the accuracy. The crate does not
+//! guess: if the log does not show the cause, the [`Diagnosis`] states this.
 //!
-//! * [`Diagnose`]: the diagnosis of an error where it was caught. [`Case`], [`Diagnosis::of`]: the
-//!   diagnosis of a log, saved or live.
+//! * [`Diagnose`]: diagnoses an error where it was caught. [`Case`], [`Diagnosis::of`]: diagnose a
+//!   log, saved or live.
 //! * [`Finding`]: the exceeded limit. [`Cause`]: an event that led to it. [`Advice`]: a recommended
 //!   change.
 //!
@@ -59,9 +58,9 @@
 //! # What it does not do
 //!
 //! The crate reads no clock, file or socket. It allocates, so it is not for the control thread. It
-//! only sees the contents of a log. No state shows collision thresholds, virtual walls or the
-//! robot's own filters; a threshold is reported as two values that it lies between. The log does
-//! not show events before its first cycle.
+//! uses only the contents of a log. States do not contain collision thresholds, virtual walls or
+//! the robot's own filters. A diagnosis gives two values between which a threshold lies. The log
+//! does not show events before its first cycle.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -100,13 +99,13 @@ pub use franka_rt::driver::Commander;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Errors that contain the log of the motion that they ended.
+/// Errors that contain the log of the motion that ended with them.
 pub trait Diagnose {
-    /// Returns the reason why the robot stopped itself, if the log shows it; `None` for any other
-    /// end of a motion.
+    /// Returns the diagnosis of a motion that the robot itself stopped; `None` for any other end of
+    /// a motion.
     ///
-    /// The diagnosis is computed at each call, in the caller's thread: this allocates and takes up
-    /// to a few milliseconds.
+    /// Each call computes the diagnosis in the caller's thread. This allocates and takes up to a
+    /// few milliseconds.
     fn diagnose(&self) -> Option<Diagnosis>;
 }
 
@@ -123,56 +122,57 @@ impl Diagnose for MotionError {
     }
 }
 
-/// `None` for a reflex that ended no motion of this program.
+/// Returns `None` for a reflex that ended no motion of this program.
 impl Diagnose for Reflex {
     fn diagnose(&self) -> Option<Diagnosis> {
         self.error.as_deref()?.diagnose()
     }
 }
 
-/// The reason why the robot ended a motion, derived from its last cycles.
+/// Why the robot ended a motion, derived from the motion's last cycles.
 ///
-/// `Display` is a few lines: the exceeded limit, the causes, other errors, and the advice.
+/// `Display` gives a few lines: the exceeded limit, the causes, other errors, and the advice.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
-    /// The source of the motion's commands.
+    /// Source of the motion's commands.
     pub commander: Commander,
     /// The errors that the robot named.
     pub errors: Errors,
-    /// The error that explains the others; `None` if the robot named none.
+    /// The error that explains the other errors; `None` if the robot named no error.
     pub error: Option<RobotError>,
     /// The exceeded limit, if the log shows it.
     pub finding: Option<Finding>,
-    /// Events that led to it, the most likely first. Empty if the log shows none.
+    /// Events that led to the error, the most likely first. Empty if the log shows no such event.
     pub causes: Vec<Cause>,
-    /// Recommended changes, the most promising first; [`Advice::text`] contains the settings of
-    /// this commander.
+    /// Recommended changes, the most promising first. [`Advice::text`] names the settings for this
+    /// commander.
     pub advice: Vec<Advice>,
-    /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
+    /// `message_id` of the state that shows the end of the motion; `None` without a log.
     pub end: Option<u64>,
-    /// Cycles of the log that were read.
+    /// Number of cycles of the log that were used.
     pub cycles: usize,
 }
 
-/// The input of a diagnosis, in addition to the model of the robot. It can be saved and diagnosed
-/// later.
+/// The input of a diagnosis, in addition to the model of the robot. A program can save it and
+/// diagnose it later.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Case {
-    /// The source of the motion's commands.
+    /// Source of the motion's commands.
     pub commander: Commander,
     /// `reflex_reason` of the state that ended the motion.
     pub errors: Errors,
     /// The last cycles of the motion.
     pub log: Arc<ControlLog>,
-    /// Counts over the motion, for commands that left too late; `None` if they were not recorded.
+    /// Counts over the whole motion, which show commands that left too late; `None` if they were
+    /// not recorded.
     pub statistics: Option<MotionStatistics>,
 }
 
 impl From<&ControlError> for Case {
-    /// Shares the log of the error.
+    /// Shares the log of the error, without a copy.
     fn from(error: &ControlError) -> Self {
         Self {
             commander: error.commander,
@@ -184,9 +184,9 @@ impl From<&ControlError> for Case {
 }
 
 impl Diagnosis {
-    /// Largest number of cycles of a log that are read, the newest ones. Limits are checked in
-    /// every cycle, a link counts as broken after 20 lost cycles, and the success rate is an
-    /// average over 100.
+    /// Largest number of cycles of a log that a diagnosis uses; they are the newest. This is
+    /// enough: the robot checks limits in every cycle, stops after 20 lost cycles, and averages the
+    /// success rate over 100 cycles.
     pub const CYCLES_MAX: usize = 200;
 
     /// Returns the diagnosis of a case, for a robot of this model.
@@ -221,13 +221,13 @@ impl Diagnosis {
         }
     }
 
-    /// Number of cycles from the first excess of the limit to the state that shows the end of the
-    /// motion.
+    /// Number of cycles from the first cycle in which the limit was exceeded to the state that
+    /// shows the end of the motion.
     pub fn cycles_before_end(&self) -> Option<u64> {
         Some(self.end?.saturating_sub(self.finding?.since))
     }
 
-    /// The errors except the explaining error.
+    /// The errors except the error that explains them.
     fn others(&self) -> Errors {
         let mut others = self.errors;
         if let Some(error) = self.error {

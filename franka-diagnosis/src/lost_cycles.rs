@@ -8,15 +8,15 @@ use super::cause::Cause;
 use super::evidence::{Evidence, is_lost};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Largest number of consecutive lost cycles: 20 end a motion (FCI documentation,
+/// Largest number of consecutive lost cycles in a motion. 20 lost cycles end it (FCI documentation,
 /// `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
-/// Number of cycles between a loss and the last command that it can affect: a jerk is a difference
-/// of two commands.
+/// Number of cycles between a loss and the last command that it can affect. A jerk is a difference
+/// over two commands.
 const BEFORE: u64 = 2;
 
-/// Cycles without a command, oldest first, identified by the states whose answers are missing.
+/// Cycles without a command, oldest first. Each is identified by the state whose answer is missing.
 struct Losses {
     states: u64,
     commands: u64,
@@ -76,7 +76,7 @@ impl Losses {
         losses
     }
 
-    /// The longest run: its length and its first cycle.
+    /// The longest run of losses: its length and its first cycle.
     fn longest(&self) -> Option<(u64, u64)> {
         let mut longest = None;
         let mut run = (0, 0);
@@ -121,14 +121,15 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// The losses within the log, if the robot stopped because of missing commands: the last command
-/// did not reach it either.
+/// The losses in the log, if the robot stopped because of missing commands. In this case the last
+/// command did not reach the robot either.
 pub(super) fn lost_packets(evidence: &Evidence<'_>) -> Option<Cause> {
     Losses::of(evidence, true, 0..u64::MAX).cause()
 }
 
-/// The consecutive losses directly before the wrong command, or within the log if that command is
-/// unknown: the robot extrapolates missing commands, and a command may jump from the extrapolation.
+/// The consecutive losses directly before the wrong command, or in the log if this command is
+/// unknown. The robot extrapolates missing commands, and the next command may jump relative to the
+/// extrapolation.
 pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) -> Option<Cause> {
     let Some(Finding { since, .. }) = finding else {
         return Losses::of(evidence, false, 0..u64::MAX).cause();

@@ -8,7 +8,7 @@ use super::commanded::end_effector;
 use super::evidence::{Evidence, Reading, positions, velocities};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Joint velocities relative to their envelopes.
+/// Readings of the joint velocities, relative to their envelopes.
 pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -19,7 +19,7 @@ pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Joint positions relative to their ranges.
+/// Readings of the joint positions, relative to their ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -34,7 +34,7 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Speed of the end effector.
+/// Readings of the speed of the end effector.
 pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = evidence.model.cartesian_limits().translation.velocity;
     evidence
@@ -60,8 +60,8 @@ pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Joint torques relative to the nominal limits: the slightly larger range of the sensors is not
-/// published.
+/// Readings of the joint torques, relative to the nominal limits. The slightly larger range of the
+/// sensors is not published.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque;
     evidence
@@ -103,8 +103,8 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     ))
 }
 
-/// The two bodies of the arm that are closest to each other at the end, three links or more apart,
-/// by the vendor's capsules.
+/// The two bodies of the arm that are closest to each other at the endaccording to the vendor's
+/// capsules. Only bodies three links or more apart count.
 pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     let state = evidence.last()?;
     let arm = Shape::vendor().with_lengths(*evidence.model.lengths());
@@ -190,9 +190,10 @@ fn unbounded(
     }
 }
 
-/// Distance, `[m]`, above which bodies do not explain a stop: robots are known to stop before
+/// Distance, `[m]`, above which two bodies do not explain a stop. Robots are known to stop before
 /// contact, but the distance is not published.
 const NEAR: f64 = 0.1;
 
-/// Velocity that counts as rest, `[rad/s]`: several times the measured velocity of an arm at rest.
+/// Velocity below which a joint is at rest, `[rad/s]`: several times the measured velocity of an
+/// arm at rest.
 const STILL: f64 = 0.02;

@@ -13,7 +13,7 @@ pub(super) fn singularity(evidence: &Evidence<'_>) -> Option<Cause> {
     evidence.is_cartesian().then(|| singular_pose(evidence))?
 }
 
-/// The singularity near the last desired pose, if any: small torques look like large forces there.
+/// The singularity near the last desired pose, if any. There, small torques look like large forces.
 pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     let state = evidence.last_running()?;
     let q = JointVector::from(state.q_d);
@@ -31,7 +31,7 @@ pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     })
 }
 
-/// The position limit that the joint of a finding moves towards, if it is near.
+/// The position limit towards which the joint of a finding moves, if the limit is near.
 pub(super) fn limit(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let Subject::Joint(joint) = finding.subject else {
         return None;

@@ -13,7 +13,7 @@ use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::{command_steps, contact, lost_cycles, measured, posture};
 
-/// The subject of an error.
+/// Category of an error: what it is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Category {
     /// Missing commands.
@@ -32,9 +32,9 @@ enum Category {
     Desk,
 }
 
-/// Every error, the more explanatory first. A missing command comes before the jump that it causes,
-/// and a command before the arm's motion. Acceleration comes before jerk, jerk before velocity, and
-/// a contact before the motion that it causes.
+/// Every error, ordered by how much it explains, the most explanatory first. A missing command
+/// comes before the jump that it causes, and a command before the arm's motion. Acceleration comes
+/// before jerk, jerk before velocity, and a contact before the motion that it causes.
 const ORDER: [(E, Category); 41] = [
     (E::CommunicationConstraintsViolation, Category::Link),
     (
@@ -142,7 +142,7 @@ fn category(error: E) -> Category {
 }
 
 /// Returns the error that explains the others, and its evidence in the log: the first error with
-/// evidence, or else the first error.
+/// evidence, or otherwise the first error.
 pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
     let named = || {
         ORDER
@@ -225,7 +225,7 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     }
 }
 
-/// Returns the finding only if its limit is exceeded, not if the value is just below it.
+/// Returns the finding only if its limit is exceeded, and not if the value is just below the limit.
 fn beyond(finding: Option<Finding>) -> Option<Finding> {
     finding.filter(|finding| finding.excess().is_some_and(|excess| excess > 0.0))
 }
@@ -303,9 +303,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// Returns at most two recommended changes, derived from the causes. The error and its finding are
-/// used if the causes give none, or if the error is about the arm's motion, regardless of its
-/// causes.
+/// Returns at most two recommended changes. They are derived from the causes. If the causes give no
+/// advice, or if the error is about the arm's motion, they are derived from the error and its
+/// finding.
 pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
     let of_arm = category(error) == Category::Arm;
     // Commands that left too late did not reach the robot in time.

@@ -1,5 +1,5 @@
-//! Plots the response of the trajectory generator to a stepped, bursty and stalling target, as an
-//! SVG.
+//! Plots the response of the trajectory generator as an SVG. The target moves in steps, then in
+//! bursts, then its updates stop.
 //!
 //! `cargo run --release -p franka-otg --example plot [FILE]`
 
@@ -33,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the new target in a cycle, if any: steps, then bursts of noisy targets, then a moving
-/// target whose updates stop.
+/// Returns the new target in a cycle, if any. Targets are first steps, then bursts of noisy
+/// targets, then a moving target whose updates stop.
 fn target(cycle: usize) -> Option<State<1>> {
     let t = cycle as f64 * CYCLE;
     let at = |position: f64, velocity: f64| State {
@@ -106,9 +106,10 @@ const ACCELERATION: f64 = 8.0;
 const JERK: f64 = 200.0;
 /// Length of the plot, `[s]`.
 const END: f64 = 3.8;
-/// Height of a panel.
+/// Height of a panel, in pixels.
 const PANEL: f64 = 120.0;
-/// Title, columns to draw and the value at the upper line: the limit, except for the position.
+/// Panels of the plot: title, columns to draw, and value at the upper line. This value is the
+/// limit, except for the position.
 const PANELS: [(&str, &[usize], f64); 4] = [
     ("position, m", &[1, 0], 0.8),
     ("velocity, m/s", &[2], VELOCITY),

@@ -20,10 +20,10 @@ pub(crate) struct Axis {
     start: AxisState,
     target: AxisState,
     limits: AxisLimits,
-    /// Unit of time.
+    /// Unit of time of the axis, in seconds.
     unit: f64,
     brake: Pieces,
-    /// Duration of the brake, in that unit.
+    /// Duration of the brake, in units of time of the axis.
     braking: f64,
     motion: ToTarget,
 }
@@ -35,10 +35,10 @@ enum ToTarget {
     Moving(MovingTarget),
 }
 
-/// The reason why an axis has no plan.
+/// Reason why an axis has no plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refusal {
-    /// The numbers are too far apart.
+    /// The quantities differ by too many orders of magnitude.
     OutOfRange,
     /// The limits do not allow the motion of the target.
     TargetMotion,
@@ -82,7 +82,7 @@ impl Axis {
         })
     }
 
-    /// Returns its least duration, in seconds.
+    /// Returns the least duration of the motion, in seconds.
     pub(crate) fn least_duration(&self) -> f64 {
         let least = match &self.motion {
             ToTarget::AtRest(least) => least.duration,
@@ -91,8 +91,8 @@ impl Axis {
         self.unit * (self.braking + least)
     }
 
-    /// Returns the least feasible duration that is at least `duration`; `duration` is at least the
-    /// least duration.
+    /// Returns the least feasible duration that is at least `duration`. `duration` must be at least
+    /// the least duration of the axis.
     pub(crate) fn from(&self, duration: f64) -> f64 {
         let ToTarget::Moving(moving) = &self.motion else {
             return duration;
@@ -124,7 +124,7 @@ impl Axis {
         }
     }
 
-    /// Replaces a motion to rest that exceeds `duration` only by rounding.
+    /// Replaces a motion to rest whose duration exceeds `duration` only by rounding.
     pub(crate) fn round_to(&mut self, duration: f64) {
         let left = duration / self.unit - self.braking;
         if let ToTarget::AtRest(least) = &mut self.motion
@@ -135,9 +135,10 @@ impl Axis {
         }
     }
 
-    /// Lays out the profile of `duration` seconds, or the least-time profile if that takes longer.
+    /// Lays out the profile of `duration` seconds, or the least-time profile if the latter takes
+    /// longer.
     ///
-    /// After a target in motion, the axis continues for a cycle and then stops in the least time.
+    /// Behind a target in motion, the axis continues for a cycle and then stops in the least time.
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -195,8 +196,8 @@ impl Axis {
     }
 }
 
-/// Returns the least-time motion to a position that differs from the target only by rounding, if
-/// that motion takes at most `duration`, within rounding.
+/// Returns the least-time motion to a position that differs from the target only by rounding.
+/// `None` if this motion takes longer than `duration`, within rounding.
 ///
 /// Near the end of a motion, the least duration is uncertain by the cube root of the rounding of
 /// positions: microseconds, which are micrometres of an axis in motion.
@@ -214,24 +215,24 @@ fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
     })
 }
 
-/// True if the numbers are close enough together to plan from `start`.
+/// True if the quantities differ by few enough orders of magnitude to plan a stop from `start`.
 pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }
 
-/// Lays out the least-time stop, from a state that passes [`can_stop`] or lies on a plan from such
-/// a state.
+/// Lays out the least-time stop. The state must pass [`can_stop`], or lie on a plan from such a
+/// state.
 pub(crate) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
     profile.begin(start);
     append_stop(limits, profile);
 }
 
-/// Appends the motion after a target in motion. Its acceleration continues for a cycle plus the
+/// Appends the motion behind a target in motion. The acceleration continues for a cycle plus the
 /// tolerance for simultaneous arrival, if the limits allow it. The least-time stop follows.
 ///
 /// The first command that counts as at the target is sent up to one cycle after the last axis
-/// arrives. A target that is then set finds the axis on the old target's motion, before it slows
-/// down.
+/// arrives. A new target that is set then finds the axis still moving as the old target, before the
+/// axis slows down.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {
         velocity,
@@ -272,8 +273,8 @@ pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     start.position + way.position
 }
 
-/// Returns the jerks of the least-time stop and their durations, in seconds. The first piece
-/// returns into the acceleration limit.
+/// Returns the jerks of the least-time stop and their durations, in seconds. The first piece brings
+/// the acceleration back to its limit.
 fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;
@@ -292,5 +293,5 @@ fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     ]
 }
 
-/// Relative excess over a limit that counts as rounding of a target at the limit.
+/// Relative excess over a limit up to which a target counts as at the limit, because of rounding.
 const AT_LIMIT: f64 = 1e-12;

@@ -1,16 +1,16 @@
-//! Returns a state outside the limits into them.
+//! Brings a state outside the limits back into them.
 //!
-//! States outside the limits come from measurements and from lowered limits. The convention is
-//! "inside again as early as possible". It uses full jerk, then the acceleration limit, until the
-//! velocity is at its limit and will stay there. It is a convention and not part of the optimum. A
-//! rule that only makes the velocity converge to its limit can be shorter, but stays above the
-//! limit for longer. The state is never clamped, because a clamp is a step in the command to the
-//! robot.
+//! States outside the limits come from measurements and from lowered limits. The rule is "inside
+//! again as early as possible". The brake uses full jerk, then the acceleration limit, until the
+//! velocity is at its limit and will stay there. The rule is a convention, not part of the optimum.
+//! A rule that only makes the velocity converge to its limit can be shorter, but then the velocity
+//! exceeds its limit for longer. The state is never clamped, because a clamp is a step in the
+//! command to the robot.
 
 use crate::scalar::sqrt;
 use crate::task::Task;
 
-/// Jerks, in units of the limit, and their durations: the pieces before a shape.
+/// Pieces of a motion before its shape: jerks in units of the limit, and their durations.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pieces {
     list: [(f64, f64); 4],
@@ -27,7 +27,7 @@ impl Pieces {
         self.list[..self.len].iter().copied()
     }
 
-    /// Returns the sum of the durations.
+    /// Returns the sum of the durations of the pieces.
     pub(crate) fn duration(&self) -> f64 {
         self.iter().map(|(_, t)| t).sum()
     }
@@ -45,7 +45,7 @@ impl Pieces {
     }
 }
 
-/// Brakes the task into its limits; does nothing if it is inside them and can stay there.
+/// Brakes the task into its limits. Does nothing if the task is inside them and can stay there.
 pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     let mut pieces = Pieces::NONE;
     let mut task = task;
@@ -88,7 +88,7 @@ fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     pieces.push(task, 0.0, hold)
 }
 
-/// Excess over a limit that counts as rounding of a state at the limit.
+/// Excess over a limit up to which a state counts as at the limit, because of rounding.
 const TOLERANCE: f64 = 1e-12;
 
 #[cfg(test)]

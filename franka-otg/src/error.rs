@@ -2,19 +2,19 @@
 
 use core::fmt;
 
-/// The reason why no plan was made. The current motion continues.
+/// Reason why no plan was made. The current motion continues.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// A non-finite value in a state or target.
+    /// A value in a state or target is not finite.
     #[error("{quantity} of axis {axis} is not finite")]
     NotFinite {
-        /// The quantity of the number.
+        /// The quantity with this value.
         quantity: Quantity,
         /// Axis, from 1.
         axis: usize,
     },
-    /// A limit that is not positive and finite.
+    /// A limit is not positive and finite.
     #[error("{quantity} limit of axis {axis} is {value}, expected a positive finite number")]
     Limit {
         /// The limited quantity.
@@ -24,42 +24,43 @@ pub enum PlanError {
         /// The given limit.
         value: f64,
     },
-    /// The target's velocity and acceleration are impossible inside the limits. Either the
-    /// acceleration exceeds its limit, or the velocity would exceed its limit just before or after
-    /// the target.
+    /// The limits do not allow the velocity and acceleration of the target. Either the acceleration
+    /// exceeds its limit, or the velocity would exceed its limit shortly before or after the
+    /// target.
     #[error(
         "the target of axis {axis} moves faster than the limits allow, expected |acceleration| \
          and |velocity| + acceleration^2 / (2 jerk limit) within the limits"
     )]
     TargetMotion {
-        /// Axis, from 1; 1 for a straight line, which is planned as one.
+        /// Axis, from 1; 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
-    /// Distance or velocity and the limits are so far apart that `f64` cannot hold the powers in
-    /// the solution: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
+    /// Distance or velocity and the limits differ by so many orders of magnitude that `f64` cannot
+    /// represent the powers in the solution. The bound is 100 decades, in units of `A^3/J^2` or
+    /// `A^2/J`.
     #[error(
         "state, target and limits of axis {axis} differ by too many orders of magnitude to \
         plan with, expected comparable magnitudes"
     )]
     OutOfRange {
-        /// Axis, from 1; 1 for a straight line, which is planned as one.
+        /// Axis, from 1; 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
 }
 
-/// The quantity of an error.
+/// Quantity to which an error refers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
     /// Position of the state.
     Position,
-    /// Velocity, or its limit.
+    /// Velocity of the state, or its limit.
     Velocity,
-    /// Acceleration, or its limit.
+    /// Acceleration of the state, or its limit.
     Acceleration,
     /// Jerk limit.
     Jerk,
-    /// Target position.
+    /// Position of the target.
     Target,
     /// Velocity of the target.
     TargetVelocity,

@@ -1,10 +1,10 @@
 //! The extremal profile: the motion with the farthest end in a given time, for a given final
 //! velocity and acceleration.
 //!
-//! In the frame in which "far" is upwards, it is a push and a stop to the end's velocity, with
-//! jerks `+ 0 - 0 - 0 +`. The costate of the acceleration is a parabola in time that opens upwards,
-//! so the jerk changes its sign at most twice. The acceleration or the velocity is held while it is
-//! at its limit. No other motion is optimal, and each duration has exactly one such motion.
+//! In the frame in which "far" is upwards, the motion is a push and a stop to the end's velocity,
+//! with jerks `+ 0 - 0 - 0 +`. The costate of the acceleration is a parabola in time that opens
+//! upwards, so the jerk changes its sign at most twice. An acceleration or velocity is held while
+//! it is at its limit. No other motion is optimal, and each duration has exactly one such motion.
 //!
 //! Both ends are extended by their jerk to the instant with zero acceleration, as in `least_time`:
 //!
@@ -15,24 +15,25 @@
 //! Let `x` be the acceleration before the first negative jerk and `-y` the acceleration before the
 //! last positive jerk. Let `w` be the velocity between them at zero acceleration, `e = cf - c0`,
 //! and `T` the duration counted from the extended ends. The integral of the acceleration requires
-//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. If the larger of
-//! the two reaches the limit, the other follows from `(1 + y)^2 = T - e` or `(1 + x)^2 = T + e`. If
-//! both do, they follow from `2 w = T - 2 + c0 + cf`. At the velocity limit the remaining time is a
-//! cruise. All cases have closed forms and are continuous across their boundaries: there is no
-//! search and no root to reject. `x` or `y` may be negative: an acceleration that never changes its
-//! sign.
+//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. If only the
+//! larger of `x` and `y` reaches the limit, the other follows from `(1 + y)^2 = T - e` or `(1 +
+//! x)^2 = T + e`. If both reach the limit, `w` follows from `2 w = T - 2 + c0 + cf`. At the
+//! velocity limit, the remaining time is a cruise. All cases have closed forms and are continuous
+//! across their boundaries, so no search is needed and no root must be rejected. A negative `x` or
+//! `y` means that the acceleration never changes its sign.
 //!
 //! As the duration grows, the end moves at the rate `w + x y/2` (or the velocity limit, in a
 //! cruise). The rate may be negative: a motion that must end with a negative velocity gets less far
-//! with more time, until there is time to move upwards in between. The zeros of the rate have
-//! closed forms too: see [`ExtremalProblem::turning_points`].
+//! with more time, until the time is long enough to move upwards in between. The zeros of the rate
+//! have closed forms too: see [`ExtremalProblem::turning_points`].
 
 use crate::scalar::sqrt;
 use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{change_of_ramp, ramp_and_hold, transfer_time};
 
-/// Both ends of a motion, in the frame in which it moves upwards, extended to zero acceleration.
+/// Both ends of an extremal motion, extended to zero acceleration, in the frame in which the motion
+/// goes upwards.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExtremalProblem {
     a0: f64,
@@ -47,10 +48,10 @@ pub(crate) struct ExtremalProblem {
 /// The extremal motion for one duration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExtremalProfile {
-    /// Distance of its end beyond the target.
+    /// Distance of the motion's end beyond the target.
     pub(crate) beyond: f64,
-    /// Velocity between the two halves: the largest, if both halves have an acceleration of their
-    /// own sign.
+    /// Velocity between the two halves. It is the largest velocity, if the acceleration of each
+    /// half has the usual sign.
     pub(crate) w: f64,
     first: (f64, f64),
     cruise: f64,
@@ -73,7 +74,8 @@ impl ExtremalProblem {
         }
     }
 
-    /// Returns the extremal motion of duration `t`, in which the end's velocity can be reached.
+    /// Returns the extremal motion of duration `t`. The end's velocity must be reachable in this
+    /// time.
     pub(crate) fn profile(&self, t: f64) -> ExtremalProfile {
         let Self { a0, af, c0, cf, .. } = *self;
         let whole = (t + a0 - af).max(0.0);
@@ -136,13 +138,14 @@ impl ExtremalProblem {
         }
     }
 
-    /// Returns durations between which the end moves monotonically as the duration grows,
-    /// unordered, some of them superfluous; the last is the beginning of the cruise.
+    /// Returns the durations between which the end moves monotonically as the duration grows. They
+    /// are unordered, and some may be superfluous. The last is the duration at which the cruise
+    /// begins.
     ///
     /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with `s =
     /// (x + y)^2`. With one hold it is zero where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, and
-    /// with both where `w = -1/2`. A root outside its own case only divides a monotone piece in
-    /// two, which is harmless.
+    /// with both where `w = -1/2`. A root outside of its case only divides a monotone piece in two,
+    /// which has no effect.
     pub(crate) fn turning_points(&self) -> [Option<f64>; 6] {
         let Self {
             a0,
@@ -172,15 +175,15 @@ impl ExtremalProblem {
         wholes.map(|whole| whole.map(|whole| whole - a0 + af))
     }
 
-    /// Returns the time at which a motion that cruises `short` of the target at `t` reaches it, if
-    /// it continues to cruise.
+    /// Returns the time at which a motion reaches the target if it continues to cruise. At time `t`
+    /// it cruises and is `short` of the target.
     pub(crate) fn cruise_on(&self, t: f64, short: f64) -> f64 {
         t + short / self.top
     }
 }
 
 impl ExtremalProfile {
-    /// Returns the velocity of the end as the duration grows.
+    /// Returns the rate at which the end moves as the duration grows.
     pub(crate) fn rate(&self) -> f64 {
         if self.cruise > 0.0 {
             self.w
@@ -210,8 +213,8 @@ impl ExtremalProfile {
 }
 
 /// Returns the displacement of the transfer between velocity `c` and the velocity that follows from
-/// the peak acceleration `x` and its hold, both with zero acceleration at the end. For a negative
-/// `x`, returns the excess of the other half.
+/// the peak acceleration `x` and its hold; the acceleration is zero at both. For a negative `x`,
+/// returns the excess of the other half.
 fn half(c: f64, x: f64, hold: f64) -> f64 {
     let change = x * x + x * hold;
     (c + 0.5 * change) * (2.0 * x + hold)

@@ -6,7 +6,7 @@ use crate::task::{ROUNDING, Task};
 use crate::times::Times;
 use crate::velocity_change::{DRIFT, TIGHT, VelocityChange, typical_velocity};
 
-/// Decides whether durations are feasible.
+/// Decision whether a duration is feasible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FeasibleDurations {
     pub(crate) up: ExtremalProblem,
@@ -18,7 +18,7 @@ pub(crate) struct FeasibleDurations {
     af: f64,
 }
 
-/// Durations at which feasible intervals begin or end.
+/// Durations at which feasible intervals may begin or end.
 pub(crate) type Candidates = Times<CANDIDATES>;
 
 impl FeasibleDurations {
@@ -64,7 +64,8 @@ impl FeasibleDurations {
         }
     }
 
-    /// Returns the durations at which feasible intervals begin, and some at which they end.
+    /// Returns the durations at which feasible intervals begin, and some of the durations at which
+    /// they end.
     pub(crate) fn candidates(&self) -> Candidates {
         let mut candidates = Candidates::NONE;
         let mut breaks = Times::<BREAKS>::NONE;
@@ -156,8 +157,7 @@ fn crossing(
     })
 }
 
-/// The magnitude to which the rounding of the distance between a motion's end and the target is
-/// relative.
+/// Magnitude relative to which the distance between a motion's end and the target is rounded.
 #[derive(Debug, Clone, Copy)]
 struct Size {
     fixed: f64,
@@ -181,19 +181,19 @@ impl Size {
     }
 }
 
-/// Share of the drift of a chain of plans by which a duration may differ from a feasible one. With
-/// the whole drift, just after the beginning of blocked durations, two of ten million plans had a
-/// landing error above 1e-12 relative. With a quarter of it, one of ten million plans that were
-/// renewed in each cycle made a detour.
+/// Share of the drift of a chain of plans by which a duration may differ from a feasible duration.
+/// With the whole drift, two of ten million plans had a relative landing error above 1e-12, just
+/// after the beginning of blocked durations. With a quarter of the drift, one of ten million plans
+/// that were renewed in each cycle made a detour.
 const NEAR: f64 = 0.5;
 
-/// Four breaks of the velocity and six turning points of each side.
+/// Largest number of breaks: four of the velocity, and six turning points of each side.
 const BREAKS: usize = 16;
 
-/// Each break may be a candidate, and between two breaks and after the last one each side may cross
-/// once.
+/// Largest number of candidates found. Each break may be a candidate. Between two breaks, and after
+/// the last break, each side may cross once.
 const FOUND: usize = 48;
 
-/// Feasible durations form at most three intervals; the remaining places are for ends that rounding
-/// finds twice.
+/// Largest number of candidates kept. Feasible durations form at most three intervals; the
+/// remaining places are for ends that are found twice because of rounding.
 pub(crate) const CANDIDATES: usize = 8;

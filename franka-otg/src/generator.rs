@@ -12,7 +12,7 @@ use crate::state::{AxisState, State, check_finite};
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
 ///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state). Each
-///   creates a new plan from the current state, unless nothing changes.
+///   method creates a new plan from the current state, unless nothing changes.
 /// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
 /// - Getters: [`state`](Self::state), [`target`](Self::target),
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
@@ -39,13 +39,13 @@ pub struct Generator<const N: usize> {
     synchronisation: Synchronisation,
     heading: Heading<N>,
     plan: Plan<N>,
-    /// Cycles since the creation of the plan.
+    /// Number of cycles since the creation of the plan.
     cycle: u64,
-    /// The state at that cycle.
+    /// State at this cycle.
     state: State<N>,
 }
 
-/// The end of the plan.
+/// What the plan leads to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Heading<const N: usize> {
     /// The target state.
@@ -55,13 +55,14 @@ enum Heading<const N: usize> {
 }
 
 impl<const N: usize> Generator<N> {
-    /// Creates a generator at `state` without a target: if it moves, it stops in the least time.
+    /// Creates a generator at `state` without a target. If the state moves, the generator stops in
+    /// the least time.
     ///
-    /// Synchronisation is [`Synchronisation::Straight`].
+    /// The synchronisation is [`Synchronisation::Straight`].
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it is more than 100
-    /// decades away from the limits.
+    /// [`PlanError::NotFinite`] for the state. [`PlanError::OutOfRange`] if state and limits differ
+    /// by more than 100 decades.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         Self::towards(state, limits, None)
     }
@@ -87,13 +88,13 @@ impl<const N: usize> Generator<N> {
         Ok(generator)
     }
 
-    /// Replaces state, limits and target: the motion leads to rest at `target`, or to rest in the
-    /// least time. Equivalent to a new generator, but in place, because a generator has some
-    /// kilobytes.
+    /// Replaces state, limits and target. The new motion leads to rest at `target`, or without a
+    /// target to rest in the least time. This is equivalent to a new generator, but works in place,
+    /// because a generator has some kilobytes.
     ///
     /// # Errors
-    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target); the current motion
-    /// continues.
+    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target). After an error, the
+    /// current motion continues.
     pub fn restart(
         &mut self,
         state: State<N>,
@@ -145,7 +146,8 @@ impl<const N: usize> Generator<N> {
     /// create a new plan.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the current motion continues.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. After an error, the current motion
+    /// continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
             && now.position == *target
@@ -160,18 +162,18 @@ impl<const N: usize> Generator<N> {
     /// Moves to `target` and arrives with its velocity and acceleration, in the least time that is
     /// feasible for all axes. A call with the current target does not create a new plan.
     ///
-    /// Use it to follow an object in motion, with a new target before each arrival, or to pass
-    /// through points with a velocity. Without a new target the motion continues past the old one
-    /// for one cycle, and then stops in the least time: a stalled program does not keep an arm
-    /// moving.
+    /// Use this to follow an object in motion, with a new target before each arrival, or to pass
+    /// through points with a velocity. Without a new target, the motion continues for one cycle
+    /// past the old target, and then stops in the least time. Therefore an arm does not keep moving
+    /// if the program stalls.
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
-    /// be early cannot wait at a moving target: it moves back and approaches again, possibly past
-    /// the target first, and the other axes wait for it.
+    /// be early cannot wait at a moving target. It moves back and approaches again, possibly after
+    /// it has passed the target, and the other axes wait for it.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
-    /// limits do not allow the target's motion. That is the case if `|velocity| + acceleration^2 /
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. [`PlanError::TargetMotion`] if the
+    /// limits do not allow the target's motion. This is the case if `|velocity| + acceleration^2 /
     /// (2 jerk limit)` exceeds the velocity limit, or the acceleration exceeds its limit. The
     /// current motion continues.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
@@ -187,14 +189,14 @@ impl<const N: usize> Generator<N> {
         self.plan_target(target)
     }
 
-    /// Changes the limits of the current motion, which keeps its target. Equal limits change
-    /// nothing.
+    /// Changes the limits of the current motion, which keeps its target. Limits equal to the
+    /// current limits change nothing.
     ///
     /// A state outside the new limits brakes back into them.
     ///
     /// # Errors
     /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than
-    /// the new limits allow; the previous limits then stay in force.
+    /// the new limits allow. After an error, the previous limits stay in force.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -214,10 +216,10 @@ impl<const N: usize> Generator<N> {
 
     /// Drops the target and stops in the least time.
     ///
-    /// On a straight line the stop stays on the line. That takes no longer than separate stops if
-    /// the axes have the same ratio of acceleration to jerk. Otherwise it takes longer by about the
-    /// difference of these ratios. Off a line each axis stops separately. Braking cannot fail:
-    /// state and limits were checked when they were set.
+    /// On a straight line, the stop stays on the line. If all axes have the same ratio of
+    /// acceleration to jerk, this takes no longer than separate stops. Otherwise it takes longer by
+    /// about the difference of these ratios. If the motion is not on a line, each axis stops
+    /// separately. Braking cannot fail, because state and limits were checked when they were set.
     pub fn brake(&mut self) {
         if self.heading != Heading::Rest {
             self.plan_stop();
@@ -227,10 +229,11 @@ impl<const N: usize> Generator<N> {
     /// Multiplies the velocity by `share`, from 0 to 1, and creates a new plan to the target, or to
     /// rest without a target. A motion on a straight line stays on it.
     ///
-    /// The velocity of the output jumps: the caller must ensure that `share` is close to 1.
+    /// The velocity of the output jumps, so the caller must ensure that `share` is close to 1.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the current motion continues.
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]. After an error, the current motion
+    /// continues.
     pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         let state = State {
             velocity: self.state.velocity.map(|velocity| share * velocity),
@@ -254,13 +257,15 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Re-anchors the generator at `state` and creates a new plan: to the target, or to rest in the
-    /// least time without a target.
+    /// Sets the current state to `state` and creates a new plan from it: to the target, or without
+    /// a target to rest in the least time.
     ///
-    /// The output jumps to `state`: the caller must ensure that it is close to the last output.
+    /// The output jumps to `state`, so the caller must ensure that `state` is close to the last
+    /// output.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the current motion continues.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. After an error, the current motion
+    /// continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
     }
@@ -268,15 +273,16 @@ impl<const N: usize> Generator<N> {
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
     /// The cycle in which the motion ends, and all later cycles, return exactly the target with
-    /// zero velocity and acceleration. For a moving target they return the position behind it at
-    /// which the motion stops.
+    /// zero velocity and acceleration. For a moving target they return the position behind the
+    /// target at which the motion stops.
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());
         &self.state
     }
 
-    /// Returns the state `t` seconds from now if nothing changes; a negative `t` means now.
+    /// Returns the state `t` seconds from now if target and limits do not change. A negative `t`
+    /// means now.
     #[must_use]
     pub fn sample(&self, t: f64) -> State<N> {
         if t > 0.0 {
@@ -292,7 +298,7 @@ impl<const N: usize> Generator<N> {
         &self.state
     }
 
-    /// Position of the target, or the position at which braking ends without a target.
+    /// Position of the target. Without a target, the position at which braking ends.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
         match &self.heading {
@@ -301,8 +307,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Position at which the current motion stops if nothing changes: the target, a position behind
-    /// a moving target, or the end of braking.
+    /// Position at which the current motion stops if target and limits do not change: the target, a
+    /// position behind a moving target, or the end of braking.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
@@ -320,7 +326,8 @@ impl<const N: usize> Generator<N> {
         self.plan.duration()
     }
 
-    /// Time in seconds until the target is met, or until rest without a target; then zero.
+    /// Time in seconds until the motion is at the target, or without a target until rest; zero
+    /// afterwards.
     #[must_use]
     pub fn time_to_target(&self) -> f64 {
         if self.is_done() {
@@ -330,8 +337,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Time until rest, in seconds; zero at rest. The output rests from the first whole cycle after
-    /// that.
+    /// Time until rest, in seconds; zero at rest. The output is at rest from the first whole cycle
+    /// after this time.
     #[must_use]
     pub fn remaining(&self) -> f64 {
         if self.is_done() {
@@ -375,7 +382,7 @@ impl<const N: usize> Generator<N> {
     }
 }
 
-/// Refuses a state that is too many orders of magnitude away from its limits to stop.
+/// Refuses a state if state and limits differ by too many orders of magnitude to plan a stop.
 fn check_range<const N: usize>(state: &State<N>, limits: &Limits<N>) -> Result<(), PlanError> {
     match (0..N).find(|&i| !can_stop(state.axis(i), limits.axis(i))) {
         Some(index) => Err(PlanError::OutOfRange { axis: index + 1 }),

@@ -1,27 +1,28 @@
-//! Step two: a profile of exactly a given duration, which is at least the least duration.
+//! Step two: a profile of exactly a given duration. This duration is at least the least duration.
 //!
-//! For targets at rest two families with one parameter each suffice.
+//! For targets at rest, two families with one parameter each are enough.
 //!
-//! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the
-//! equations of time and distance leaves one equation, which needs no division by `w`. Upwards, `w`
-//! is at or above the velocity that remains when the acceleration is ramped out. With `c, pi` the
-//! start extended to zero acceleration as in step one and `A(d)` the area of
+//! **Velocity cap.** The motion is a transfer to a velocity `w`, a cruise and a stop. Without the
+//! cruise, the equations of time and distance give one equation, which needs no division by `w`. In
+//! the upward case, `w` is at or above the velocity that remains when the acceleration is ramped to
+//! zero. With `c, pi` the start extended to zero acceleration as in step one and `A(d)` the area of
 //! [`stop_distance`](crate::transfer::stop_distance), the equation is
 //!
 //! ```text
 //! g(w) = A(w - c) + A(w) - (T + a) w + d - pi = 0
 //! ```
 //!
-//! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g`
-//! is convex or monotone as long as the cruise is not negative. If both transfers hold their
-//! acceleration it is a quadratic or linear equation. The cruise follows from the time equation, so
-//! the duration is exact, and the rounding affects the position, where it is smallest.
+//! and in the downward case `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative
+//! first jerk. `g` is convex or monotone as long as the cruise is not negative. If both transfers
+//! hold their acceleration, the equation is quadratic or linear. The cruise follows from the time
+//! equation. So the duration is exact, and rounding affects the position, where its effect is
+//! smallest.
 //!
-//! **Stop, then go**, if no cruise fits: see [`crate::stop_then_go`].
+//! **Stop, then go.** This applies if no cruise fits: see [`crate::stop_then_go`].
 //!
-//! Slowing down time instead (one factor for the whole profile) would change the velocity at the
-//! start. Lowering all three limits at once makes the duration discontinuous where a start is no
-//! longer inside them.
+//! Two other methods are not suitable. Slowing down time, by one factor for the whole profile,
+//! would change the velocity at the start. Lowering all three limits together makes the duration
+//! discontinuous where the start is no longer inside them.
 
 use crate::least_time::LeastTime;
 use crate::scalar::sqrt;
@@ -30,8 +31,8 @@ use crate::stop_then_go::stop_then_go;
 use crate::task::{SAME, Task};
 use crate::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
 
-/// Stretches a least-time solution to `duration`, in units of the axis; to its own duration if that
-/// is longer.
+/// Stretches a least-time solution to `duration`, in units of the axis. Its own duration is kept if
+/// it is longer.
 pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     if duration - least.duration <= SAME * duration {
         return Stretched::of(least.shape);
@@ -78,7 +79,7 @@ impl Cap {
         }
     }
 
-    /// Returns the distance still missing after `time` with cruise velocity `w`, and its
+    /// Returns the distance that is still missing after `time` with cruise velocity `w`, and its
     /// derivative.
     fn excess(&self, w: f64) -> (f64, f64) {
         let (first, first_slope) = stop_distance_and_slope((self.sign * (w - self.c)).max(0.0));
@@ -89,8 +90,8 @@ impl Cap {
         )
     }
 
-    /// Returns the root of the excess between `low`, where it is not negative, and `high`, where it
-    /// is not positive.
+    /// Returns the root of the excess between `low` and `high`. The excess is not negative at `low`
+    /// and not positive at `high`.
     fn solve(&self, low: f64, high: f64) -> f64 {
         let (mut low, mut high) = (low, high);
         let guess = self.with_holds();
@@ -125,8 +126,8 @@ impl Cap {
         w
     }
 
-    /// Returns the root if both transfers hold their acceleration: a quadratic equation upwards, a
-    /// linear equation downwards.
+    /// Returns the root if both transfers hold their acceleration. The equation is quadratic in the
+    /// upward case and linear in the downward case.
     fn with_holds(&self) -> f64 {
         let c = self.c;
         if self.sign > 0.0 {
@@ -138,7 +139,7 @@ impl Cap {
         }
     }
 
-    /// Returns the profile with cruise velocity `w`, if its cruise is not negative.
+    /// Returns the profile with cruise velocity `w`; `None` if its cruise would be negative.
     fn shape(&self, a: f64, w: f64) -> Option<Shape> {
         let first = (self.sign * (w - self.c)).max(0.0);
         let cruise = self.time - transfer_time(first) - transfer_time(w);
@@ -158,7 +159,7 @@ impl Cap {
     }
 }
 
-/// Bound of the search: bisection alone needs about 53 steps.
+/// Bound of the search. Bisection alone needs about 53 steps.
 const MAX_STEPS: usize = 60;
 
 #[cfg(test)]
@@ -168,7 +169,7 @@ mod tests {
     use super::*;
     use crate::least_time::least_time;
 
-    /// Follows a solution; returns its duration, the task remaining at its end, and the largest
+    /// Follows a solution. Returns its duration, the remaining task at its end, and the largest
     /// acceleration, velocity and distance beyond the target between segments.
     fn follow(task: &Task, solution: &Stretched) -> (f64, Task, f64, f64, f64) {
         let Stretched {

@@ -1,9 +1,9 @@
 //! Step one: the least-time profile of one axis.
 //!
 //! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` is an
-//! interval that grows with `T`. The optimum is therefore "push towards one side, then stop". The
-//! side is the direction from the end of an immediate stop to the target. A target inside the
-//! braking distance needs no special case.
+//! interval that grows with `T`. The optimum is therefore "push in one direction, then stop". The
+//! direction is that from the end of an immediate stop to the target. A target inside the braking
+//! distance needs no special case.
 //!
 //! In the frame in which the push is upwards, the jerks are `+ 0 - 0 - 0 +` (seven durations).
 //! Extending the first jerk to the instant with zero acceleration turns the start `(v, a)` into
@@ -15,18 +15,18 @@
 //!
 //! Let `x` be the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the
 //! velocity between the two halves. The motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`,
-//! which grows with `w`. Comparing the target with that value at the breakpoints determines the
-//! case. A cruise and an acceleration hold have closed forms. Without either, the monotone and
+//! which grows with `w`. A comparison of the target with this value at the breakpoints determines
+//! the case. A cruise and an acceleration hold have closed forms. Without either, the monotone and
 //! convex equation
 //!
 //! ```text
 //! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
 //! ```
 //!
-//! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative:
-//! the axis already brakes and only needs to brake less. A search over peak velocities has no such
-//! profile, and is up to 28 % slower in this case. The usual way, trying all families and testing
-//! each result, fails on their common boundaries because of rounding.
+//! is solved by Newton steps from the right, which cannot leave the interval. `x` is negative if
+//! the axis already brakes and only needs to brake less. A search over peak velocities does not
+//! find this profile; its result takes up to 28 % longer. The usual method tries all families and
+//! tests each result. It fails on the common boundaries of the families because of rounding.
 
 use crate::scalar::{cbrt, sqrt};
 use crate::shape::Shape;
@@ -36,11 +36,12 @@ use crate::transfer::{ramp_and_hold, stop_distance, transfer_distance};
 /// The least-time solution of a task inside its limits.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LeastTime {
-    /// Direction of the push, 1 or -1; the other fields are in the frame in which it is upwards.
+    /// Direction of the push, 1 or -1. The other fields are in the frame in which the push is
+    /// upwards.
     pub(crate) sign: f64,
-    /// The task in that frame.
+    /// Task in this frame.
     pub(crate) task: Task,
-    /// Its solution.
+    /// Solution in this frame.
     pub(crate) shape: Shape,
     /// Sum of the durations.
     pub(crate) duration: f64,
@@ -74,7 +75,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
     }
 }
 
-/// A start with its first jerk extended to zero acceleration.
+/// Start of a motion, extended by its first jerk to zero acceleration.
 struct ExtendedStart {
     a: f64,
     /// Velocity at the extended start.
@@ -95,7 +96,7 @@ impl ExtendedStart {
         }
     }
 
-    /// Returns the shape for the distance `d`, at or above the stop point.
+    /// Returns the shape for the distance `d`, which is at or above the stop point.
     fn solve(&self, d: f64) -> Shape {
         let Self { a, c, pi, top } = *self;
         let to_top = (top - c).max(0.0);
@@ -114,9 +115,9 @@ impl ExtendedStart {
         self.turning_at(self.solve_ramp(d, sqrt(to_top.min(1.0))))
     }
 
-    /// Returns the shape whose first transfer holds its acceleration. With the areas of both
-    /// transfers added, `stop` of `w` over the saturated first one is a perfect square in `sqrt(w)`
-    /// below saturation of the second, and a quadratic in `w` above.
+    /// Returns the shape whose first transfer holds its acceleration. The distance contains the
+    /// areas of both transfers. While the second transfer does not reach the acceleration limit,
+    /// the distance is a perfect square in `sqrt(w)`. Above, it is quadratic in `w`.
     fn with_hold(&self, d: f64) -> Shape {
         let Self { a, c, pi, .. } = *self;
         let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
@@ -138,7 +139,8 @@ impl ExtendedStart {
         Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
     }
 
-    /// Returns the smallest acceleration to turn at: an immediate stop.
+    /// Returns the smallest acceleration at which the motion may turn. It belongs to an immediate
+    /// stop.
     fn least_ramp(&self) -> f64 {
         if self.c < 0.0 {
             self.a.max(sqrt(-self.c))
@@ -201,6 +203,6 @@ impl ExtendedStart {
     }
 }
 
-/// Largest number of Newton steps of a convex search. Three to five are usual; near a double root
-/// each step only halves the remainder.
+/// Largest number of Newton steps of a convex search. Three to five steps are usual. Near a double
+/// root, each step only halves the remainder.
 const MAX_NEWTON: usize = 60;

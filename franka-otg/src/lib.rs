@@ -2,9 +2,9 @@
 //!
 //! [`Generator`] moves `N` axes from any state to a target inside limits of velocity, acceleration
 //! and jerk, in the least time in which all axes arrive together. Targets are at rest or in motion.
-//! Target and limits may change in any cycle. A plan is created when one of them changes and is
-//! then followed. Planning in every cycle would add a rounding error per cycle, but a plan that is
-//! kept ends exactly at the target.
+//! Target and limits may change in any cycle. The generator creates a plan when one of them
+//! changes, and then follows this plan. Planning in every cycle would add a rounding error per
+//! cycle, whereas a plan that is kept ends exactly at the target.
 //!
 //! ```text
 //! state, target, limits -> plan          a straight line if the motion so far allows one, else each axis on its own
@@ -59,29 +59,30 @@
 //! # Targets at rest
 //!
 //! An axis may wait at rest, so the positions at which it can rest at time `T` form an interval
-//! that only grows with `T`. This has three consequences. Every duration from the least one on is
-//! feasible, so the common duration is the longest of the least ones. The optimum is "push at the
-//! limits, then stop", in the direction from the end of an immediate stop to the target. The end of
-//! the motion is a monotone function of the duration of the push. So comparing the target with the
-//! breakpoints determines the case: closed forms or one short convex search (`least_time`).
+//! that only grows with `T`. This has three consequences. Every duration from the least duration on
+//! is feasible, so the common duration is the longest of the axes' least durations. The optimum is
+//! "push at the limits, then stop", in the direction from the end of an immediate stop to the
+//! target. The end of the motion is a monotone function of the duration of the push. So a
+//! comparison of the target with the breakpoints determines the case: a closed form or one short
+//! convex search (`least_time`).
 //!
 //! # Targets in motion
 //!
-//! At a target in motion an axis cannot wait, and there may be *blocked* durations between feasible
-//! ones. For one duration, however, the reachable positions are still an interval, whose ends have
-//! closed forms, and the mean of two admissible motions is admissible. So two evaluations decide
-//! whether a duration is feasible, and a profile for it is a weighted mean. One short search per
-//! axis finds the beginnings of the feasible durations (`moving_target`).
+//! At a target in motion an axis cannot wait, and *blocked* durations may exist between feasible
+//! durations. For one duration, however, the reachable positions are still an interval. The ends of
+//! this interval have closed forms, and the mean of two admissible motions is admissible. So two
+//! evaluations decide whether a duration is feasible, and a profile for it is a weighted mean. One
+//! short search per axis finds the beginnings of the feasible durations (`moving_target`).
 //!
 //! # Guarantees
 //!
 //! - Velocity, acceleration and jerk keep their limits within rounding, from every state that can
-//!   stay inside them. Other states are brought back inside under the jerk limit, as early as
-//!   possible; the state is never clamped (`brake`).
+//!   stay inside them. The generator brings other states back inside under the jerk limit, as early
+//!   as possible. It never clamps the state (`brake`).
 //! - All axes are at the target at the same time, within rounding. A longer duration of another
-//!   axis never causes overshoot of a target at rest that can be reached without it. The one
-//!   exception is an axis whose stop ends exactly at its target. It cannot arrive later without
-//!   overshooting, so it waits at the target (`stop_then_go`).
+//!   axis never causes an axis to overshoot a target at rest, if the axis can reach the target
+//!   without overshoot. The one exception is an axis whose stop ends exactly at its target. It
+//!   cannot arrive later without overshooting, so it waits at the target (`stop_then_go`).
 //! - From rest, and while new targets stay on the line, the path is straight (`straight_line`).
 //! - No allocation and no panic, for all finite inputs; input that is out of range for `f64` is an
 //!   error.
@@ -100,7 +101,7 @@
 //! # Termination
 //!
 //! No function calls itself, directly or through others: the modules call each other in the order
-//! of the diagram. So the work is bounded if each loop is, and each loop has a bound:
+//! of the diagram. So the work is bounded if each loop is bounded. Each loop has a bound:
 //!
 //! | loop | passes at most |
 //! |---|---|

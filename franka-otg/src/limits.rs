@@ -2,7 +2,7 @@
 
 use crate::error::{PlanError, Quantity};
 
-/// Limits of one axis, symmetric: velocity, acceleration and jerk stay within plus or minus these
+/// Symmetric limits of one axis. Velocity, acceleration and jerk stay within plus or minus these
 /// values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisLimits {
@@ -77,7 +77,7 @@ impl<const N: usize> Limits<N> {
     /// Returns limits of the parameter `s` of a straight line `origin + s * direction` that keep
     /// every axis inside its own limits.
     ///
-    /// A zero component does not limit `s`: its bound is infinite.
+    /// A zero component does not limit `s`, so its bound is infinite.
     pub(crate) fn along(&self, direction: &[f64; N]) -> AxisLimits {
         let mut along = AxisLimits {
             velocity: f64::INFINITY,

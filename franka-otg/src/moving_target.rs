@@ -1,22 +1,23 @@
 //! Targets in motion: the feasible durations, and a profile for each.
 //!
 //! At a target with a velocity an axis cannot wait. An axis that would be early must move back and
-//! approach again, so there may be infeasible (*blocked*) durations between feasible ones. For one
-//! duration the reachable positions are still an interval, because the dynamics are linear and the
-//! limits convex. Its ends are the extremal motions up and down (`extremal_profile`), in closed
-//! form. Therefore:
+//! approach again. So infeasible (*blocked*) durations may exist between feasible durations. For
+//! one duration the reachable positions are still an interval, because the dynamics are linear and
+//! the limits convex. The extremal motions up and down give the ends of the interval, in closed
+//! form (`extremal_profile`). Therefore:
 //!
-//! - a duration is feasible if its interval contains the target: two evaluations;
+//! - a duration is feasible if its interval contains the target, which takes two evaluations;
 //! - the ends of the interval pass the target only a few times, and between these durations
 //!   feasibility does not change. Each end is monotone between its turning points, which have
 //!   closed forms too. So one bracketed search per piece finds the least duration and the ends of
 //!   the blocked intervals (`feasible_durations`);
 //! - each feasible duration has a profile: the mean of the two extremal motions, weighted so that
-//!   it ends at the target. A mean of motions inside convex limits is inside them, so it always
-//!   exists. If a constant velocity fits in between, that profile is better ([`Plateau`]).
+//!   it ends at the target. A mean of motions inside convex limits is inside these limits, so such
+//!   a profile always exists. If a motion through a constant velocity fits, it is the better
+//!   profile ([`Plateau`]).
 //!
-//! The velocity of the target must be reachable as well. That is the same problem one derivative
-//! lower. It has a separate blocked interval if the target accelerates (`velocity_change`).
+//! The velocity of the target must be reachable as well. This is the same problem one derivative
+//! lower. If the target accelerates, it has a blocked interval of its own (`velocity_change`).
 //!
 //! The usual solution searches for all profiles that fit. It solves quartic and sixth-order
 //! equations in eleven families per direction, half of which fail by rounding where two families
@@ -29,8 +30,8 @@ use crate::task::Task;
 
 /// One axis and a target that moves, in units of the axis.
 ///
-/// Quantities that follow from the task in a few operations are not stored: each axis of a plan has
-/// one of these, and most axes of most plans move to rest.
+/// The struct does not store quantities that follow from the task in a few operations. Each axis of
+/// a plan contains this struct, although most axes of most plans move to rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovingTarget {
     task: Task,
@@ -48,7 +49,8 @@ pub(crate) enum Solution {
     Mean {
         /// The extremal motion upwards, and the distance of its end beyond the target.
         up: (Shape, f64),
-        /// The extremal motion downwards, in its own frame.
+        /// The extremal motion downwards, in the frame in which it is upwards, and the distance of
+        /// its end beyond the target.
         down: (Shape, f64),
         /// Weight of the motion upwards.
         weight: f64,
@@ -57,7 +59,7 @@ pub(crate) enum Solution {
 
 impl MovingTarget {
     /// Computes the feasible durations of a task inside its limits, for a target with velocity `vf`
-    /// and acceleration `af` that are possible inside them.
+    /// and acceleration `af`. The limits must allow both.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
             task: *task,
@@ -106,7 +108,7 @@ impl MovingTarget {
             .find(|&candidate| feasible.are_same(t, candidate))
     }
 
-    /// Returns the motion for a duration returned by [`from`](Self::from).
+    /// Returns the motion for a duration that [`from`](Self::from) returned.
     pub(crate) fn solve(&self, t: f64) -> Solution {
         let feasible = self.feasible();
         let t = if feasible.is_feasible(t) {
@@ -147,8 +149,8 @@ mod tests {
     proptest! {
         #![proptest_config(cases(3000))]
 
-        /// Rest is also a motion: the other solution, which shares none of the equations, must
-        /// agree.
+        /// Rest is also a motion. The other solution, which shares no equation with this one, must
+        /// give the same duration.
         #[test]
         fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
             exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),

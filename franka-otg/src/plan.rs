@@ -8,15 +8,14 @@ use crate::profile::Profile;
 use crate::state::{AxisState, State};
 use crate::straight_line::StraightLine;
 
-/// The synchronisation of the axes in a motion to a target. All axes always arrive at the same
-/// instant.
+/// Synchronisation of the axes in a motion to a target. All axes always arrive at the same instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
-    /// In phase, on a straight line, if the current motion allows it; from rest it always does.
-    /// Otherwise in time only.
+    /// The axes move in phase, on a straight line, if the current motion allows it. From rest this
+    /// is always possible. Otherwise, as [`Time`](Self::Time).
     #[default]
     Straight,
-    /// In time only: at the earliest arrival of the slowest axis, on a curved path.
+    /// The axes only arrive together, as early as the slowest axis can, on a curved path.
     Time,
 }
 
@@ -28,7 +27,7 @@ pub(crate) struct Plan<const N: usize> {
     along: Profile,
     /// Separate motion of each axis.
     axes: [Profile; N],
-    /// Time at which the target is met, in seconds from the start.
+    /// Time at which the axes are at the target, in seconds from the start.
     arrival: f64,
     /// Position of rest: the target, or a position behind a moving target.
     end: [f64; N],
@@ -46,7 +45,7 @@ enum Path<const N: usize> {
 /// The start of a plan.
 pub(crate) struct PlanStart<'a, const N: usize> {
     pub(crate) state: State<N>,
-    /// The straight line that the state is on, and the state along it.
+    /// Straight line on which the state moves, and the state along this line.
     pub(crate) line: Option<(StraightLine<N>, AxisState)>,
     pub(crate) limits: &'a Limits<N>,
 }
@@ -64,10 +63,11 @@ impl<const N: usize> Plan<N> {
         }
     }
 
-    /// Replaces the plan with the motion to `target`, and to rest behind a moving target.
+    /// Replaces the plan with the motion to `target`. For a moving target, the plan continues to
+    /// rest behind it.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the plan is then unchanged.
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]. The plan is then unchanged.
     pub(crate) fn go_to(
         &mut self,
         target: &State<N>,
@@ -118,8 +118,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes so that all arrive with the slowest, or as soon afterwards as all of them
-    /// can.
+    /// Lays out the axes. All axes arrive together with the slowest axis, or as soon afterwards as
+    /// all can.
     fn move_axes(
         &mut self,
         state: &State<N>,
@@ -160,8 +160,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Replaces the plan with the least-time stop: along the line of the state, or of each axis
-    /// separately.
+    /// Replaces the plan with the least-time stop: along the line of the state, or separately for
+    /// each axis.
     pub(crate) fn stop(&mut self, start: &PlanStart<'_, N>) {
         if let Some((line, along)) = &start.line {
             lay_out_stop(
@@ -185,24 +185,24 @@ impl<const N: usize> Plan<N> {
         self.path = Path::PerAxis;
     }
 
-    /// Position of rest at the end.
+    /// Position of rest at the end of the plan.
     pub(crate) const fn end(&self) -> &[f64; N] {
         &self.end
     }
 
-    /// Time at which the target is met, in seconds from its start: the time of rest, unless the
-    /// target moves.
+    /// Time at which the axes are at the target, in seconds from the start of the plan. It is the
+    /// time of rest, unless the target moves.
     pub(crate) const fn arrival(&self) -> f64 {
         self.arrival
     }
 
-    /// Time at which all axes rest, in seconds from its start.
+    /// Time at which all axes are at rest, in seconds from the start of the plan.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// Returns the state `t >= 0` seconds after its start; exactly at rest at the end from the
-    /// duration on.
+    /// Returns the state `t >= 0` seconds after the start of the plan. From the duration on, it is
+    /// exactly at rest at the end.
     pub(crate) fn sample(&self, t: f64) -> State<N> {
         if t >= self.duration - SLACK {
             return State::at_rest(self.end);
@@ -234,8 +234,8 @@ impl<const N: usize> Plan<N> {
 
 /// Returns the least duration, at least `at_least`, that is feasible for all axes.
 ///
-/// An axis for which a duration is infeasible requests its next feasible duration, which is one of
-/// its candidates. The duration only grows, so each candidate is requested at most once.
+/// If a duration is infeasible for an axis, the axis requests its next feasible duration, which is
+/// one of its candidates. The duration only grows, so each candidate is requested at most once.
 ///
 /// Rounding alone must not cause a detour. The feasible durations of one axis may end just before a
 /// duration that another axis knows with less precision.
@@ -267,9 +267,9 @@ impl Refusal {
     }
 }
 
-/// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a
-/// duration does not cost a cycle.
+/// Time before the end, in seconds, at which a motion counts as ended. Without it, rounding of a
+/// duration could cost a cycle.
 ///
-/// A millionth of a cycle: the remaining distance is then its third power times a sixth of the jerk
-/// limit.
+/// The value is a millionth of a cycle. The remaining distance is then its third power times a
+/// sixth of the jerk limit.
 const SLACK: f64 = 1e-9;

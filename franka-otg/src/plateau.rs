@@ -12,13 +12,14 @@
 //!
 //! with `M` the displacement of a transfer. The extremal motions up and down are the two ends of
 //! this family. As long as the cruise is not negative, the excess grows with `w`, so exactly one
-//! `w` between theirs is right. A cruise is negative only for durations so close to the duration of
-//! the change of velocity that no plateau fits; then the mean of the two extremal motions is used.
+//! `w` between the velocities of the extremal motions is right. The cruise is negative only if the
+//! duration is so close to that of the velocity change that no plateau fits. The mean of the two
+//! extremal motions is then used.
 //!
-//! The mean would be valid for every duration, without a search. But a new plan from a state on
-//! this motion continues with the same velocity, while the mean of the extremal motions from there
-//! differs each time. With a new plan in each cycle it swings from one end of the interval to the
-//! other.
+//! The mean would be valid for every duration, without a search. But a new plan from a state on a
+//! plateau motion continues with the same velocity, whereas the mean of the extremal motions
+//! differs with each new plan. With a new plan in each cycle, the mean would swing from one end of
+//! the interval to the other.
 
 use crate::root::{Point, root};
 use crate::shape::Shape;
@@ -44,7 +45,8 @@ impl Plateau {
         }
     }
 
-    /// Returns the direction and the shape of the motion, if its velocity is between two others.
+    /// Returns the direction and the shape of the motion, if its velocity is between `low` and
+    /// `high`.
     pub(crate) fn between(&self, low: f64, high: f64) -> Option<(f64, Shape)> {
         let point = |at| Point {
             at,
@@ -110,6 +112,6 @@ struct Transfers {
     /// Velocity changes of the two transfers, with extended ends.
     changes: (f64, f64),
     cruise: f64,
-    /// Distance of its end beyond the target.
+    /// Distance of the motion's end beyond the target.
     excess: f64,
 }

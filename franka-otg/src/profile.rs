@@ -5,10 +5,10 @@ use crate::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
-/// Positions are relative to the start, so that a large offset rounds the result once and not in
+/// Positions are relative to the start. A large offset thus rounds the result only once, not in
 /// each segment. The last three segments of a motion to a target are laid out backwards from the
-/// target. The target is then met exactly, and the remaining rounding occurs at full speed, where
-/// it is relatively smallest.
+/// target. The motion then ends exactly at the target, and the remaining rounding error occurs at
+/// full speed, where it is relatively smallest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Profile {
     origin: f64,
@@ -75,8 +75,8 @@ impl Profile {
     /// Appends `t` seconds of exactly constant `velocity`. The previous segments lead to this
     /// velocity within rounding.
     ///
-    /// A cruise may last millions of times longer than the ramps around it: the last bit of a
-    /// remaining acceleration or velocity would grow into a distance.
+    /// A cruise may last millions of times longer than the ramps around it. Without an exact
+    /// velocity, the last bit of a remaining acceleration would grow into a distance.
     pub(crate) fn cruise(&mut self, velocity: f64, t: f64) {
         if t > 0.0 {
             self.front.velocity = velocity;
@@ -92,7 +92,7 @@ impl Profile {
         }
     }
 
-    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to a point
+    /// Appends the jerks `jerk, 0, -jerk` for the times `t`. They lead to `target`, or to a point
     /// `beyond` it.
     pub(crate) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
         self.end = target.position;
@@ -112,7 +112,7 @@ impl Profile {
         }
     }
 
-    /// Makes the end position of the segments the end of the profile, exactly at rest.
+    /// Makes the end of the segments the end of the profile, exactly at rest.
     pub(crate) fn finish_here(&mut self) {
         self.end = self.origin + self.front.position;
     }
@@ -120,8 +120,8 @@ impl Profile {
     /// Sets the profile to the mean of two motions from one state with the same duration, the first
     /// with `weight`, the other with `1 - weight`. The mean leads to `target`.
     ///
-    /// The states of its segments are means of the states of the two motions, not sums over the
-    /// previous segments: they are as exact at the end as at the start, and after any cruise.
+    /// The states of the segments are means of the states of the two motions, not sums over the
+    /// previous segments. So they are equally exact at the start, at the end, and after a cruise.
     pub(crate) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         self.begin(AxisState {
@@ -179,12 +179,13 @@ impl Profile {
         self.end
     }
 
-    /// Duration in seconds from its start.
+    /// Duration of the profile, in seconds.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// Returns the state `t >= 0` seconds after the start; exactly the end from the duration on.
+    /// Returns the state `t >= 0` seconds after the start. From the duration on, it is exactly the
+    /// end.
     pub(crate) fn sample(&self, t: f64) -> AxisState {
         if t >= self.duration {
             return AxisState::at_rest(self.end);
@@ -202,9 +203,9 @@ impl Profile {
     }
 }
 
-/// Three segments to brake into the limits, thirteen of the mean of two shapes, and four to stop
-/// behind a target in motion. A motion that begins with a part of a stop has three plus one shape:
-/// at most thirteen in all.
+/// Largest number of segments: three to brake into the limits, thirteen of the mean of two shapes,
+/// and four to stop behind a target in motion. A motion that begins with part of a stop has at most
+/// thirteen segments in total.
 const MAX_SEGMENTS: usize = 20;
 
 #[cfg(test)]

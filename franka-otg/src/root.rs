@@ -13,7 +13,7 @@ pub(crate) struct Point {
 ///
 /// The method is Chandrupatla's: inverse quadratic interpolation if three points allow it,
 /// otherwise bisection (T. R. Chandrupatla, Advances in Engineering Software 28(3), 1997). The
-/// search ends when a value is at most `close`, when the bracket is as narrow as `f64` resolves, or
+/// search ends when a value is at most `close`, when `f64` cannot resolve a narrower bracket, or
 /// after [`MAX_STEPS`].
 pub(crate) fn root(
     low: Point,
@@ -54,8 +54,8 @@ fn nearer(a: Point, b: Point) -> Point {
     if a.value.abs() < b.value.abs() { a } else { b }
 }
 
-/// Returns the position of the root between `a` and `b`, as a fraction, by the parabola through
-/// three points if it is monotone there.
+/// Returns the position of the root between `a` and `b`, as a fraction, from the parabola through
+/// three points, if this parabola is monotone between them.
 fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     let (fa, fb, fc) = (a.value, b.value, c.value);
     let xi = (a.at - b.at) / (c.at - b.at);
@@ -68,8 +68,8 @@ fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     }
 }
 
-/// Bound of a search. If interpolation does not help, the method falls back to bisection, which
-/// alone needs 53 steps from any bracket within a factor of two of its root; ten are usual.
+/// Bound of a search. Ten steps are usual. If interpolation does not help, the method falls back to
+/// bisection. Bisection alone needs 53 steps from any bracket within a factor of two of the root.
 const MAX_STEPS: usize = 100;
 
 #[cfg(test)]

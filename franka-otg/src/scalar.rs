@@ -1,6 +1,6 @@
 //! Square and cube root: from the standard library with `std` and from `libm` without.
 //!
-//! Only these two elementary functions are used; `core` has neither of them.
+//! The crate uses only these two elementary functions, and `core` has neither.
 
 #[cfg(feature = "std")]
 pub(crate) fn sqrt(x: f64) -> f64 {

@@ -17,7 +17,7 @@ pub(crate) fn count(pass: usize, ceiling: usize) {
 }
 
 /// Returns the largest number of passes of a search in this thread since the last call, in percent
-/// of its bound.
+/// of the search's bound.
 #[cfg(test)]
 pub(crate) fn take_most() -> usize {
     MOST.replace(0)

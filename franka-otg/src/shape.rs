@@ -10,7 +10,8 @@ pub(crate) struct Shape {
     pub(crate) first: f64,
     /// The seven durations, none negative.
     pub(crate) t: [f64; 7],
-    /// Velocity between the two halves: during the fourth, if that is not zero.
+    /// Velocity between the two halves, which is that of the fourth piece if this piece has a
+    /// duration.
     pub(crate) cruise: f64,
 }
 
@@ -20,8 +21,8 @@ impl Shape {
         self.t.iter().sum()
     }
 
-    /// Returns the transfer from acceleration `a` to the velocity `cruise`, held for `time`, and
-    /// the transfer to rest; both as ramp and hold.
+    /// Returns the transfer from acceleration `a` to the velocity `cruise`, a cruise of duration
+    /// `time`, and the transfer to rest. Both transfers are given as ramp and hold.
     pub(crate) fn two_transfers(
         a: f64,
         to_cruise: (f64, f64),
@@ -44,7 +45,8 @@ impl Shape {
     }
 }
 
-/// Some pieces and a shape: a motion of a given duration, in the frame of its least-time solution.
+/// A motion of a given duration: some pieces, then a shape, in the frame of its least-time
+/// solution.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretched {
     /// The pieces before the shape.
@@ -56,7 +58,7 @@ pub(crate) struct Stretched {
 }
 
 impl Stretched {
-    /// Creates a motion of the shape alone, in its own frame.
+    /// Creates a motion of only the shape, in the shape's own frame.
     pub(crate) fn of(shape: Shape) -> Self {
         Self {
             before: Pieces::NONE,

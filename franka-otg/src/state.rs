@@ -4,14 +4,15 @@ use crate::error::{PlanError, Quantity};
 
 /// Position, velocity and acceleration of one axis.
 ///
-/// The caller chooses the units: radians or metres, per second, per second squared.
+/// The caller chooses the unit of the position, for example radians or metres. Times are in
+/// seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AxisState {
-    /// Position.
+    /// Position of the axis.
     pub position: f64,
-    /// Velocity.
+    /// Velocity, in units per second.
     pub velocity: f64,
-    /// Acceleration.
+    /// Acceleration, in units per second squared.
     pub acceleration: f64,
 }
 

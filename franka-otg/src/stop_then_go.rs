@@ -1,19 +1,20 @@
 //! Step two if no cruise fits: follow the stop for a while, then move to the target.
 //!
-//! This applies to an axis that slows down towards a target just past its stop point and must
-//! arrive slightly later, by up to a fifth of the duration. It follows its least-time stop for some
-//! time, and then takes the least-time profile from there to the target. The total duration grows
-//! with that time. At zero it is the least duration, because a profile with a longer fixed first
-//! piece cannot be faster. It is continuous, up to the duration of stopping and then moving from
-//! rest. For a longer duration the axis waits at that rest. So every duration has a profile. None
-//! overshoots: along a stop the stop point is constant and short of the target, and the rest of the
-//! motion is a push and a stop.
+//! This applies to an axis that slows down towards a target just past its stop point, and that must
+//! arrive slightly later, by up to a fifth of the duration. The axis follows its least-time stop
+//! for some time, and then takes the least-time profile to the target. The total duration grows
+//! continuously with this time. It begins with the least duration, because a profile with a longer
+//! fixed first piece cannot be faster. It ends with the duration of stopping and then moving from
+//! rest. For a still longer duration, the axis waits at rest. So every duration has a profile. No
+//! profile overshoots: during a stop the stop point is constant and short of the target, and the
+//! rest of the motion is a push and a stop.
 //!
-//! A target exactly at the stop point cannot be reached later without overshooting. In this case
-//! the result is the stop, and a wait at the target.
+//! An axis cannot reach a target exactly at its stop point later without overshooting. The result
+//! is then the stop and a wait at the target.
 //!
-//! Lowering the acceleration limit instead slows down more gently. But beyond the gentlest stop
-//! that ends at the target it has no solution: the axis would be early, or overshoot.
+//! A lower acceleration limit would slow down the axis more gently. But for durations beyond the
+//! gentlest stop that ends at the target, this method has no solution: the axis would be early, or
+//! overshoot.
 
 use crate::brake::Pieces;
 use crate::least_time::{LeastTime, least_time};
@@ -22,8 +23,8 @@ use crate::shape::Stretched;
 use crate::task::{SAME, Task};
 use crate::transfer::stop;
 
-/// Returns the profile of `duration` that follows the stop first, in the frame of `least`, whose
-/// duration is shorter.
+/// Returns the profile of `duration` that follows the stop first, in the frame of `least`.
+/// `duration` must be longer than the duration of `least`.
 pub(crate) fn stop_then_go(least: &LeastTime, duration: f64) -> Stretched {
     let task = least.task;
     let (sign, times) = stop(task.v, task.a);
@@ -64,7 +65,7 @@ struct Stop {
 }
 
 impl Stop {
-    /// Returns the first `theta` of the stop, and the remaining task.
+    /// Returns the first `theta` of time of the stop, and the remaining task.
     fn after(&self, theta: f64) -> (Pieces, Task) {
         let (mut pieces, mut task, mut left) = (Pieces::NONE, self.task, theta);
         for (jerk, t) in [self.sign, 0.0, -self.sign].into_iter().zip(self.times) {

@@ -1,16 +1,16 @@
 //! Straight lines: all axes as one axis.
 //!
-//! If the displacement to the target, the velocities and the accelerations of all axes, now and at
-//! the target, are multiples of one vector, the motion is a straight line. One scalar problem along
-//! it then moves the axes in phase. From rest this is always possible. The duration equals the
-//! time-synchronised one if the same axis determines all three limits, and is longer otherwise.
+//! The motion is a straight line if the displacement to the target, and all velocities and
+//! accelerations now and at the target, are multiples of one vector. One scalar problem along this
+//! line then moves the axes in phase. From rest, this is always possible. The duration equals that
+//! of time-synchronised axes if the same axis determines all three limits. Otherwise it is longer.
 //!
-//! Rounding makes the axes of a moving line slightly non-parallel. So the scalar state is kept and
-//! continued while targets stay on the line, instead of being derived from the axes again.
+//! Rounding makes the axes of a moving line slightly non-parallel. So the scalar state is continued
+//! while targets stay on the line, and not derived from the axes again.
 
 use crate::state::{AxisState, State};
 
-/// The line `origin + s * direction`, its direction scaled to a largest component of one.
+/// The line `origin + s * direction`. The largest component of the direction is one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StraightLine<const N: usize> {
     origin: [f64; N],
@@ -62,8 +62,8 @@ impl<const N: usize> StraightLine<N> {
             })
     }
 
-    /// Compares each component separately, so that the unit or limit of one axis does not affect
-    /// another.
+    /// Compares each component separately. The unit or limit of one axis thus does not affect
+    /// another axis.
     fn is_parallel(&self, vector: &[f64; N]) -> bool {
         (0..N).all(|i| {
             let expected = vector[self.main] * self.direction[i];
@@ -71,7 +71,7 @@ impl<const N: usize> StraightLine<N> {
         })
     }
 
-    /// Returns the state along the line of a `target` that lies on it and moves along it.
+    /// Returns the state along the line for a `target` that lies on the line and moves along it.
     pub(crate) fn state_of(&self, target: &State<N>) -> Option<AxisState> {
         let to = target.axis(self.main);
         let s = to.position - self.origin[self.main];
@@ -98,6 +98,6 @@ impl<const N: usize> StraightLine<N> {
     }
 }
 
-/// Relative difference between components of parallel vectors: rounding of a few operations, times
-/// the length of a chain of re-plans.
+/// Relative difference up to which components of vectors count as parallel: the rounding of a few
+/// operations, times the length of a chain of plans.
 const PARALLEL: f64 = 1e-13;

@@ -1,8 +1,8 @@
 //! One axis and its target in units of its own limits.
 //!
-//! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the
-//! jerk as units, only the velocity limit remains as a parameter. Positions are relative to the
-//! axis, so large offsets cost no precision.
+//! Fourth powers of quantities in SI units would differ by fifteen decades. With the acceleration
+//! limit and the jerk limit as units, only the velocity limit remains as a parameter. Positions are
+//! relative to the axis, so large offsets cost no precision.
 
 use crate::limits::AxisLimits;
 use crate::state::AxisState;
@@ -19,15 +19,16 @@ pub(crate) struct Task {
     pub(crate) a: f64,
     /// Velocity limit.
     pub(crate) top: f64,
-    /// Expected rounding error of `d`; zero for a state at rest, from which every distance is
-    /// moved.
+    /// Expected rounding error of `d`; zero for a state at rest, because from rest even the
+    /// smallest distance counts.
     pub(crate) fuzz: f64,
 }
 
 impl Task {
-    /// Returns the task in units of its limits, and the unit of time, `A/J`.
+    /// Returns the task in units of the limits, and the unit of time, `A/J`.
     ///
-    /// `None` if the quantities are more than 100 decades apart: their squares could overflow.
+    /// `None` if the quantities differ by more than 100 decades, because their squares could
+    /// overflow.
     pub(crate) fn new(state: AxisState, target: f64, limits: AxisLimits) -> Option<(Self, f64)> {
         let (task, unit) = Self::unchecked(state, target, limits);
         let fits = |value: f64| value.abs() < FAR; // false for NaN
@@ -41,7 +42,7 @@ impl Task {
         representable.then_some((task, unit))
     }
 
-    /// Like [`Task::new`], for quantities known to be close enough together.
+    /// Like [`Task::new`], for quantities that are known to differ by fewer decades.
     pub(crate) fn unchecked(state: AxisState, target: f64, limits: AxisLimits) -> (Self, f64) {
         let unit = limits.acceleration / limits.jerk;
         let per_velocity = 1.0 / (limits.acceleration * unit);
@@ -72,7 +73,7 @@ impl Task {
         }
     }
 
-    /// Returns the remaining task after `t` of constant `jerk`.
+    /// Returns the remaining task after the time `t` with constant `jerk`.
     pub(crate) fn after(self, jerk: f64, t: f64) -> Self {
         Self {
             d: self.d - t * (self.v + t * (0.5 * self.a + t * jerk / 6.0)),
@@ -87,7 +88,7 @@ impl Task {
         self.v + 0.5 * self.a * self.a.abs()
     }
 
-    /// Returns the end of the least-time stop, relative to the current position, and its expected
+    /// Returns the end of the least-time stop, relative to the current position, and the expected
     /// rounding error.
     pub(crate) fn stop_point(&self) -> (f64, f64) {
         let sign = 1_f64.copysign(self.coasting_velocity());

@@ -1,6 +1,6 @@
 //! Short sorted lists of durations.
 
-/// Up to `C` times in ascending order. In a full list, a new time replaces the last.
+/// Up to `C` times in ascending order. If the list is full, a new time replaces the last.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Times<const C: usize> {
     list: [f64; C],
@@ -14,7 +14,7 @@ impl<const C: usize> Times<C> {
         len: 0,
     };
 
-    /// Adds a time unless the list contains it.
+    /// Adds a time, unless the list already contains it.
     pub(crate) fn insert(&mut self, t: f64) {
         if self.iter().any(|other| other == t) {
             return;

@@ -1,4 +1,4 @@
-//! Transfers between two velocities, the building block of every profile.
+//! Transfers from one velocity to another, the building blocks of every profile.
 //!
 //! All quantities are in units in which the acceleration limit and the jerk are one: times in
 //! `A/J`, velocities in `A^2/J`, positions in `A^3/J^2`. A transfer that begins and ends without
@@ -11,12 +11,12 @@ pub(crate) fn transfer_time(d: f64) -> f64 {
     if d <= 1.0 { 2.0 * sqrt(d) } else { d + 1.0 }
 }
 
-/// Displacement of the transfer from velocity `u` to `w`, from and to zero acceleration.
+/// Displacement of the transfer from velocity `u` to velocity `w`, from and to zero acceleration.
 pub(crate) fn transfer_distance(u: f64, w: f64) -> f64 {
     0.5 * (u + w) * transfer_time((w - u).abs())
 }
 
-/// Displacement of the stop from velocity `w >= 0`; also the area `|w - c| * time / 2` of any
+/// Displacement of the stop from velocity `w >= 0`. Also the area `|w - c| * time / 2` of any
 /// transfer over `|w - c|`.
 pub(crate) fn stop_distance(w: f64) -> f64 {
     stop_distance_and_slope(w).0
@@ -32,8 +32,8 @@ pub(crate) fn stop_distance_and_slope(w: f64) -> (f64, f64) {
     }
 }
 
-/// Returns ramp time and hold time of the transfer over `d >= 0`: acceleration up, hold at one,
-/// down.
+/// Returns ramp time and hold time of the transfer over `d >= 0`: the acceleration rises, stays at
+/// one, and falls.
 pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     if d <= 1.0 {
         (sqrt(d.max(0.0)), 0.0)
@@ -42,8 +42,8 @@ pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     }
 }
 
-/// Returns the change of velocity of a transfer, from and to zero acceleration, that ramps up to
-/// `a` and immediately down; zero if `a` is not positive.
+/// Returns the change of velocity of a transfer, from and to zero acceleration, whose acceleration
+/// rises to `a` and immediately falls; zero if `a` is not positive.
 ///
 /// A transfer that begins or ends with the acceleration `a` changes the velocity by at least this
 /// value.
@@ -54,7 +54,8 @@ pub(crate) fn change_of_ramp(a: f64) -> f64 {
 
 /// Computes the least-time stop from velocity `v` and acceleration `a`, `|a| <= 1`.
 ///
-/// Returns the sign of its first jerk and three durations: jerk, hold, opposite jerk.
+/// Returns the sign of the first jerk and three durations: of this jerk, of the hold and of the
+/// opposite jerk.
 pub(crate) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };

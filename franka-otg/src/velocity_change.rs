@@ -1,10 +1,10 @@
 //! The durations in which the velocity and the acceleration of a target can be reached, at any
 //! position.
 //!
-//! This is the position's problem one derivative lower. The velocities that are reachable in one
-//! duration form an interval. Its ends are "acceleration up, then down" and the reverse, and the
-//! areas under them give the equations. An axis cannot wait at a target's acceleration either, so
-//! there may be a blocked interval here too.
+//! This is the problem of the position, one derivative lower. The velocities that are reachable in
+//! one duration form an interval. The ends of the interval are "acceleration up, then down" and the
+//! reverse. The areas under these accelerations give the equations. An axis cannot wait at the
+//! acceleration of the target either, so a blocked interval may exist here, too.
 
 use crate::scalar::sqrt;
 use crate::task::{ROUNDING, Task};
@@ -14,11 +14,11 @@ use crate::task::{ROUNDING, Task};
 pub(crate) struct VelocityChange {
     a0: f64,
     af: f64,
-    /// Square of the intermediate acceleration that leads to the end's velocity (with a hold: twice
-    /// the area), for the highest and the lowest.
+    /// Square of the peak acceleration that leads to the end's velocity (with a hold: twice the
+    /// area), for the highest and for the lowest acceleration.
     peak: f64,
     valley: f64,
-    /// The magnitude to which the rounding of the change is relative.
+    /// Magnitude relative to which the change is rounded.
     size: f64,
 }
 
@@ -35,7 +35,7 @@ impl VelocityChange {
         }
     }
 
-    /// The magnitude to which the rounding of velocities is relative.
+    /// Magnitude relative to which velocities are rounded.
     pub(crate) const fn size(&self) -> f64 {
         self.size
     }
@@ -54,8 +54,8 @@ impl VelocityChange {
             && area(lowest) >= self.valley - tolerance
     }
 
-    /// Returns the durations at which feasible intervals begin or end, unordered, each with its
-    /// uncertainty from the rounding of velocities.
+    /// Returns the durations at which feasible intervals begin or end, without an order. Each has
+    /// its uncertainty from the rounding of velocities.
     pub(crate) fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
@@ -85,25 +85,25 @@ impl VelocityChange {
     }
 }
 
-/// Returns the area under an acceleration ramp to `x`, held at one for the excess of `x` over one,
-/// in units of twice the area.
+/// Returns twice the area under an acceleration ramp to `x`. If `x` exceeds one, the ramp ends at
+/// one and is held there for the excess.
 fn area(x: f64) -> f64 {
     let x = x.abs();
     if x <= 1.0 { x * x } else { 2.0 * x - 1.0 }
 }
 
-/// Returns the velocity that may have caused the rounding of the task's velocity: an axis that
-/// slows down was faster before. A much larger limit is seldom reached.
+/// Returns the magnitude that may have determined the rounding of the task's velocity. An axis that
+/// slows down was faster before, but an axis seldom reaches a much larger limit.
 pub(crate) fn typical_velocity(task: &Task) -> f64 {
     task.top.min(1e3)
 }
 
 /// Relative rounding of a state after some thousand plans, each from the state of the previous
-/// plan. Equal steps are rounded alike, so their errors add up. It applies to durations at which
-/// both extremal motions end at the target. From some point on, a motion stays in this situation,
-/// and must remain feasible.
+/// plan. Equal steps are rounded in the same way, so their errors add up. This value applies to
+/// durations at which both extremal motions end at the target. From some point on, a motion stays
+/// in this situation and must remain feasible.
 pub(crate) const DRIFT: f64 = 1024.0 * ROUNDING;
 
-/// Relative rounding of one plan, for all other durations. An error accepted here remains in the
-/// state, so it must be a small part of [`DRIFT`].
+/// Relative rounding of one plan, for all other durations. An error that is accepted here remains
+/// in the state, so it must be a small part of [`DRIFT`].
 pub(crate) const TIGHT: f64 = 16.0 * ROUNDING;
