@@ -4,12 +4,12 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
-/// The count of each of [`NAMES`].
+/// The count of each of the statistics in [`NAMES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CardErrors([u64; NAMES.len()]);
 
 impl CardErrors {
-    /// Reads the counts since the card was set up.
+    /// Reads the counts since the network card was set up.
     pub(crate) fn read(readings: &Readings<'_>) -> Result<Self, Unread> {
         let card = readings.interface()?;
         let mut counts = [0; NAMES.len()];
@@ -19,7 +19,7 @@ impl CardErrors {
         Ok(Self(counts))
     }
 
-    /// Returns the counts since `before`.
+    /// Returns the increase of the counts since `before`.
     fn since(self, before: Self) -> Self {
         let mut counts = self.0;
         for (count, before) in counts.iter_mut().zip(before.0) {
@@ -43,7 +43,7 @@ impl CardErrors {
     }
 }
 
-/// Returns the finding about the counts before and after the measurements. A pure function.
+/// Returns the finding about the counts before and after the measurements. This is a pure function.
 pub(crate) fn meanwhile(
     before: Result<CardErrors, Unread>,
     after: Result<CardErrors, Unread>,
@@ -61,7 +61,7 @@ pub(crate) fn meanwhile(
     about.finding(judged, purpose)
 }
 
-/// Files with the card's statistics.
+/// Names of the files with the card's statistics.
 const NAMES: [&str; 5] = [
     "rx_errors",
     "rx_dropped",

@@ -1,10 +1,10 @@
-//! The most likely causes on this host of packets that did not arrive in time.
+//! The most likely causes, on this host, of packets that did not arrive in time.
 
 use crate::checks::{Check, all};
 use crate::finding::{Finding, Purpose, Verdict};
 use crate::readings::Readings;
 
-/// The observation from a motion that ended because of missing packets.
+/// What was observed when a motion ended because of missing packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// States stopped arriving.
@@ -16,7 +16,8 @@ pub enum Evidence {
 }
 
 impl Evidence {
-    /// Returns the checks that can explain it, the most likely cause first.
+    /// Returns the ids of the checks that can explain this observation, the most likely cause
+    /// first.
     fn suspects(self) -> &'static [&'static str] {
         match self {
             Self::LinkLost => &[
@@ -65,7 +66,8 @@ impl Evidence {
 }
 
 /// Returns the two most likely causes on this host: failures before warnings, then in the order of
-/// likelihood. Returns fewer if fewer are found. Only reads files and queries the card's driver.
+/// likelihood. Returns fewer if the checks find fewer. This only reads files and queries the driver
+/// of the network card.
 pub fn likely_causes(readings: &Readings<'_>, evidence: Evidence) -> Vec<Finding> {
     let named = |id: &&str| all().find(|check| check.id == *id && check.reads_only);
     let suspects = evidence.suspects().iter().filter_map(named);

@@ -1,4 +1,4 @@
-//! The result of a dry run of the control loop against a simulated robot on this computer.
+//! Result of a dry run: the control loop against a simulated robot on this computer.
 
 use core::time::Duration;
 
@@ -6,26 +6,27 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::report::counted;
 use crate::timing::quantile;
 
-/// Answer times of a control loop to a simulated robot.
+/// Times in which a control loop answered the states of a simulated robot.
 ///
-/// Times are measured from the instant at which the robot's thread sent a state. So they contain
-/// only the loop's own delays: a delayed robot thread sends later, and its delay does not count.
+/// Each time starts when the robot's thread sent a state. So the times contain only delays of the
+/// loop. If the robot's thread is delayed, it sends the state later, and this delay does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DryRun {
     /// The `SCHED_FIFO` priority of the loop; `None` under the normal scheduler.
     pub priority: Option<i32>,
-    /// Time from each due state to the command that answers it or a newer state. Sorted.
+    /// Time from each state to the command that answers it, or that answers a newer state. Sorted.
     pub answers: Vec<Duration>,
-    /// Number of states that the simulated robot sent more than 2 ms after the previous one.
+    /// Number of states that the simulated robot sent more than 2 ms after the previous state.
     pub pauses: usize,
-    /// The reason if the run ended early.
+    /// Reason why the run ended early, if it did.
     pub ended: Option<String>,
 }
 
 impl DryRun {
-    /// Compares the times of the states in `sent` with the times of their commands in `left`. Both
-    /// lists contain the `message_id` of the state and are in its order, with the same clock.
-    /// States before the first command and after the last one are ignored.
+    /// Compares the times of states in `sent` with the times of their commands in `left`. Each
+    /// entry is the `message_id` of the state and a time. Both lists are ordered by `message_id`
+    /// and use the same clock. States before the first command and after the last command are
+    /// ignored.
     pub fn new(sent: &[(u64, Duration)], left: &[(u64, Duration)]) -> Self {
         let mut run = Self::default();
         let mut commands = left.iter().peekable();
@@ -45,13 +46,13 @@ impl DryRun {
         run
     }
 
-    /// Number of answers that took longer than a cycle.
+    /// Number of answers that took longer than one cycle.
     fn late(&self) -> usize {
         self.answers.len() - self.answers.partition_point(|answer| *answer <= CYCLE)
     }
 }
 
-/// Returns the finding about a dry run: `timing.dry_run`. A pure function.
+/// Returns the finding about a dry run: `timing.dry_run`. This is a pure function.
 pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.dry_run",
@@ -106,16 +107,17 @@ fn judge(run: &DryRun) -> Judged {
     }
 }
 
-/// The time that a robot allows for an answer.
+/// Time that a robot allows for an answer.
 const CYCLE: Duration = Duration::from_millis(1);
 
 const ANSWER_GOOD: Duration = Duration::from_micros(800);
 
-/// Interval between states above which the robot paused; the nominal interval is one millisecond.
+/// Interval between two states above which the robot counts as paused. The nominal interval is one
+/// millisecond.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Number of answers below which the result is not conclusive: ten seconds, without a few at the
-/// beginning and end.
+/// Number of answers below which the result is not conclusive: those of ten seconds, minus a few at
+/// the beginning and the end.
 const ANSWERS_MIN: usize = 9_900;
 
 #[cfg(test)]
@@ -125,8 +127,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Returns ten states at intervals of one millisecond, from number 5 on, with these delays of
-    /// the robot.
+    /// Returns ten states at intervals of one millisecond, from number 5 on, each delayed as
+    /// `delay` says.
     fn sent(delay: impl Fn(u64) -> u64) -> Vec<(u64, Duration)> {
         (5..15).map(|id| (id, US(id * 1000 + delay(id)))).collect()
     }

@@ -1,10 +1,10 @@
-//! The result of a check, and its meaning for a purpose.
+//! Result of a check, and what it means for a purpose.
 
 use core::fmt;
 
 use crate::host::Unread;
 
-/// The purpose of the host. It determines which findings are failures.
+/// Purpose of the host. It determines which findings are failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -17,24 +17,25 @@ pub enum Purpose {
     Move,
 }
 
-/// The meaning of a finding. [`Verdict::Unknown`] is neither good nor bad.
+/// What a value means for the purpose. [`Verdict::Unknown`] is neither good nor bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Verdict {
     /// The value is as expected.
     Good,
-    /// Useful to know, not an obstacle.
+    /// The value is useful to know, and not an obstacle.
     Info,
-    /// May cost cycles.
+    /// The value may cost cycles.
     Warning,
     /// The purpose cannot be achieved with this value.
     Failure,
-    /// The value could not be read; the finding names the missing part.
+    /// The value could not be read. The finding names the missing part.
     Unknown,
 }
 
-/// The part of the host that a finding is about. Each has its own line in a report.
+/// Part of the host or its surroundings to which a finding belongs. A report has one line for each
+/// group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -47,7 +48,7 @@ pub enum Group {
     Processor,
     /// The route to the robot.
     NetworkCard,
-    /// The services at the robot's address.
+    /// The services at the robot's address, and the state of the robot.
     Robot,
     /// The punctuality of the host.
     Timing,
@@ -78,7 +79,7 @@ impl fmt::Display for Group {
     }
 }
 
-/// The step that makes a fix effective.
+/// Step after which a fix takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -97,7 +98,7 @@ pub enum Needs {
 pub struct Fix {
     /// The command, on one line.
     pub command: String,
-    /// The step after it.
+    /// Step after the command.
     pub needs: Needs,
 }
 
@@ -108,23 +109,23 @@ pub struct Fix {
 pub struct Finding {
     /// Stable name, such as `cpu.governor`.
     pub id: &'static str,
-    /// The part of the host.
+    /// Group to which the finding belongs.
     pub group: Group,
-    /// The meaning for the purpose.
+    /// What the value means for the purpose.
     pub verdict: Verdict,
-    /// The value; if unknown, the missing part.
+    /// The value; for [`Verdict::Unknown`], the missing part.
     pub read: String,
-    /// The expected value, with thresholds.
+    /// Expected value, with thresholds.
     pub wanted: &'static str,
-    /// The consequence of another value.
+    /// Consequence of a different value.
     pub why: &'static str,
-    /// The source of the threshold.
+    /// Source of the threshold.
     pub source: &'static str,
-    /// A fix, if one exists.
+    /// Command that fixes the value, if one exists.
     pub fix: Option<Fix>,
 }
 
-/// The result of a check's function: the verdict for a host that moves a robot.
+/// Result of a check's function. Its verdict is for a host that moves a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Judged {
     pub(crate) verdict: Verdict,
@@ -161,7 +162,7 @@ impl Judged {
         Self::new(Verdict::Unknown, read)
     }
 
-    /// Adds a command, unless the finding is good or unknown.
+    /// Adds a fix, unless the finding is good or unknown.
     pub(crate) fn fix(mut self, needs: Needs, command: impl Into<String>) -> Self {
         if !matches!(self.verdict, Verdict::Good | Verdict::Unknown) {
             let command = command.into();
@@ -171,7 +172,7 @@ impl Judged {
     }
 }
 
-/// The parts of a finding that do not depend on the value.
+/// Parts of a finding that do not depend on the value.
 pub(crate) struct About {
     pub(crate) id: &'static str,
     pub(crate) group: Group,
@@ -182,7 +183,8 @@ pub(crate) struct About {
 }
 
 impl About {
-    /// Returns the parts for a finding on the robot, which also matters for reading its states.
+    /// Returns the parts of a finding about the robot. Such findings also matter for reading
+    /// states.
     pub(crate) fn robot(
         id: &'static str,
         wanted: &'static str,
@@ -199,7 +201,8 @@ impl About {
         }
     }
 
-    /// Returns the finding for this purpose. An unreadable value is unknown.
+    /// Returns the finding for this purpose. A value that cannot be read gives
+    /// [`Verdict::Unknown`].
     pub(crate) fn finding(self, judged: Result<Judged, Unread>, purpose: Purpose) -> Finding {
         let judged = judged.unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
         Finding {
@@ -215,16 +218,16 @@ impl About {
     }
 }
 
-/// The least demanding purpose that a check applies to.
+/// The least demanding purpose for which a check matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Matters {
-    /// Warns and fails for moving; one level less for reading.
+    /// The check warns and fails for moving. For reading, its verdicts are one level lower.
     Moving,
-    /// Warns and fails for moving and reading.
+    /// The check warns and fails for moving and for reading.
     Reading,
 }
 
-/// Converts `verdict`, which is for a host that moves a robot, to `purpose`.
+/// Converts `verdict`, which applies to a host that moves a robot, to `purpose`.
 fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
     match (purpose, matters, verdict) {
         (Purpose::Sim, _, Verdict::Warning | Verdict::Failure) => Verdict::Info,

@@ -1,4 +1,4 @@
-//! A robot's answer to the handshake: its version, and its availability.
+//! A robot's answer to the handshake: its version, and whether it is available.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
@@ -11,23 +11,23 @@ use franka_proto::{IncompatibleVersion, Protocol as _, Version};
 
 use crate::finding::{About, Finding, Judged, Purpose};
 
-/// The result of an attempt to open a session with a robot.
+/// Result of an attempt to open a session with a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Answer {
     /// The robot opened a session of this version.
     Accepted(Version),
-    /// The robot speaks a version other than the announced one.
+    /// The robot speaks another version than the announced version.
     Incompatible(IncompatibleVersion),
     /// The robot closed the connection without an answer.
     Closed,
-    /// No connection, no answer in time, or an invalid answer; the text describes the case.
+    /// No connection was possible, or no valid answer came in time. The text describes the case.
     Missing(String),
 }
 
-/// Opens a session with the robot at `address` and closes it at once, within 1 s. If the robot
-/// names an older supported version, opens another session with that version. It sends no other
-/// commands.
+/// Opens a session with the robot at `address` and closes it immediately, within 1 s. If the robot
+/// names an older version that is supported, this opens another session with that version. It sends
+/// no other commands.
 ///
 /// The robot sends states until the session is closed, and accepts one client at a time. Use this
 /// only if the user asked to connect to the robot.
@@ -43,7 +43,7 @@ pub fn answers(address: SocketAddr) -> Vec<Answer> {
 }
 
 /// Returns the findings about the answers of a robot, in their order: `robot.version` and
-/// `robot.busy`. A pure function.
+/// `robot.busy`. This is a pure function.
 pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     let speaks = About::robot(
         "robot.version",
@@ -104,7 +104,7 @@ fn busy(answers: &[Answer]) -> Judged {
     }
 }
 
-/// Returns the reason why nothing is known.
+/// Returns the reason why nothing is known about the robot.
 fn unanswered(answers: &[Answer]) -> Judged {
     Judged::unknown(match answers.last() {
         Some(Answer::Missing(why)) => format!("unknown: {why}"),
@@ -131,7 +131,7 @@ fn ask(address: SocketAddr, version: Version, timeout: Duration) -> Answer {
     }
 }
 
-/// Performs the handshake on `stream`, which is closed afterwards.
+/// Performs the handshake on `stream`, and closes the stream.
 fn session(
     mut stream: TcpStream,
     address: SocketAddr,
@@ -183,13 +183,13 @@ fn no_answer(timeout: Duration) -> Answer {
     Answer::Missing(format!("no answer to the handshake within {seconds} s"))
 }
 
-/// The version that is announced first, as in the driver.
+/// Version that is announced first, as the driver does.
 const NEWEST: Version = Version::V10;
 
-/// Time limit of the connection and of the answer, as for the other ports.
+/// Time limit of the connection and of the answer, as for the ports of other services.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Longest accepted message, in bytes; an answer to a handshake has 15.
+/// Longest accepted message, in bytes. An answer to a handshake has 15.
 const ANSWER_MAX: usize = 1024;
 
 #[cfg(test)]
@@ -200,7 +200,7 @@ mod tests {
     use std::net::TcpListener;
     use std::thread;
 
-    /// Time limit for an expected answer: longer than any delay of a busy machine.
+    /// Time limit for an answer that must come; longer than any delay of a busy machine.
     const PATIENCE: Duration = Duration::from_secs(60);
 
     fn refusal(server_version: u16) -> Answer {
@@ -210,7 +210,7 @@ mod tests {
         })
     }
 
-    /// Returns the verdicts on version and availability, and the values of both.
+    /// Returns verdicts and values for the version and the availability.
     fn judged(answers: &[Answer], purpose: Purpose) -> ([Verdict; 2], [String; 2]) {
         let found = handshake(answers, purpose);
         let [version, busy] = <[Finding; 2]>::try_from(found).expect("two findings");
@@ -281,8 +281,8 @@ mod tests {
         bytes
     }
 
-    /// Returns the answer from a peer that sends `bytes` after the handshake, and closes the
-    /// connection if `closes`.
+    /// Returns the answer when a peer sends `bytes` after the handshake. The peer then closes the
+    /// connection if `closes` is true.
     fn asked(bytes: Vec<u8>, closes: bool, timeout: Duration) -> Answer {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
         let address = listener.local_addr().expect("bound");

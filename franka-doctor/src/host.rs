@@ -1,4 +1,4 @@
-//! The interface to a host: files, and the few values that are not in files.
+//! The interface to a host: its files, and the few values that are not in files.
 
 use core::fmt;
 use core::time::Duration;
@@ -13,11 +13,12 @@ use franka_rt::sched::Kernel;
 use crate::latencies::Latencies;
 use crate::round_trip::RoundTrips;
 
-/// A host to examine. [`System`](crate::System) is the running one, [`Tree`] a directory.
+/// A host to examine. [`System`](crate::System) is the running host, [`Tree`] a directory with a
+/// host's files.
 ///
 /// No method changes anything on the host.
 pub trait Host {
-    /// Returns the contents of a file, by its absolute path; at most the first MiB.
+    /// Returns at most the first MiB of the file at this absolute path.
     fn read(&self, path: &str) -> Result<String, Unread>;
     /// Returns the names in a directory, sorted.
     fn list(&self, path: &str) -> Result<Vec<String>, Unread>;
@@ -25,40 +26,40 @@ pub trait Host {
     fn link(&self, path: &str) -> Result<String, Unread>;
     /// Returns the kernel's description of itself.
     fn kernel(&self) -> Kernel;
-    /// Returns the `SCHED_FIFO` priority of a thread of this process that requests the highest
-    /// priority, or the reason for the refusal. Uses a separate thread.
+    /// Starts a thread that requests the highest `SCHED_FIFO` priority. Returns the priority that
+    /// the thread gets, or the reason for a refusal.
     fn fifo(&self) -> Result<i32, String>;
-    /// Returns the host's own address on the route to `robot`. Sends nothing.
+    /// Returns the host's own address on the route to `robot`. This sends no packets.
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
-    /// Returns the answer of the driver of `interface`: the bytes of a structure of
+    /// Returns the answer of the driver of `interface`to `question`: the bytes of a structure of
     /// `linux/ethtool.h`.
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
     /// True if `interface` has the address `own` permanently; false for a leased address, for
     /// example from DHCP.
     fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread>;
-    /// Returns the free bytes for files in the current directory.
+    /// Returns the number of free bytes for files in the current directory.
     fn free_disk(&self) -> Result<u64, Unread>;
     /// Returns the frequency of a processor, in kHz, after one second of computation by a thread
     /// under the normal scheduler.
     fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread>;
-    /// Measures the wake-up delays of a thread, each millisecond for this duration, under
-    /// `SCHED_FIFO` if allowed. `progress` is called with the completed share, about ten times a
+    /// Measures for this duration how late a thread wakes up in each millisecond, under
+    /// `SCHED_FIFO` if allowed. Calls `progress` with the completed share, about ten times a
     /// second.
     fn wake_ups(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Measures round-trip times of datagrams to another thread on this host, one each millisecond
-    /// for this duration; both threads under `SCHED_FIFO` if allowed. `progress` is called as by
-    /// [`Self::wake_ups`].
+    /// Measures round-trip times of datagrams to another thread on this host, one per millisecond
+    /// for this duration. Both threads run under `SCHED_FIFO` if allowed. Calls `progress` as
+    /// [`Self::wake_ups`] does.
     fn loopback(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
     /// Measures the times of `robot`'s answers to `count` echo requests (ICMP) of 1200 bytes, at
-    /// most one each millisecond. `progress` is called as by [`Self::wake_ups`].
+    /// most one per millisecond. Calls `progress` as [`Self::wake_ups`] does.
     fn round_trips(
         &self,
         robot: Ipv4Addr,
@@ -67,7 +68,7 @@ pub trait Host {
     ) -> Result<RoundTrips, Unread>;
 }
 
-/// A query to the driver of a network card. None changes a setting, or needs privileges.
+/// A query to the driver of a network card. No query changes a setting or needs privileges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ethtool {
     /// `ETHTOOL_GDRVINFO`: `struct ethtool_drvinfo`.
@@ -113,19 +114,19 @@ impl Ethtool {
     }
 }
 
-/// The reason why a value could not be read.
+/// Reason why a value could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unread {
-    /// It does not exist.
+    /// The value does not exist.
     Absent(String),
-    /// It needs privileges.
+    /// Reading the value needs privileges.
     Denied(String),
-    /// Any other error: the subject and the reason.
+    /// Another error: what was read, and the reason.
     Failed(String, String),
 }
 
 impl Unread {
-    /// Creates the error for `what` from the system's error.
+    /// Creates the error for `what` from an error of the system.
     pub fn new(what: impl Into<String>, error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => Self::Absent(what.into()),
@@ -145,7 +146,8 @@ impl fmt::Display for Unread {
     }
 }
 
-/// A directory with the files of a host, and with values that are not in files below `calls`:
+/// A host in a directory. It contains the files of the host. Values that are not in files of the
+/// host are below `calls`:
 ///
 /// | file | contents |
 /// |---|---|
@@ -176,7 +178,7 @@ impl Tree {
         self.read(&format!("calls/{name}"))
     }
 
-    /// Returns the value of a file that contains one value.
+    /// Returns the value in a file that contains a single value.
     fn value<T: FromStr>(&self, name: &str, what: &str) -> Result<T, Unread> {
         let text = self.call(name)?;
         let text = text.trim();
@@ -188,7 +190,7 @@ impl Tree {
         })
     }
 
-    /// Returns latencies of a thread with the priority that the host grants.
+    /// Returns the latencies of a thread with the priority that the host grants.
     fn latencies(&self, name: &str, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
         progress(1.0);
         let mut latencies = Latencies::new(self.fifo().ok());

@@ -2,8 +2,8 @@
 
 use core::time::Duration;
 
-/// Latencies of a thread in buckets of one microsecond, up to 2 ms, with the exact minimum and
-/// maximum.
+/// Latencies of a thread: counts in buckets of one microsecond up to 2 ms, and the exact minimum
+/// and maximum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Latencies {
     /// The `SCHED_FIFO` priority of the thread; `None` under the normal scheduler.
@@ -15,7 +15,7 @@ pub struct Latencies {
 }
 
 impl Latencies {
-    /// Creates an empty histogram of a thread with this priority.
+    /// Creates an empty histogram for a thread with this priority.
     pub fn new(priority: Option<i32>) -> Self {
         Self {
             priority,
@@ -26,7 +26,7 @@ impl Latencies {
         }
     }
 
-    /// Adds a latency. Allocates nothing.
+    /// Adds a latency. This allocates nothing.
     pub fn note(&mut self, latency: Duration) {
         let us = usize::try_from(latency.as_micros()).unwrap_or(usize::MAX);
         self.buckets[us.min(BUCKETS - 1)] += 1;
@@ -40,19 +40,19 @@ impl Latencies {
         self.count
     }
 
-    /// The exact minimum; `None` if empty.
+    /// The exact minimum; `None` without latencies.
     pub fn min(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.min)
     }
 
-    /// The exact maximum; `None` if empty.
+    /// The exact maximum; `None` without latencies.
     pub fn max(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.max)
     }
 
-    /// Returns the smallest whole number of microseconds that at least the share `part` (in `[0,
-    /// 1]`) of the latencies does not exceed, in whole microseconds. 2000 represents all larger
-    /// latencies. `None` if empty.
+    /// Returns the quantile `part`, in `[0, 1]`, in whole microseconds: the smallest number that at
+    /// least this share of the latencies does not exceed. 2000 stands for all larger latencies.
+    /// `None` without latencies.
     pub fn quantile(&self, part: f64) -> Option<u64> {
         let wanted = (part.clamp(0.0, 1.0) * self.count as f64).ceil().max(1.0) as u64;
         let mut seen = 0;
@@ -65,12 +65,12 @@ impl Latencies {
         None
     }
 
-    /// Number of latencies of at least `us` microseconds; `us` is at most 2000.
+    /// Number of latencies of at least `us` microseconds. `us` must be at most 2000.
     pub fn at_least(&self, us: usize) -> u64 {
         self.buckets[us.min(BUCKETS - 1)..].iter().sum()
     }
 
-    /// Returns each latency in microseconds that occurred, and its count.
+    /// Returns each latency that occurred, in microseconds, with its count.
     pub fn buckets(&self) -> impl Iterator<Item = (usize, u64)> + '_ {
         let counts = self.buckets.iter().copied().enumerate();
         counts.filter(|(_, count)| *count > 0)

@@ -1,4 +1,4 @@
-//! Detects a leased address of the host, from the kernel's list of addresses.
+//! Detects a leased address of the host in the kernel's list of addresses.
 
 use std::io::{self, Read as _};
 use std::net::Ipv4Addr;
@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// Returns true if the host has `address` permanently; `None` if it does not have it. Queries all
-/// IPv4 addresses from the kernel (`RTM_GETADDR`), which changes nothing and needs no privileges.
+/// Returns true if the host has `address` permanently, false if the address is leased, and `None`
+/// if the host does not have it. This queries all IPv4 addresses from the kernel (`RTM_GETADDR`),
+/// which changes nothing and needs no privileges.
 pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     let protocol = Protocol::from(libc::NETLINK_ROUTE);
     let socket = Socket::new(Domain::from(libc::AF_NETLINK), Type::RAW, Some(protocol))?;
@@ -27,14 +28,14 @@ pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     Err(io::ErrorKind::InvalidData.into())
 }
 
-/// The contents of a part of the answer.
+/// Result of the search in one part of the kernel's answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// The part contains the address; true if it is permanent.
+    /// The part contains the address. The value is true if the address is permanent.
     Found(bool),
-    /// The last part, without the address.
+    /// This was the last part, and it does not contain the address.
     Done,
-    /// More parts follow.
+    /// The address is not in this part, and more parts follow.
     More,
     Refused,
 }
@@ -73,8 +74,8 @@ fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
     Answer::More
 }
 
-/// Returns true if the address is permanent; `None` if this message (`struct ifaddrmsg`, then
-/// attributes) is about another address.
+/// Returns true if the address is permanent; `None` if this message is about another address. A
+/// message is a `struct ifaddrmsg` and attributes.
 fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
     // The header contains eight bits of the flags; an attribute contains all of them.
     let mut flags = u32::from(*message.get(2)?);
@@ -102,7 +103,7 @@ fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
     (own == Some(address)).then_some(flags & libc::IFA_F_PERMANENT != 0)
 }
 
-/// Rounds up to a multiple of four bytes, where messages and attributes begin.
+/// Rounds up to a multiple of four bytes. Messages and attributes begin at such multiples.
 fn aligned(length: usize) -> usize {
     length.next_multiple_of(4)
 }
@@ -115,9 +116,9 @@ const MESSAGE: usize = 8;
 const ATTRIBUTE: usize = 4;
 /// Attribute with the flags, from `linux/if_addr.h`.
 const IFA_FLAGS: u16 = 8;
-/// Largest part that the kernel sends.
+/// Largest part that the kernel sends, in bytes.
 const PART_MAX: usize = 1 << 15;
-/// Largest number of parts: some thousand addresses.
+/// Largest number of parts that are read, enough for some thousand addresses.
 const PARTS_MAX: usize = 256;
 
 #[cfg(test)]
@@ -137,7 +138,7 @@ mod tests {
         message
     }
 
-    /// Returns an address with these flags.
+    /// Returns the kernel's message for an address with these flags.
     fn address(own: Ipv4Addr, flags: u32) -> Vec<u8> {
         let body = [
             vec![2, 24, 0, 0, 3, 0, 0, 0],

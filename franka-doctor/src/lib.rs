@@ -1,5 +1,5 @@
-//! Checks a host, its network card and the route to a robot before an arm moves. Changes nothing on
-//! the host.
+//! Checks a host, its network card and the route to a robot before an arm moves. The checks change
+//! nothing on the host.
 //!
 //! ```text
 //! Host (files, a few calls) --> Readings --> checks, one function each --> Finding --> Report (text, JSON, script)
@@ -8,12 +8,12 @@
 //! * [`Doctor`]: runs all checks for a [`Purpose`].
 //! * [`Host`]: the interface to a host. [`System`] is the running host, [`Tree`] a directory with
 //!   the files of any host, for tests.
-//! * [`Finding`]: the value, the expected value with reason and source, and a command that fixes
-//!   it. An unreadable value is [`Verdict::Unknown`], which is neither good nor bad.
-//! * [`likely_causes`]: for a motion that ended because of missing packets.
+//! * [`Finding`]: a value, the expected value with reason and source, and a command that fixes the
+//!   value. A value that cannot be read gives [`Verdict::Unknown`], which is neither good nor bad.
+//! * [`likely_causes`]: the causes on this host if a motion ended because of missing packets.
 //! * [`firewall`], [`arrivals`] and [`at_rest`]: findings from states of a connected robot.
-//!   [`ports`]: the services at its address. [`answers`] and [`handshake`]: its version, and its
-//!   availability.
+//!   [`ports`]: the services at the robot's address. [`answers`] and [`handshake`]: the robot's
+//!   version and availability.
 //! * [`dry_run`]: findings about a control loop with a simulated robot.
 //!
 //! ```
@@ -26,7 +26,7 @@
 //! ```
 //!
 //! With the feature `desk`, [`ask_desk`] and [`web`] read the robot's web interface without a
-//! login. The feature needs an HTTPS client, so the diagnosis of a motion does not use it.
+//! login. The feature requires an HTTPS client, so the diagnosis of a motion does not use it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -82,7 +82,7 @@ pub use timing::{Received, arrivals, firewall};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Runs the checks.
+/// Runs the checks for a purpose.
 #[derive(Clone, Debug)]
 pub struct Doctor {
     purpose: Purpose,
@@ -96,8 +96,9 @@ pub struct Doctor {
 }
 
 impl Doctor {
-    /// Creates the checks for this purpose. Defaults: no robot address, personal and device names
-    /// replaced. Wake-ups and loopback are measured for 10 s each, except for simulation only.
+    /// Creates the checks for this purpose. By default there is no robot address, and personal and
+    /// device names are replaced. Wake-ups and loopback are measured for 10 s each, except if the
+    /// purpose is only simulation.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
@@ -111,8 +112,8 @@ impl Doctor {
         }
     }
 
-    /// The address of the robot, for the checks of the network card on the route to it. The robot
-    /// is not contacted: see [`Self::ping`], [`ports`] and [`answers`].
+    /// Sets the address of the robot, for the checks of the network card on the route to it. These
+    /// checks do not contact the robot; for that, see [`Self::ping`], [`ports`] and [`answers`].
     pub fn robot(mut self, address: Ipv4Addr) -> Self {
         self.robot = Some(address);
         self
@@ -132,33 +133,34 @@ impl Doctor {
     }
 
     /// Enables the measurements: wake-ups, loopback, one second of load on a processor, and round
-    /// trips if [`Self::ping`] is set. No other check takes time.
+    /// trips if [`Self::ping`] is set. No other check takes noticeable time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
         self
     }
 
-    /// Enables the measurement of the round trip to the robot, with echo requests of 1200 bytes
-    /// each millisecond. They may delay packets of a client that controls the robot.
+    /// Enables the measurement of the round trip to the robot, with an echo request of 1200 bytes
+    /// per millisecond. The requests may delay packets of a client that controls the robot.
     pub fn ping(mut self, ping: bool) -> Self {
         self.ping = ping;
         self
     }
 
-    /// Enables the replacement of personal names, hardware addresses, UUIDs and serial numbers.
+    /// Enables or disables the replacement of personal names, hardware addresses, UUIDs and serial
+    /// numbers.
     pub fn redact(mut self, redact: bool) -> Self {
         self.redact = redact;
         self
     }
 
-    /// Selects the checks: all by default. Other checks, and measurements that only they need, are
-    /// skipped.
+    /// Selects the checks to run; the default is all. Other checks are skipped, and so are
+    /// measurements that only they need.
     pub fn select(mut self, selection: Selection) -> Self {
         self.selection = selection;
         self
     }
 
-    /// Checks `host`. `progress` is called with the name of the current measurement and its
+    /// Runs the checks on `host`. Calls `progress` with the name of the current measurement and its
     /// completed share in `[0, 1]`.
     pub fn run(&self, host: &dyn Host, progress: &mut dyn FnMut(&str, f64)) -> Report {
         let readings = Readings::new(host, self.robot)
@@ -221,7 +223,7 @@ impl Doctor {
         findings
     }
 
-    /// Returns `report` without names that identify people and devices of `host`.
+    /// Returns `report` without names that identify people or devices of `host`.
     fn redacted(&self, host: &dyn Host, mut report: Report) -> Report {
         let passwd = host.read("/etc/passwd").unwrap_or_default();
         let redaction = redaction::Redaction::new(&passwd);

@@ -1,5 +1,5 @@
-//! Round-trip time of datagrams to another thread of this host: the sockets of a cycle, without a
-//! network card.
+//! Round-trip time of datagrams to another thread of this host. It covers the sockets of a control
+//! cycle, but no network card.
 
 use core::time::Duration;
 use std::io;
@@ -11,9 +11,9 @@ use std::time::Instant;
 use crate::latencies::Latencies;
 use crate::round_trip::{PAYLOAD, PERIOD};
 
-/// Sends `count` datagrams to a thread that returns each one, at most one each millisecond. That
-/// thread has the scheduling of the calling thread, whose `priority` is recorded. `done` counts the
-/// returned datagrams.
+/// Sends `count` datagrams, at most one per millisecond, to a thread that returns each of them.
+/// This thread has the same scheduling as the calling thread; `priority` is recorded. `done` counts
+/// the returned datagrams.
 pub(crate) fn measure(
     priority: Option<i32>,
     count: u64,
@@ -69,7 +69,7 @@ fn exchange(
     Ok(latencies)
 }
 
-/// Returns each datagram, until `over` is true.
+/// Returns each datagram to its sender, until `over` is true.
 fn echo(socket: &UdpSocket, over: &AtomicBool) -> io::Result<()> {
     use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     let mut packet = [0; PAYLOAD];
@@ -83,7 +83,7 @@ fn echo(socket: &UdpSocket, over: &AtomicBool) -> io::Result<()> {
     Ok(())
 }
 
-/// Time after which an echo counts as missing.
+/// Time after which a datagram counts as missing.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::host::Unread;
 use crate::round_trip::{PAYLOAD, RoundTrips};
 use crate::timing::quantile;
 
-/// Returns the finding about a measurement of round trips. A pure function.
+/// Returns the finding about a measurement of round trips. This is a pure function.
 pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.ping",
@@ -58,8 +58,8 @@ mod tests {
     use super::*;
     use crate::finding::Verdict;
 
-    /// Returns 1000 requests: 500 take `half` microseconds, 490 `most`, and the rest `worst`;
-    /// `lost` of these have no answer.
+    /// Returns 1000 requests: 500 take `half` microseconds, 490 take `most`, and the rest take
+    /// `worst`. Of the rest, `lost` have no answer.
     fn measured(half: u64, most: u64, worst: u64, lost: usize) -> RoundTrips {
         let us = [vec![worst; 10 - lost], vec![half; 500], vec![most; 490]].concat();
         RoundTrips {

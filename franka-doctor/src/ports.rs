@@ -6,8 +6,9 @@ use std::net::{IpAddr, SocketAddr, TcpStream};
 
 use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
-/// Connects to the ports of robot and end effectors, for at most a second each, and closes at once.
-/// Sends no request. The caller must ensure that no program controls the robot.
+/// Connects to the ports of robot and end effectors, for at most a second each, and closes the
+/// connections immediately. This sends no request. The caller must ensure that no program controls
+/// the robot.
 pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
     PORTS
         .map(|port| {
@@ -20,12 +21,12 @@ pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
         .into()
 }
 
-/// A port, and its service.
+/// A port and its service.
 struct Port {
     id: &'static str,
     number: u16,
     what: &'static str,
-    /// True if every robot has it.
+    /// True if every robot has this service.
     always: bool,
 }
 

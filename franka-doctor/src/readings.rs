@@ -7,19 +7,19 @@ use std::net::Ipv4Addr;
 use crate::host::{Ethtool, Host, Unread};
 use crate::route::Route;
 
-/// Reads a host and records each answer with its path.
+/// Reads values of a host, and records each value by its path.
 pub struct Readings<'a> {
     pub(crate) host: &'a dyn Host,
     pub(crate) robot: Option<Ipv4Addr>,
-    /// The processor that the control thread is pinned to, if any.
+    /// Processor to which the control thread is pinned, if any.
     pub(crate) cpu: Option<usize>,
-    /// True if processors may be kept busy for a second.
+    /// True if checks may keep processors busy for a second.
     pub(crate) may_load: bool,
     raw: RefCell<BTreeMap<String, String>>,
 }
 
 impl<'a> Readings<'a> {
-    /// Creates the readings of `host`, which controls the robot at this address.
+    /// Creates the readings of `host`, which is to control the robot at this address.
     pub fn new(host: &'a dyn Host, robot: Option<Ipv4Addr>) -> Self {
         Self {
             host,
@@ -30,13 +30,13 @@ impl<'a> Readings<'a> {
         }
     }
 
-    /// Sets the processor that the control thread is pinned to.
+    /// Sets the processor to which the control thread is pinned.
     pub fn pinned(mut self, cpu: Option<usize>) -> Self {
         self.cpu = cpu;
         self
     }
 
-    /// Sets whether processors may be kept busy for a second.
+    /// Sets whether checks may keep processors busy for a second.
     pub(crate) fn loading(mut self, may_load: bool) -> Self {
         self.may_load = may_load;
         self
@@ -51,7 +51,7 @@ impl<'a> Readings<'a> {
         self.raw.borrow_mut().insert(what.into(), text.into());
     }
 
-    /// Returns a file, without surrounding white space.
+    /// Returns the contents of a file, without surrounding white space.
     pub(crate) fn text(&self, path: &str) -> Result<String, Unread> {
         let read = self.host.read(path).map(|text| text.trim().to_owned());
         match &read {
@@ -79,7 +79,8 @@ impl<'a> Readings<'a> {
             .ok_or_else(|| Unread::Absent(format!("`{name}` in {path}")))
     }
 
-    /// Returns soft and hard limit of the process, in the kernel's words: `99`, `unlimited`.
+    /// Returns the soft and the hard limit of the process, in the kernel's words: `99`,
+    /// `unlimited`.
     pub(crate) fn limit(&self, name: &str) -> Result<(String, String), Unread> {
         let path = "/proc/self/limits";
         let text = self.text(path)?;
@@ -106,7 +107,7 @@ impl<'a> Readings<'a> {
             .collect())
     }
 
-    /// Returns the different values of a file of every processor, each with its number of
+    /// Returns the different values that a file has for the processors, each with the number of
     /// processors.
     pub(crate) fn per_processor(&self, file: &str) -> Result<BTreeMap<String, usize>, Unread> {
         let mut values = BTreeMap::new();
@@ -124,7 +125,7 @@ impl<'a> Readings<'a> {
         Ok(values)
     }
 
-    /// Returns the running programs among `names`, by their names in `/proc`.
+    /// Returns those of `names` that are names of running programs, as in `/proc`.
     pub(crate) fn running(&self, names: &[&'static str]) -> Result<Vec<&'static str>, Unread> {
         let mut found = Vec::new();
         let entries = self.host.list("/proc")?;
@@ -156,7 +157,7 @@ impl<'a> Readings<'a> {
     /// Returns the route to the robot.
     ///
     /// # Errors
-    /// If no address was given, or the host does not report the route.
+    /// An error if no address was given, or if the host does not report the route.
     pub(crate) fn route(&self) -> Result<Route, Unread> {
         let robot = self
             .robot
@@ -175,12 +176,12 @@ impl<'a> Readings<'a> {
         Ok(self.route()?.interface)
     }
 
-    /// Returns a file of the network card on the route to the robot.
+    /// Returns the contents of a file of the network card on the route to the robot.
     pub(crate) fn card(&self, file: &str) -> Result<String, Unread> {
         self.text(&format!("{NET}/{}/{file}", self.interface()?))
     }
 
-    /// Returns the answer of the driver of the network card on the route to the robot.
+    /// Returns the answer of the network card's driver, for the card on the route to the robot.
     pub(crate) fn ethtool(&self, question: Ethtool) -> Result<Answer, Unread> {
         let interface = self.interface()?;
         let what = format!("ethtool {interface} {:#04x}", question.command());
@@ -202,17 +203,17 @@ impl<'a> Readings<'a> {
     }
 }
 
-/// A structure of `linux/ethtool.h`, with the size of its query.
+/// Bytes of a structure of `linux/ethtool.h`.
 pub(crate) struct Answer(Vec<u8>);
 
 impl Answer {
-    /// Returns the unsigned integer at this offset, in bytes.
+    /// Returns the unsigned integer at this byte offset.
     pub(crate) fn word(&self, offset: usize) -> u32 {
         let bytes: [u8; 4] = self.0[offset..offset + 4].try_into().expect("four bytes");
         u32::from_ne_bytes(bytes)
     }
 
-    /// Returns the text in this range, which ends with a zero.
+    /// Returns the text in this range, up to its first zero byte.
     pub(crate) fn text(&self, range: core::ops::Range<usize>) -> String {
         let bytes = self.0[range]
             .split(|byte| *byte == 0)

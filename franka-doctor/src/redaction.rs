@@ -1,13 +1,14 @@
 //! Removes names that identify a person or a device from texts.
 
-/// Replaces names that identify a person or a device.
+/// Replacements for names that identify a person or a device.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Redaction {
     names: Vec<String>,
 }
 
 impl Redaction {
-    /// Creates the replacements for a host with the personal accounts in the text of `/etc/passwd`.
+    /// Creates the replacements for a host. `passwd` is the text of `/etc/passwd`, which lists the
+    /// personal accounts.
     pub(crate) fn new(passwd: &str) -> Self {
         let person = |line: &str| {
             let fields: Vec<&str> = line.split(':').collect();
@@ -45,7 +46,7 @@ impl Redaction {
     }
 }
 
-/// Numbers of personal accounts, the default of all distributions.
+/// Range of the user ids of personal accounts, the default of all distributions.
 const PEOPLE: core::ops::Range<u32> = 1000..60_000;
 
 fn is_of_word(c: char) -> bool {

@@ -16,7 +16,7 @@ pub struct Report {
     pub purpose: Purpose,
     /// The findings, in the order of groups.
     pub findings: Vec<Finding>,
-    /// All values read, by path or query.
+    /// All values that were read, by path or query.
     pub readings: BTreeMap<String, String>,
 }
 
@@ -24,7 +24,7 @@ pub struct Report {
 pub const SCHEMA: u32 = 1;
 
 impl Report {
-    /// Adds other findings, such as [`arrivals`](crate::arrivals) of a connected robot.
+    /// Adds other findings, for example [`arrivals`](crate::arrivals) of a connected robot.
     pub fn add(&mut self, findings: impl IntoIterator<Item = Finding>) {
         self.findings.extend(findings);
         self.findings.sort_by_key(|finding| finding.group);
@@ -36,13 +36,13 @@ impl Report {
         self.findings.iter().filter(has).count()
     }
 
-    /// Returns a line for each group with its worst verdict, the findings that are not good below
-    /// it, and a count at the end.
+    /// Returns the report as text: a line for each group with its worst verdict, below it the
+    /// findings that are not good, and a count at the end.
     pub fn to_text(&self, color: bool) -> String {
         self.text(color, false)
     }
 
-    /// Like [`Self::to_text`], with good findings too, and with reason and source of every finding.
+    /// Like [`Self::to_text`], but with good findings, and with reason and source of every finding.
     pub fn to_detailed_text(&self, color: bool) -> String {
         self.text(color, true)
     }
@@ -125,8 +125,8 @@ impl Report {
         serde_json::to_string_pretty(self).expect("texts and numbers, with texts as keys")
     }
 
-    /// Returns a shell script with the fixes of warnings and failures, to be read before it is run.
-    /// This function runs nothing.
+    /// Returns a shell script with the fixes of warnings and failures. Read it before you run it.
+    /// This function itself runs nothing.
     pub fn fix_script(&self) -> String {
         let mut script = "#!/bin/sh\n# Fixes of `franka doctor`. Read before running.\n".to_owned();
         let mut done: Vec<&str> = Vec::new();
@@ -157,14 +157,15 @@ impl Report {
         script
     }
 
-    /// Returns 1 if there is a failure, 0 otherwise. Programs return 2 if they could not run.
+    /// Returns the exit code: 1 if the report contains a failure, 0 otherwise. Programs return 2 if
+    /// they could not run the checks.
     pub fn exit_code(&self) -> u8 {
         u8::from(self.count(Verdict::Failure) > 0)
     }
 }
 
-/// Appends `words` after `lead`, in lines of at most [`COLUMNS`] columns; later lines are indented.
-/// A longer word stays whole.
+/// Appends `words` after `lead`, in lines of at most [`COLUMNS`] columns. Later lines are indented.
+/// A word is never split.
 fn wrapped(text: &mut String, lead: &str, words: &str) {
     *text += lead;
     let mut column = columns_of(lead);
@@ -211,7 +212,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the weight of a verdict; the greatest weight determines a group's verdict.
+/// Returns the weight of a verdict. A group has the verdict with the greatest weight.
 fn weight(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Info => 0,

@@ -1,4 +1,4 @@
-//! Round-trip time of packets to the robot: echo requests (ICMP), as sent by `ping`.
+//! Round-trip time of packets to the robot, measured by echo requests (ICMP) as `ping` sends them.
 
 use core::time::Duration;
 use std::io;
@@ -9,16 +9,16 @@ use std::time::Instant;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// Echo requests to the robot, and their answer times.
+/// Echo requests to the robot, and the times of their answers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoundTrips {
-    /// Requests sent.
+    /// Number of requests sent.
     pub sent: u64,
     /// Answer time of each request that was answered within 100 ms, in any order.
     pub times: Vec<Duration>,
 }
 
-/// Sends `count` echo requests to `robot`, at most one each millisecond, and waits for each answer.
+/// Sends `count` echo requests to `robot`, at most one per millisecond, and waits for each answer.
 /// Ends early if no answers arrive. `done` counts the sent requests.
 pub(crate) fn measure(robot: Ipv4Addr, count: u64, done: &AtomicU64) -> io::Result<RoundTrips> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::ICMPV4))?;
@@ -60,7 +60,8 @@ fn request(number: u64) -> [u8; PACKET] {
     packet
 }
 
-/// Returns the time until the answer to this request, if it arrives within [`PATIENCE`].
+/// Returns the time until the answer to this request; `None` if it does not arrive within
+/// [`PATIENCE`].
 fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     let mut packet = [0; PACKET];
     loop {
@@ -81,12 +82,12 @@ fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     }
 }
 
-/// Bytes of an echo request after its header of eight, as in the vendor's test.
+/// Number of bytes of an echo request after its header of eight bytes, as in the vendor's test.
 pub(crate) const PAYLOAD: usize = 1200;
 
 const PACKET: usize = 8 + PAYLOAD;
 
-/// RFC 792.
+/// Type of an ICMP echo request, RFC 792.
 const ECHO_REQUEST: u8 = 8;
 const ECHO_REPLY: u8 = 0;
 
@@ -96,7 +97,7 @@ pub(crate) const PERIOD: Duration = Duration::from_millis(1);
 /// Time after which an answer counts as lost.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Number of consecutive unanswered requests after which no more are sent.
+/// Number of consecutive unanswered requests after which the measurement ends.
 const LOST_MAX: u32 = 20;
 
 #[cfg(test)]

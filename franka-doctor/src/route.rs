@@ -7,7 +7,7 @@ use std::net::Ipv4Addr;
 pub(crate) struct Route {
     /// Name of the network interface.
     pub(crate) interface: String,
-    /// The router in between, if any.
+    /// Router on the way, if any.
     pub(crate) gateway: Option<Ipv4Addr>,
     /// The host's own address on this route.
     pub(crate) own: Ipv4Addr,
@@ -26,8 +26,8 @@ impl Route {
         }
     }
 
-    /// Returns the route to `robot` from the text of `/proc/net/route`: the longest mask, then the
-    /// lowest metric.
+    /// Returns the route to `robot` from the text of `/proc/net/route`. The longest mask decides,
+    /// then the lowest metric.
     pub(crate) fn find(table: &str, robot: Ipv4Addr, own: Ipv4Addr) -> Option<Self> {
         let mut rows: Vec<Row> = table
             .lines()
@@ -97,7 +97,8 @@ impl Row {
 mod tests {
     use super::*;
 
-    /// A direct cable, a second card in the same network, and the office with a router.
+    /// A routing table: a direct cable, a second card in the same network, and the office with a
+    /// router.
     const TABLE: &str = "Iface Destination Gateway Flags RefCnt Use Metric Mask MTU Window IRTT
 wlan0 00000000 0100A8C0 0003 0 0 600 00000000 0 0 0
 eth1 000010AC 00000000 0001 0 0 100 00FFFFFF 0 0 0

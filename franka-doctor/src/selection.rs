@@ -1,7 +1,7 @@
 //! The selection of checks.
 
-/// A selection of checks by their ids or id prefixes up to a dot: `nic` selects `nic.route` and all
-/// others of the card. The default selects all.
+/// A selection of checks by id, or by the part of ids before the dot. For example, `nic` selects
+/// `nic.route` and all other checks of the card. The default selects all checks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     only: Vec<String>,
@@ -9,7 +9,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Selects the checks in `only`, or all if it is empty, except the checks in `skip`.
+    /// Selects the checks in `only`, or all checks if `only` is empty, except the checks in `skip`.
     pub fn new(only: Vec<String>, skip: Vec<String>) -> Self {
         Self { only, skip }
     }

@@ -33,12 +33,13 @@ use portable as host;
 /// The host that runs this program.
 #[derive(Clone, Debug, Default)]
 pub struct System {
-    /// The processor for the control thread, used in the measurement of wake-ups.
+    /// Processor for the control thread, which the measurement of wake-ups uses.
     pub cpu: Option<usize>,
 }
 
 impl System {
-    /// The scheduling that the driver's thread would request; refusals are not errors.
+    /// Returns the scheduling that the driver's control thread would request. A refusal is not an
+    /// error.
     fn scheduling(&self) -> Scheduling {
         Scheduling {
             realtime: Realtime::Ignore,
@@ -185,8 +186,8 @@ impl Host for System {
 }
 
 impl System {
-    /// Runs `measure` on a thread with the scheduling of the control thread. It receives the
-    /// priority of this thread and counts the completed part of `total`.
+    /// Runs `measure` on a thread with the scheduling of the control thread. `measure` receives the
+    /// priority of this thread, and counts the completed part of `total`.
     fn measured<T: Send>(
         &self,
         total: u64,
@@ -222,5 +223,5 @@ fn milliseconds(duration: Duration) -> u64 {
 /// Computation time of a thread before the frequency of its processor is read.
 const BUSY: Duration = Duration::from_secs(1);
 
-/// Largest part of a file that is read.
+/// Largest number of bytes of a file that are read.
 const READ_MAX: u64 = 1 << 20;

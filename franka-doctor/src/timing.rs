@@ -39,8 +39,8 @@ pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) ->
     about.finding(measured.map(judge), purpose)
 }
 
-/// Judges `what` by the largest latency: good below the first of `limits_us`, usable below the
-/// second, and a failure above the last.
+/// Judges `what` by the largest latency. It is good below the first of `limits_us`, usable below
+/// the second, and a failure above the last.
 fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     let quantile = |part| latencies.quantile(part).unwrap_or_default();
     let (Some(min), Some(max)) = (latencies.min(), latencies.max()) else {
@@ -81,12 +81,11 @@ fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     }
 }
 
-/// A state of a robot at rest, and its time of arrival: `message_id`, and the time since any fixed
-/// moment.
+/// A state of a robot at rest: its `message_id`, and its time of arrival since any fixed moment.
 pub type Received = (u64, Duration);
 
 /// Returns the findings about consecutive states in their order of arrival: the number of missing
-/// states, and the regularity. A pure function.
+/// states, and the regularity. This is a pure function.
 pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     let mut lost = 0;
     let mut longest = 0;
@@ -145,8 +144,8 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// Returns the finding about missing states of a robot that opened a session: `net.firewall`;
-/// `None` without a session. A pure function.
+/// Returns the finding `net.firewall`: whether the states of a robot arrive after it has opened a
+/// session. `states_arrive` is `None` without a session. This is a pure function.
 pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     let about = About {
         id: "net.firewall",
@@ -168,8 +167,8 @@ pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     about.finding(Ok(judged), purpose)
 }
 
-/// Returns the smallest of `sorted` that at least the share `part` (in `[0, 1]`) of them does not
-/// exceed.
+/// Returns the quantile `part`, in `[0, 1]`, of `sorted`: the smallest element that at least this
+/// share of the elements does not exceed.
 ///
 /// # Panics
 /// If the list is empty.
@@ -178,11 +177,11 @@ pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
     sorted[wanted - 1]
 }
 
-/// Number of latencies below which the result is not conclusive: the milliseconds of ten seconds.
+/// Number of latencies below which the result is not conclusive: those of ten seconds.
 const LATENCIES_MIN: u64 = 10_000;
 
-/// Number of consecutive states below which the result is not conclusive: ten seconds, without a
-/// few lost ones.
+/// Number of consecutive states below which the result is not conclusive: those of ten seconds,
+/// minus a few lost states.
 const STATES_MIN: usize = 9_900;
 
 #[cfg(test)]
@@ -190,7 +189,7 @@ mod tests {
     use super::*;
     use crate::finding::Verdict;
 
-    /// Returns `count` latencies, all of `us` except the `worst`.
+    /// Returns `count` latencies: all are `us`, except for one of `worst`.
     fn measured(us: u64, count: usize, worst: u64) -> Latencies {
         let mut latencies = Latencies::new(Some(99));
         for _ in 1..count {

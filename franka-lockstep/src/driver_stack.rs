@@ -1,5 +1,5 @@
-//! The client's half of a connection: driver, command session and motion state machine, on virtual
-//! time.
+//! The client's half of a connection, on virtual time: driver, command session and motion state
+//! machine.
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::time::Duration;
@@ -18,7 +18,7 @@ use franka_rt::stats::{Arrival, CycleTimes};
 
 /// The driver without its sockets and its clock: bytes and time go in, bytes come out.
 pub struct DriverStack {
-    /// The pure core of the control thread.
+    /// The state machine that the control thread runs.
     pub driver: Driver,
     /// The motion state machine.
     pub lifecycle: Lifecycle,
@@ -26,35 +26,36 @@ pub struct DriverStack {
     pub record: Record,
     /// The newest state that arrived.
     pub state: RobotState,
-    /// Time from the previous state to the newest one, `[ms]` of the robot's clock.
+    /// Time from the previous state to the newest state, `[ms]` of the robot's clock.
     step: u64,
-    /// The time since any fixed moment.
+    /// Current time, since any fixed moment.
     pub now: Duration,
     /// Arrival time of the newest state.
     pub(crate) heard: Duration,
-    /// The time from a state to its answer. The client is then ready for the next state.
+    /// Time from a state to its answer. The client is ready for the next state after this time.
     pub turnaround: Duration,
-    /// True if events of the driver do not reach the lifecycle, as if its task were not scheduled.
+    /// True if the driver's events do not reach the lifecycle (the motion state machine), as if its
+    /// task did not run.
     pub lifecycle_is_paused: bool,
-    /// The time at which the newest state is answered.
+    /// Time at which the client answers the newest state.
     pub(super) free: Duration,
     session: Session,
     motions: HashMap<CommandId, MotionId>,
     to_robot: VecDeque<Vec<u8>>,
     from_robot: Vec<u8>,
     outcomes: BTreeMap<GoalId, Outcome>,
-    /// Number of goals named so far.
+    /// Number of goals that have received an id so far.
     pub(super) goals: u64,
-    /// Answers to requests to recover, the oldest first.
+    /// Answers to recovery requests, the oldest first.
     pub(super) recoveries: VecDeque<RecoveryStatus>,
-    /// The newest answer to a setting, until it is taken.
+    /// The newest answer to a setting, until [`Supervised`](crate::Supervised) takes it.
     pub(super) setting: Option<SetterStatus>,
     /// True if the command connection has ended.
     closed: bool,
 }
 
 impl DriverStack {
-    /// Returns an unconnected client, for a robot of this model that speaks `version`.
+    /// Returns a client that is not connected, for a robot of this model that speaks `version`.
     pub fn new(model: &Model, version: Version) -> Self {
         Self {
             driver: Driver::new(version),
@@ -79,7 +80,7 @@ impl DriverStack {
         }
     }
 
-    /// Replaces the number of cycles that the log of a motion holds.
+    /// Replaces the number of cycles in the log of a motion.
     #[must_use]
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.lifecycle = self.lifecycle.with_log_size(cycles);
@@ -91,26 +92,26 @@ impl DriverStack {
         self.session.version()
     }
 
-    /// True if the handshake is done.
+    /// True if the handshake has succeeded.
     pub fn is_connected(&self) -> bool {
         self.session.is_connected()
     }
 
-    /// The number of requests with an answer outstanding.
+    /// Number of requests that wait for an answer.
     pub fn pending(&self) -> usize {
         self.session.pending()
     }
 
-    /// Begins the handshake, which announces `udp_port` for states.
+    /// Begins the handshake. It announces `udp_port` as the port for states.
     pub fn connect(&mut self, udp_port: u16) {
         let hello = self.session.connect(udp_port);
         self.to_robot.push_back(hello.as_bytes().to_vec());
     }
 
-    /// Sends a request that is not a motion; its answer is discarded.
+    /// Sends a request that is not a motion, and ignores its answer.
     ///
     /// # Panics
-    /// If the session refuses it.
+    /// If the session refuses the request.
     pub fn request(&mut self, request: &Request) {
         let outgoing = self
             .session
@@ -124,8 +125,9 @@ impl DriverStack {
         self.to_robot.pop_front()
     }
 
-    /// Processes bytes of the robot's stream, split anywhere. A protocol violation ends the motion
-    /// that it answers, or else closes the connection. Bytes after that are ignored.
+    /// Processes bytes of the robot's stream, in any portions. If a reply to a motion violates the
+    /// protocol, this motion ends. Any other violation closes the connection, and later bytes are
+    /// ignored.
     pub fn on_bytes(&mut self, bytes: &[u8]) {
         let mut received = std::mem::take(&mut self.from_robot);
         received.extend_from_slice(bytes);
@@ -164,7 +166,7 @@ impl DriverStack {
         self.from_robot = rest.to_vec();
     }
 
-    /// Notifies the lifecycle if the violation is an unreadable reply to a motion.
+    /// Reports a protocol violation to the lifecycle if it is an unreadable reply to a motion.
     fn on_violation(&mut self, violation: Violation) {
         let (Violation::Reply { id, .. } | Violation::SecondMotionStarted { id }) = &violation
         else {
@@ -177,8 +179,8 @@ impl DriverStack {
     }
 
     /// The control thread's work between a state and its command: decodes the datagram, and returns
-    /// the size of the command that answers it, if any. Never inlined: instructions are counted by
-    /// its name.
+    /// the size of the command that answers it, if any. It is never inlined, because benchmarks
+    /// count instructions by this function's name.
     ///
     /// # Panics
     /// If the datagram is not a state.
@@ -193,7 +195,7 @@ impl DriverStack {
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
     }
 
-    /// The control thread's work after [`Self::answer`], if states arrive when they are due and
+    /// The control thread's work after [`Self::answer`]. States arrive when they are due, and
     /// answers take no time.
     pub fn conclude(&mut self, answered: bool) {
         let state = &self.state;
@@ -210,8 +212,8 @@ impl DriverStack {
         }
     }
 
-    /// Prepares the next state, as the control thread does before it comes. Never inlined, like
-    /// [`Self::answer`].
+    /// Prepares the next state, as the control thread does before the state arrives. It is never
+    /// inlined, for the same reason as [`Self::answer`].
     #[inline(never)]
     pub fn prepare(&mut self) {
         self.driver.prepare();
@@ -219,8 +221,9 @@ impl DriverStack {
         core::hint::black_box(&self.step);
     }
 
-    /// Passes on the driver's events, checks deadlines, and carries out the lifecycle's outputs.
-    /// Returns true if there were any: the driver may then have more events.
+    /// Passes the driver's events to the lifecycle, checks deadlines, and carries out the
+    /// lifecycle's outputs. Returns true if there were outputs, because the driver may then have
+    /// more events.
     pub fn settle(&mut self) -> bool {
         while !self.lifecycle_is_paused
             && let Some(event) = self.driver.take_event()
@@ -240,10 +243,10 @@ impl DriverStack {
         GoalId(self.goals)
     }
 
-    /// Starts a motion under a program of the test.
+    /// Starts a motion that a program of the test controls.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn control(
         &mut self,
         program: Program,
@@ -258,10 +261,10 @@ impl DriverStack {
         })
     }
 
-    /// Begins a motion, to a pose on the path that is planned for it, and returns its name.
+    /// Begins a motion and returns its goal id. A goal that is a pose gets its planned path first.
     ///
     /// # Errors
-    /// As [`Goal::plan_line`] and the lifecycle.
+    /// The errors of [`Goal::plan_line`] and of the lifecycle.
     ///
     /// [`Goal::plan_line`]: franka_rt::session::Goal::plan_line
     pub fn begin(&mut self, mut motion: NewMotion) -> Result<GoalId, MotionError> {
@@ -278,11 +281,11 @@ impl DriverStack {
         begun.map(|()| id)
     }
 
-    /// Begins a motion along `waypoints` to the last of them, from the reference if target control
-    /// runs, and returns its name.
+    /// Begins a motion along `waypoints` to the last waypoint, and returns its goal id. The motion
+    /// starts at the reference if target control runs.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn begin_along(
         &mut self,
         waypoints: &[Waypoint],
@@ -297,7 +300,7 @@ impl DriverStack {
         self.begin(motion)
     }
 
-    /// The reference if target control runs, or the arm, `[rad]`.
+    /// Joint positions of the reference if target control runs, otherwise of the arm, `[rad]`.
     fn reference_q(&self) -> [f64; 7] {
         if self.record.goal == GoalId::default().0 {
             self.state.q
@@ -306,7 +309,7 @@ impl DriverStack {
         }
     }
 
-    /// Brakes and returns the id of the stop; `None` if nothing moves.
+    /// Brakes. Returns the id of the stop; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         let id = self.next_goal();
         let stopping = self.lifecycle.stop(id, &self.state, self.now);
@@ -314,7 +317,7 @@ impl DriverStack {
         stopping.then_some(id)
     }
 
-    /// Cancels work, as dropping its future does.
+    /// Cancels a goal or a program, as dropping its future does.
     pub fn cancel(&mut self, id: GoalId) {
         self.lifecycle.cancel(id, self.now);
         self.carry_out();
@@ -323,7 +326,7 @@ impl DriverStack {
     /// Returns the newest motion and the request that began it.
     ///
     /// # Panics
-    /// If there was no motion yet.
+    /// If no motion has begun yet.
     pub fn newest_motion(&self) -> (CommandId, MotionId) {
         let newest = self.motions.iter().max_by_key(|(_, motion)| **motion);
         let (&id, &motion) = newest.expect("a motion has begun");
@@ -333,7 +336,7 @@ impl DriverStack {
     /// Simulates an unreadable reply to the newest motion.
     ///
     /// # Panics
-    /// If there was no motion yet.
+    /// If no motion has begun yet.
     pub fn violate(&mut self) {
         let (id, motion) = self.newest_motion();
         let violation = Violation::SecondMotionStarted { id };
@@ -349,17 +352,18 @@ impl DriverStack {
         self.carry_out();
     }
 
-    /// The number of goals and programs resolved so far.
+    /// Number of goals and programs that have an outcome.
     pub fn resolved(&self) -> usize {
         self.outcomes.len()
     }
 
-    /// The outcome of a goal or a program, once resolved.
+    /// The outcome of a goal or a program; `None` while it has none.
     pub fn outcome(&self, id: GoalId) -> Option<&Outcome> {
         self.outcomes.get(&id)
     }
 
-    /// Forgets the replies expected for earlier motions: the lifecycle runs one motion at a time.
+    /// Forgets the replies that earlier motions still expect, because the lifecycle runs one motion
+    /// at a time.
     fn forget_motions(&mut self) {
         for (id, _) in self.motions.drain() {
             self.session.abandon(id);
@@ -398,7 +402,7 @@ impl DriverStack {
     }
 }
 
-/// A peer that has violated the protocol.
+/// Returns the reason for closing the connection to a peer that has violated the protocol.
 fn violated(violation: &impl ToString) -> CloseReason {
     CloseReason::Protocol {
         text: violation.to_string(),

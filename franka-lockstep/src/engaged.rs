@@ -1,4 +1,4 @@
-//! Sessions that go from goal to goal.
+//! Sessions that move the arm from goal to goal.
 
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion, Tuning};
 use franka_rt::session::{Backend, Chunk, Goal, GoalId, OnArrival, Target, Waypoint};
@@ -7,18 +7,18 @@ use super::Lockstep;
 use super::guard::CommandGuard;
 
 impl Lockstep {
-    /// Begins a session with the defaults, and runs until it holds the arm.
+    /// Begins a session with default options, and runs until the session holds the arm.
     ///
     /// # Panics
-    /// If it is refused, or does not begin within a second.
+    /// If the session is refused, or does not begin within a second.
     pub fn engage(&mut self) -> GoalId {
         self.engage_with(Engagement::default())
     }
 
-    /// Like [`Self::engage`], with these options, such as a deadman.
+    /// Like [`Self::engage`], with the given options, for example a deadman timeout.
     ///
     /// # Panics
-    /// As [`Self::engage`].
+    /// The panics of [`Self::engage`].
     pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
         let id = self.begin_session(engagement);
         for _ in 0..1000 {
@@ -30,10 +30,10 @@ impl Lockstep {
         panic!("no session after a second: {:?}", self.client.lifecycle);
     }
 
-    /// Requests a session, and does not wait until it holds the arm.
+    /// Requests a session, without waiting until it holds the arm.
     ///
     /// # Panics
-    /// If it is refused at once.
+    /// If the session is refused immediately.
     pub fn begin_session(&mut self, engagement: Engagement) -> GoalId {
         // The robot checks the setpoints itself.
         self.guard = (engagement.backend == Backend::Torques)
@@ -44,7 +44,7 @@ impl Lockstep {
     /// Requests a session.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
         let goal = self.goal(Target::Rest, OnArrival::Hold);
         self.client.begin(NewMotion::Session {
@@ -53,10 +53,11 @@ impl Lockstep {
         })
     }
 
-    /// Submits a goal to the session `engaged`: a goal to await, or a goal to hold until the next.
+    /// Submits a goal to the session `engaged`. `on_arrival` decides whether the goal ends on
+    /// arrival, or holds the target until the next goal.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn within(
         &mut self,
         engaged: GoalId,
@@ -70,7 +71,7 @@ impl Lockstep {
     /// Submits this goal to the session `engaged`.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::Goal {
             goal: Box::new(goal),
@@ -83,7 +84,7 @@ impl Lockstep {
     /// Moves through `waypoints`, in a separate motion or within the session `engaged`.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn through(
         &mut self,
         engaged: Option<GoalId>,
@@ -103,20 +104,20 @@ impl Lockstep {
         self.client.begin_along(waypoints, motion)
     }
 
-    /// Sends a chunk to the session.
+    /// Sends a chunk (a series of timed points) to the session.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
         let goal = self.goal(chunk.target(), OnArrival::Hold);
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
     }
 
-    /// Sends a chunk with this goal. The goal's id names the chunk, unless the chunk continues
-    /// another one.
+    /// Sends a chunk with this goal. The id of the goal identifies the chunk, unless the chunk
+    /// continues another chunk.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn submit_chunk(
         &mut self,
         engaged: GoalId,
@@ -132,7 +133,7 @@ impl Lockstep {
     /// Changes gains, budget or force cap of the session.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn tune(&mut self, engaged: GoalId, tuning: Tuning) -> Result<(), MotionError> {
         let client = &mut self.client;
         client.lifecycle.tune(engaged, tuning, &client.state)

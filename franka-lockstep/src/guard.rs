@@ -6,7 +6,7 @@ use franka_proto::{RobotCommand, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
 
-/// Keeps the previous command, for rates.
+/// A check of commands. It keeps the previous command to compute rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
     limits: JointLimits,
@@ -26,12 +26,12 @@ struct Last {
 }
 
 impl CommandGuard {
-    /// Returns a guard for a robot with these limits.
+    /// Returns a check for a robot with these limits.
     pub(super) fn new(limits: JointLimits) -> Self {
         Self { limits, last: None }
     }
 
-    /// Checks a command, and the reference behind it.
+    /// Checks a command, and the reference from which it was computed.
     ///
     /// # Panics
     /// If the command violates a limit of the robot, or the reference is not continuous.

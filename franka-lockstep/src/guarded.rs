@@ -1,6 +1,6 @@
-//! Endless target control with every guard on, for several workloads. Missing updates, deadman
-//! timeouts, pushes, conditions, regions in the way and targets far ahead make each of the guards
-//! bind from time to time.
+//! Endless target control with every guard on, for several workloads. Each guard has to intervene
+//! from time to time, because of missing updates, deadman timeouts, pushes, conditions, regions in
+//! the way and targets far ahead.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -23,19 +23,19 @@ use rand::{Rng, SeedableRng};
 
 use super::{Lockstep, Part, set_in_motion};
 
-/// The kind of goals that a session gets.
+/// Kind of goals for a session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Workload {
     /// Poses, as single goals and as streams.
     Poses,
-    /// Joint positions, likewise.
+    /// Joint positions, as single goals and as streams.
     Joints,
     /// Chunks of joints and of poses, most of them replaced before their end.
     Chunks,
-    /// Guiding, with occasional poses.
+    /// Guiding by hand, with occasional poses.
     Guide,
-    /// Joint positions and poses for one of the robot's own controllers; the seed chooses
-    /// which, and with which setpoints. Poses alone if those are Cartesian.
+    /// Joint positions and poses for one of the robot's own controllers. The seed selects the
+    /// controller and the kind of setpoints. Cartesian setpoints get only poses.
     RobotController,
 }
 
@@ -60,16 +60,16 @@ impl Workload {
     }
 }
 
-/// A session with every guard on, and the goals and disturbances that it gets, from a seed.
+/// A session with every guard on. A seed determines its goals and disturbances.
 pub struct Guarded {
-    /// The system that the session runs in.
+    /// The system in which the session runs.
     pub lockstep: Lockstep,
-    /// The guards that have bound so far.
+    /// Guards that have intervened so far.
     pub bound: HashSet<Guard>,
-    /// The fates of the chunks so far.
+    /// How each chunk has ended so far.
     pub fates: Vec<Fate>,
-    /// Number of times that the robot has stopped the arm, since a hard push can drive it to a
-    /// limit. The arm then starts again from the ready pose.
+    /// Number of times that the robot has stopped the arm, because a hard push can drive the arm to
+    /// a limit. The arm then starts again from the ready pose.
     pub stops: u32,
     workload: Workload,
     backend: Backend,
@@ -80,13 +80,13 @@ pub struct Guarded {
     deadman: Deadman,
     goal: Goal,
     turns: usize,
-    /// The times of the next change of course and of the next sign of life of the deadman, `[ms]`.
+    /// Times of the next change of the goal, and of the next keep-alive of the deadman, `[ms]`.
     next: u64,
     beat: u64,
 }
 
 impl Guarded {
-    /// Returns an arm in the ready pose with its session running.
+    /// Returns an arm in the ready pose with a running session.
     ///
     /// # Panics
     /// If the motion does not begin.
@@ -98,7 +98,7 @@ impl Guarded {
         )
     }
 
-    /// Returns an arm whose session uses this back end, with the goals of
+    /// Returns an arm whose session uses the given back end, with the goals of
     /// [`Workload::RobotController`].
     ///
     /// # Panics
@@ -157,7 +157,7 @@ impl Guarded {
     /// Advances by one millisecond; see [`Lockstep::tick_around`].
     ///
     /// # Panics
-    /// If the motion does not begin again after the robot has stopped the arm.
+    /// If the session does not begin again after the robot has stopped the arm.
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         let now = self.lockstep.now();
         if now >= self.beat {
@@ -241,7 +241,7 @@ impl Guarded {
         }
     }
 
-    /// Submits the target as a new goal, or as an update of the previous one.
+    /// Submits the target as a new goal, or as an update of the previous goal.
     fn go_to(&mut self, target: Target) {
         let alike = core::mem::discriminant(&target) == core::mem::discriminant(&self.goal.target);
         if alike && self.random.random_bool(0.5) {
@@ -308,7 +308,8 @@ impl Guarded {
         self.goals.write(self.goal);
     }
 
-    /// A condition that becomes true soon, sometimes, and rest or a target that follows.
+    /// Sometimes returns a condition that soon becomes true, and what then follows: rest or another
+    /// target.
     fn reaction(&mut self) -> Option<Reaction> {
         if self.random.random_bool(0.75) {
             return None;
@@ -377,7 +378,7 @@ fn limits() -> &'static JointLimits {
     Model::fr3().joint_limits()
 }
 
-/// A floor, a wall, a table and a shelf. The last three are within reach.
+/// A floor, a wall, a table and a shelf. The last three are within the arm's reach.
 fn regions(home: &Isometry3<f64>) -> KeepOut {
     let at = home.translation;
     let (x, y, z) = (at.x, at.y, at.z);
@@ -396,14 +397,14 @@ fn regions(home: &Isometry3<f64>) -> KeepOut {
     ]
 }
 
-/// The timeouts of the deadman and of a stream.
+/// Timeouts of the deadman and of a stream.
 const SILENCE: Duration = Duration::from_millis(100);
 const SILENT_STREAM: Duration = Duration::from_millis(300);
 
-/// Low enough to bind, `[N]`.
+/// Force limit, low enough to intervene, `[N]`.
 const FORCE_CAP: f64 = 20.0;
 
-/// Short enough to bind.
+/// Limit on the distance between reference and arm, small enough to intervene.
 const LEAD: Lead = Lead {
     translation: 0.05,
     rotation: 0.2,

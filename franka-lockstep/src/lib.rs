@@ -9,12 +9,11 @@
 //!   '-------------- DriverStack -------------'
 //! ```
 //!
-//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`]:
-//! datagrams pass the simulator's network, whose delays and losses come from its seed. One call of
-//! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next; within it,
-//! datagrams arrive when they arrive. In every test, each command of target control that leaves the
-//! driver is checked against the robot's limits. The [`DriverStack`] half also runs beside scripted
-//! robots.
+//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`].
+//! Datagrams pass the simulator's network; its seed determines delays and losses. One call of
+//! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next. Datagrams arrive
+//! at their own times within it. In every test, the harness checks each command of target control
+//! against the robot's limits. Tests can also run a [`DriverStack`] with a scripted robot.
 
 mod driver_stack;
 mod engaged;
@@ -50,11 +49,11 @@ use guard::CommandGuard;
 /// A part of the control cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// From the datagram of a state to the datagram of the command.
+    /// The time from the datagram of a state to the datagram of its command.
     Answer,
-    /// The driver's work after the command has left.
+    /// The driver's work after the command has been sent.
     Aftermath,
-    /// Its work for the next state.
+    /// The driver's preparation for the next state.
     Preparation,
 }
 
@@ -62,22 +61,23 @@ pub enum Part {
 pub struct Lockstep {
     /// The simulated robot, which a test can push and trip.
     pub robot: Robot,
-    /// The network between.
+    /// The network between robot and client.
     pub link: Link,
     /// The driver, without its sockets.
     pub client: DriverStack,
     /// The client's model of the robot, with the lengths and limits that the robot describes.
     model: Model,
-    /// Absent once a test's own program has run, because such a program may send any command.
+    /// Check of commands. It is `None` once a program of the test has run, because such a program
+    /// may send any command.
     guard: Option<CommandGuard>,
-    /// True if the arm was ever frozen.
+    /// True if the arm was ever frozen ([`Robot::freeze`]).
     frozen: bool,
     milliseconds: u64,
     heard: u64,
 }
 
 impl Lockstep {
-    /// Returns a robot as configured, connected over a perfect link.
+    /// Returns a robot with this configuration, connected over a perfect link.
     ///
     /// # Panics
     /// If the handshake fails or no state arrives.
@@ -85,10 +85,10 @@ impl Lockstep {
         Self::with_robot(Robot::new(config))
     }
 
-    /// Returns this robot, with any plant, connected over a perfect link.
+    /// Returns this robot, connected over a perfect link. The robot may have any plant (physics).
     ///
     /// # Panics
-    /// As [`Self::new`].
+    /// The panics of [`Self::new`].
     pub fn with_robot(robot: Robot) -> Self {
         let robots = robot.model();
         let (lengths, limits) = (*robots.lengths(), *robots.joint_limits());
@@ -111,17 +111,17 @@ impl Lockstep {
         this
     }
 
-    /// Returns a Franka Research 3 in the ready pose with its hand, which enforces its limits.
+    /// Returns a Franka Research 3 with a Hand in the ready pose. The robot enforces its limits.
     pub fn ready() -> Self {
         Self::ready_of(RobotKind::Fr3)
     }
 
-    /// Returns a robot of this kind in the ready pose with its hand, which enforces its limits.
+    /// Returns a robot of this kind with a Hand in the ready pose. The robot enforces its limits.
     pub fn ready_of(kind: RobotKind) -> Self {
         Self::new(Self::config_of(kind))
     }
 
-    /// The configuration of [`Self::ready_of`].
+    /// Returns the configuration of [`Self::ready_of`].
     pub fn config_of(kind: RobotKind) -> Config {
         Config {
             kind,
@@ -130,14 +130,14 @@ impl Lockstep {
         }
     }
 
-    /// Replaces the number of cycles that the log of a motion holds.
+    /// Replaces the number of cycles in the log of a motion.
     #[must_use]
     pub fn with_log_size(self, cycles: usize) -> Self {
         let client = self.client.with_log_size(cycles);
         Self { client, ..self }
     }
 
-    /// The time since the beginning, `[ms]`.
+    /// Time since the beginning, `[ms]`.
     pub fn now(&self) -> u64 {
         self.milliseconds
     }
@@ -145,16 +145,17 @@ impl Lockstep {
     /// Advances the whole system by one millisecond.
     ///
     /// # Panics
-    /// If a command violates a limit of the robot, or the client's session cannot read a message.
+    /// If a command violates a limit of the robot, or if the client's session cannot read a
+    /// message.
     pub fn tick(&mut self) {
         self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], but `around` runs each part of the control cycle, to time them or to
-    /// count their allocations.
+    /// Like [`Self::tick`], but `around` runs each part of the control cycle. It can measure time
+    /// or count allocations.
     ///
     /// # Panics
-    /// As [`Self::tick`], and if `around` does not run the part that it is given.
+    /// The panics of [`Self::tick`]. Also if `around` does not run the function that it receives.
     pub fn tick_around(&mut self, mut around: impl FnMut(Part, &mut dyn FnMut())) {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
@@ -189,8 +190,8 @@ impl Lockstep {
         self.client.settle();
     }
 
-    /// Passes the client the states that arrive before the robot's next cycle. Returns true if one
-    /// arrived.
+    /// Passes the client the states that arrive before the robot's next cycle. Returns true if a
+    /// state arrived.
     fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
         let end = self.next_cycle();
         let mut heard = false;
@@ -239,7 +240,7 @@ impl Lockstep {
         Duration::from_millis(self.milliseconds + 1)
     }
 
-    /// Lets `milliseconds` pass without a state; the robot's own time does not advance.
+    /// Lets `milliseconds` pass without a state. The robot's own time does not advance.
     pub fn silence(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             self.milliseconds += 1;
@@ -250,7 +251,7 @@ impl Lockstep {
         }
     }
 
-    /// Lets the client's clock jump, as on a host that slept. No state is missed.
+    /// Makes the client's clock jump, as on a host that was suspended. The client misses no state.
     pub fn jump(&mut self, milliseconds: u64) {
         self.milliseconds += milliseconds;
         self.heard += milliseconds;
@@ -262,7 +263,7 @@ impl Lockstep {
     /// Writes a command for the newest state of a motion under active control.
     ///
     /// # Errors
-    /// As the driver.
+    /// The errors of the driver.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteError> {
         let sent = self.client.driver.write(command, finished)?;
         let mut bytes = [0; RobotCommand::MAX_SIZE];
@@ -273,8 +274,7 @@ impl Lockstep {
         Ok(())
     }
 
-    /// Closes the connection, if it is open, and connects to the same robot again over a perfect
-    /// link.
+    /// Closes the connection, if open, and connects to the same robot again over a perfect link.
     ///
     /// # Panics
     /// If the handshake fails.
@@ -323,7 +323,8 @@ impl Lockstep {
     }
 }
 
-/// Runs `test` for every kind of robot, with a function that makes one: see [`Lockstep::ready_of`].
+/// Runs `test` for every kind of robot. `test` receives a function that creates a robot: see
+/// [`Lockstep::ready_of`].
 pub fn for_each_robot(test: impl Fn(&dyn Fn() -> Lockstep)) {
     for kind in RobotKind::ALL {
         println!("{kind:?}");

@@ -5,28 +5,28 @@ use std::time::Duration;
 use franka_sim::Network;
 use franka_sim::network::{Conditions, Loss};
 
-/// The link between client and robot: datagrams pass a [`Network`], and messages can be lost.
+/// The link between client and robot. Datagrams pass a [`Network`], and messages can be lost.
 #[derive(Clone, Debug)]
 pub struct Link {
     /// The network for states and commands.
     pub network: Network,
-    /// The number of finishing commands to lose next.
+    /// Number of finishing commands (the last commands of a motion) to lose next.
     drop_finishing: u64,
-    /// True if requests reach the robot; they are lost otherwise.
+    /// True if requests reach the robot; otherwise they are lost.
     pub requests: bool,
-    /// True if the robot's replies arrive.
+    /// True if the robot's replies reach the client; otherwise they are lost.
     pub replies: bool,
-    /// True if requests and replies wait: the command connection repeats them when the network is
-    /// back.
+    /// True if requests and replies are delayed until the network is back, because the command
+    /// connection repeats them.
     pub delayed: bool,
 }
 
 /// A state that the client receives.
 pub(super) struct Reception {
-    /// The time of reception.
+    /// Time of reception.
     pub(super) at: Duration,
     pub(super) datagram: Vec<u8>,
-    /// The number of older states that were there too, and are skipped.
+    /// Number of older states that had also arrived and are skipped.
     pub(super) skipped: u64,
 }
 
@@ -43,7 +43,8 @@ impl Link {
         Self::over(Network::new(seed, states, commands))
     }
 
-    /// Returns a link over this network, whose time is [`Lockstep::now`](super::Lockstep::now).
+    /// Returns a link over this network. The network's time is
+    /// [`Lockstep::now`](super::Lockstep::now).
     pub fn over(network: Network) -> Self {
         Self {
             network,
@@ -69,8 +70,8 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    /// Returns the state for a client that is ready from `free` on, before `end`: the newest
-    /// arrived state, if it is newer than `last`.
+    /// Returns the state that a client reads if it is ready from `free` on, and before `end`. This
+    /// is the newest state that has arrived, if it is newer than `last`.
     pub(super) fn receive(
         &mut self,
         free: Duration,

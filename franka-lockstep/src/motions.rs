@@ -1,4 +1,4 @@
-//! Motions of the client: begun, changed, ended, and awaited in virtual time.
+//! Motions of the client: how tests begin, change, end and await them in virtual time.
 
 use franka_proto::{MoveControllerMode, MoveRequest, Request};
 use franka_rt::control::Callback;
@@ -11,7 +11,7 @@ use nalgebra::Isometry3;
 use super::{DriverStack, Lockstep, Outcome};
 
 impl Lockstep {
-    /// Returns a goal with the defaults of the async API: see `franka_async::Motion`.
+    /// Returns a goal with the default options of the async API: see `franka_async::Motion`.
     pub fn goal(&mut self, target: Target, on_arrival: OnArrival) -> Goal {
         let limits = self.model.joint_limits();
         Goal::new(self.client.next_goal(), target, on_arrival, limits)
@@ -20,7 +20,7 @@ impl Lockstep {
     /// Submits a goal.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::to(goal))
     }
@@ -28,7 +28,7 @@ impl Lockstep {
     /// Submits a goal that begins together with the goals of other robots.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn submit_together(
         &mut self,
         goal: Goal,
@@ -46,7 +46,7 @@ impl Lockstep {
     /// [`Self::control`].
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn control_together(
         &mut self,
         callback: Callback,
@@ -72,11 +72,11 @@ impl Lockstep {
         self.submit(goal).expect("the goal is accepted")
     }
 
-    /// Starts a motion under a program of the test. From then on the harness checks no commands:
-    /// the simulated robot judges them.
+    /// Starts a motion that a program of the test controls. From then on, the harness checks no
+    /// commands; only the simulated robot does.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn control(
         &mut self,
         program: Program,
@@ -86,18 +86,18 @@ impl Lockstep {
         self.client.control(program, request)
     }
 
-    /// Starts a control function, with the robot's joint impedance controller if it commands no
-    /// torques. See [`Self::control`].
+    /// Starts a control function. If the function commands no torques, the robot's joint impedance
+    /// controller follows it. See [`Self::control`].
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn control_function(&mut self, function: Callback) -> Result<GoalId, MotionError> {
         let controller = MoveControllerMode::JointImpedance;
         let request = function.request(self.client.version(), controller);
         self.control(Program::Callback(Box::new(function)), request)
     }
 
-    /// Brakes and returns the id of the stop; `None` if nothing moves.
+    /// Brakes. Returns the id of the stop; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         self.client.stop()
     }
@@ -107,10 +107,10 @@ impl Lockstep {
         self.client.cancel(goal);
     }
 
-    /// Moves the target of a held goal. Returns whether the goal is still held.
+    /// Moves the target of a goal that holds its target. Returns true if the goal still holds it.
     ///
     /// # Errors
-    /// As the lifecycle.
+    /// The errors of the lifecycle.
     pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
         let DriverStack {
             lifecycle, state, ..
@@ -118,10 +118,10 @@ impl Lockstep {
         lifecycle.update(goal, target, state)
     }
 
-    /// Runs until the goal is resolved, and returns its outcome.
+    /// Runs until the goal has an outcome, and returns the outcome.
     ///
     /// # Panics
-    /// If that takes longer than `most` milliseconds.
+    /// If this takes longer than `most` milliseconds.
     pub fn until_resolved(&mut self, goal: GoalId, most: u64) -> Outcome {
         for _ in 0..most {
             if let Some(outcome) = self.client.outcome(goal) {
@@ -159,7 +159,7 @@ impl Lockstep {
     /// Runs until no motion is active.
     ///
     /// # Panics
-    /// If that takes longer than `most` milliseconds.
+    /// If this takes longer than `most` milliseconds.
     pub fn until_idle(&mut self, most: u64) {
         for _ in 0..most {
             if self.client.lifecycle.is_idle() {
@@ -170,10 +170,10 @@ impl Lockstep {
         panic!("not idle after {most} ms: {:?}", self.client.lifecycle);
     }
 
-    /// Sends a request that is not a motion; its answer is not awaited.
+    /// Sends a request that is not a motion, without waiting for its answer.
     ///
     /// # Panics
-    /// If the session refuses it.
+    /// If the session refuses the request.
     pub fn request(&mut self, request: &Request) {
         self.client.request(request);
     }

@@ -9,18 +9,18 @@ use rand::Rng;
 use super::Lockstep;
 
 impl Lockstep {
-    /// The pose of the end effector that the robot's model has at the true joint positions: not
-    /// rounded by the wire, without noise.
+    /// Pose of the end effector at the true joint positions, according to the robot's model. It has
+    /// no noise and no rounding by the protocol.
     pub fn arm_pose(&self) -> Isometry3<f64> {
         self.pose_at(self.robot.q())
     }
 
-    /// The pose of the end effector at the reference of the driver's last command.
+    /// Pose of the end effector at the reference of the driver's last command.
     pub fn reference_pose(&self) -> Isometry3<f64> {
         self.pose_at(&self.client.record.q_ref.into())
     }
 
-    /// The pose of the end effector at these joint positions.
+    /// Pose of the end effector at these joint positions, `[rad]`.
     pub fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
         let rigid =
             |column_major| transform::isometry_from_array(column_major).expect("a rigid frame");
@@ -33,14 +33,14 @@ impl Lockstep {
     }
 }
 
-/// The pose of the end effector at `q`, with the lengths that both robots are described with.
+/// Pose of the end effector at `q`, with the lengths in the vendor's description of both robots.
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
 }
 
-/// The force on the flange for these joint torques, in the axes of the base, `[N]`, from the least
-/// wrench that explains them.
+/// Force on the flange that corresponds to these joint torques, in base axes, `[N]`. It belongs to
+/// the smallest wrench that explains the torques.
 ///
 /// # Panics
 /// At a singularity.
@@ -52,8 +52,8 @@ pub fn force_of(q: &JointVector, torques: &JointVector) -> Vector3<f64> {
     wrench.fixed_rows::<3>(0).into_owned()
 }
 
-/// The smallest distance between links that are three or more apart in the chain, `[m]`; the Hand
-/// comes after link 7. The robot's self-collision avoidance checks this distance.
+/// Smallest distance between links that are three or more apart in the chain, `[m]`. The Hand
+/// counts as link 8. The robot's self-collision avoidance checks this distance.
 pub fn self_distance(q: &JointVector) -> f64 {
     let arm = Shape::vendor().with_hand().at(q);
     let apart = arm
@@ -64,8 +64,8 @@ pub fn self_distance(q: &JointVector) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Gives a pose or joint target a random motion, sometimes faster than any budget; other targets
-/// stay unchanged.
+/// Gives a pose or joint target a random velocity, which sometimes exceeds every limit. Other
+/// targets stay unchanged.
 pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
     let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
     match target {

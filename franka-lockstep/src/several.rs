@@ -6,7 +6,8 @@ use franka_rt::session::{GoalId, Target};
 
 use super::Lockstep;
 
-/// The outcome of one goal of each robot, without the reports; `None` while one is unresolved.
+/// Returns the outcomes of one goal of each robot, without their reports; `None` while a goal has
+/// no outcome.
 pub fn outcomes_of<const N: usize>(
     robots: [&Lockstep; N],
     goals: [GoalId; N],
@@ -18,7 +19,7 @@ pub fn outcomes_of<const N: usize>(
     Some(outcomes)
 }
 
-/// The ready pose with the first joint turned by so much, `[rad]`.
+/// Returns the ready pose with the first joint turned by `by`, `[rad]`.
 pub fn turned(by: f64) -> Target {
     let mut q: [f64; 7] = READY.into();
     q[0] += by;

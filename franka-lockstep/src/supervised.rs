@@ -1,7 +1,7 @@
 //! A supervised robot in one thread on virtual time: the decisions of `franka_rt::supervision`, and
 //! connections that end and are established again.
 //!
-//! It replaces the parts of `franka-async` around them: tasks, sockets and futures.
+//! This module stands in for the corresponding parts of `franka-async`: tasks, sockets and futures.
 
 mod setting;
 
@@ -28,39 +28,40 @@ pub use setting::shows;
 /// A supervised robot, one millisecond at a time.
 pub struct Supervised {
     lockstep: Lockstep,
-    /// Configuration of the robot for a restart.
+    /// Configuration with which the robot restarts.
     pub config: Config,
     supervision: Supervision,
     sender: Sender,
-    /// True if the robot's computer runs.
+    /// True if the robot's computer is running.
     is_up: bool,
     connection: Connection,
     /// `message_id` of the newest state that the supervision has seen.
     seen: u64,
-    /// Motions that are with the lifecycle.
+    /// Motions that the lifecycle currently handles.
     under_way: BTreeSet<GoalId>,
     waiting: Option<NewMotion>,
     goals: u64,
-    /// Events reported since they were taken.
+    /// Events that the supervision has reported. The test may clear them.
     pub events: Vec<Event>,
-    /// Requests since they were taken.
+    /// Requests of the supervision. The test may clear them.
     pub requests: Vec<Asked>,
-    /// Settings of the program and their answers, since they were taken.
+    /// Settings of the program and the answers to them. The test may clear them.
     pub answers: Vec<(Request, Answer)>,
-    /// Outcome of each motion that was submitted.
+    /// Outcome of each submitted motion.
     pub outcomes: BTreeMap<GoalId, Outcome>,
 }
 
-/// A request of the supervision.
+/// A request of the supervision to its surroundings.
 #[derive(Debug)]
 pub enum Asked {
-    /// To connect.
+    /// Connect to the robot.
     Connect,
-    /// To recover from the reflex of this number, of a robot that shows this mode and these errors.
+    /// Recover the robot from the reflex with this number. The robot shows this mode and these
+    /// errors.
     Recover(u64, RobotMode, Errors),
-    /// A person's agreement.
+    /// Ask a person whether the robot may recover from this reflex.
     Agreement(Reflex),
-    /// To begin a motion that waited.
+    /// Begin a motion that was waiting.
     Begin(GoalId),
 }
 
@@ -68,28 +69,28 @@ pub enum Asked {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Connection {
     Up,
-    /// Its thread may still brake the arm, until then.
+    /// The connection has ended. Its control thread may brake the arm until the given time.
     Ending {
         until: u64,
     },
     None,
-    /// The robot must answer by then.
+    /// The client is connecting. The robot must answer before the given time.
     Connecting {
         until: u64,
     },
 }
 
-/// Time for a thread without a connection to brake, as `franka-async` gives it, `[ms]`.
+/// Time for which a control thread without a connection may brake, as in `franka-async`, `[ms]`.
 const BRAKING: u64 = 3000;
 
-/// Time that an attempt to connect takes at most, `[ms]`.
+/// Longest time of an attempt to connect, `[ms]`.
 const CONNECTING: u64 = 50;
 
 impl Supervised {
-    /// Returns a robot that is connected and supervised by this policy.
+    /// Returns a connected robot, supervised under this policy.
     ///
     /// # Panics
-    /// As [`Lockstep::new`].
+    /// The panics of [`Lockstep::new`].
     pub fn new(config: Config, policy: Policy) -> Self {
         let lockstep = Lockstep::new(config.clone());
         let mut this = Self {
@@ -112,7 +113,7 @@ impl Supervised {
         this
     }
 
-    /// The time since the beginning, `[ms]`.
+    /// Time since the beginning, `[ms]`.
     pub fn now(&self) -> u64 {
         self.lockstep.now()
     }
@@ -122,17 +123,17 @@ impl Supervised {
         &mut self.lockstep.robot
     }
 
-    /// True if the robot's computer runs.
+    /// True if the robot's computer is running.
     pub fn is_up(&self) -> bool {
         self.is_up
     }
 
-    /// The robot's computer runs, it is connected, and its states arrive.
+    /// True if the robot's computer is running, the client is connected, and states arrive.
     pub fn is_seen(&self) -> bool {
         self.is_up && self.connection == Connection::Up && !self.lockstep.link.delayed
     }
 
-    /// There is a connection, which may be silent.
+    /// True if a connection exists, even if it is silent.
     fn is_up_or_silent(&self) -> bool {
         self.connection == Connection::Up
     }
@@ -142,12 +143,12 @@ impl Supervised {
         &self.lockstep.client.state
     }
 
-    /// True if a motion is with the connection, or was and has not ended.
+    /// True if the lifecycle currently handles this motion.
     pub fn is_under_way(&self, goal: GoalId) -> bool {
         self.under_way.contains(&goal)
     }
 
-    /// The robot's health in the view of the supervision.
+    /// The robot's health, as the supervision sees it.
     pub fn health(&self) -> Health {
         self.supervision.health()
     }
@@ -309,13 +310,13 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// Kills the simulator, which disappears immediately.
+    /// Kills the simulator process. The robot disappears immediately, and its connections close.
     pub fn kill(&mut self) {
         self.is_up = false;
         self.lose(CloseReason::ClosedByPeer);
     }
 
-    /// Restarts it with the arm in its position.
+    /// Restarts the robot's computer, with the arm in its last position.
     pub fn restart(&mut self) {
         let q: JointVector = *self.lockstep.robot.q();
         self.lockstep.robot = Robot::new(self.config.clone());
@@ -324,14 +325,15 @@ impl Supervised {
         self.is_up = true;
     }
 
-    /// Cuts the network: no data passes, and the command connection repeats its data.
+    /// Cuts the network. No data passes, and the command connection repeats its data later.
     pub fn cut(&mut self) {
         self.lockstep.link.delayed = true;
         self.lockstep.link.drop_states(u64::MAX);
         self.lockstep.link.drop_commands(u64::MAX);
     }
 
-    /// Mends the network. If `gave_up`, both ends have given the command connection up meanwhile.
+    /// Repairs the network. If `gave_up` is true, both ends have closed the command connection in
+    /// the meantime.
     pub fn mend(&mut self, gave_up: bool) {
         self.lockstep.link = Link::perfect();
         if gave_up {
@@ -342,19 +344,19 @@ impl Supervised {
         }
     }
 
-    /// Trips the robot.
+    /// Raises an error of the robot, which causes a reflex.
     pub fn trip(&mut self, error: RobotError) {
         self.lockstep.robot.trip(error);
     }
 
-    /// Makes the robot recover, as its program or a person does.
+    /// Makes the robot recover, as another program or a person could.
     pub fn recover(&mut self) {
         if self.connection == Connection::Up {
             self.lockstep.request(&Request::AutomaticErrorRecovery);
         }
     }
 
-    /// Answers for a person.
+    /// Answers, for a person, whether the robot may recover from this reflex.
     pub fn agree(&mut self, reflex: u64, agreed: bool) -> bool {
         let now = self.time();
         let awaited = self.supervision.agree(reflex, agreed, now);
@@ -362,7 +364,7 @@ impl Supervised {
         awaited
     }
 
-    /// Submits a motion and returns its name.
+    /// Submits a motion and returns its goal id.
     pub fn submit(&mut self, target: Target) -> GoalId {
         self.goals += 1;
         let limits = self.lockstep.model.joint_limits();

@@ -1,5 +1,5 @@
-//! Endless target control: targets of both kinds, single and streamed, at irregular times, under
-//! each law in turn.
+//! Endless target control: joint and pose targets, single and streamed, at irregular times, with
+//! each control law in turn.
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
@@ -10,9 +10,9 @@ use rand::{Rng, SeedableRng};
 
 use super::{Lockstep, Part};
 
-/// Moves an arm to random targets, from a seed.
+/// Moves an arm to random targets, determined by a seed.
 pub struct Wander {
-    /// The system whose arm is moved.
+    /// The system with the arm.
     pub lockstep: Lockstep,
     random: SmallRng,
     home: Isometry3<f64>,
@@ -27,7 +27,7 @@ impl Wander {
         Self::of(Lockstep::ready(), seed)
     }
 
-    /// Returns the arm of this system with its first goal, from its present position.
+    /// Returns the arm of this system with its first goal, starting at its current position.
     pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
         let home = lockstep.arm_pose();
         let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
@@ -85,7 +85,7 @@ impl Wander {
     }
 }
 
-/// The goal with the law of this turn; two of three laws have a force cap.
+/// Returns the goal with the control law of this turn. Two of three laws have a force limit.
 fn in_turn(turn: usize, goal: Goal) -> Goal {
     let gains = match turn % 3 {
         0 => return goal,

@@ -1,4 +1,4 @@
-//! Checks of the network card on the route to the robot, from its driver and its counts.
+//! Checks of the network card on the route to the robot, from the card's driver and error counts.
 
 use super::network::NETWORK;
 use super::{Check, VENDOR};

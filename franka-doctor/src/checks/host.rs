@@ -143,13 +143,13 @@ pub(super) const CHECKS: &[Check] = &[
     },
 ];
 
-/// True on the Windows Subsystem for Linux, by the version text of its kernel.
+/// True on the Windows Subsystem for Linux, according to the version text of the kernel.
 pub(super) fn is_wsl(readings: &Readings<'_>) -> Result<bool, Unread> {
     let version = readings.text("/proc/version")?;
     Ok(version.to_lowercase().contains("microsoft"))
 }
 
-/// Returns the file that identifies a container.
+/// Returns the file that shows that this host is a container, if any.
 pub(super) fn container(readings: &Readings<'_>) -> Option<&'static str> {
     [
         "/.dockerenv",
@@ -349,5 +349,5 @@ fn disk(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// Disk space for a recording of all cycles.
+/// Disk space for a recording of all cycles, in gigabytes per hour.
 const GIGABYTES_PER_HOUR: f64 = 2.0;

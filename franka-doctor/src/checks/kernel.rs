@@ -1,4 +1,4 @@
-//! Checks for a real-time kernel, and the way to install it on this computer.
+//! Check for a real-time kernel, and how to install one on this computer.
 
 use super::host::{container, is_wsl};
 use crate::finding::{Judged, Needs};
@@ -30,13 +30,13 @@ pub(super) fn version(readings: &Readings<'_>) -> Result<Judged, Unread> {
     Ok(Judged::info(release))
 }
 
-/// The way to a real-time kernel on a computer.
+/// How to install a real-time kernel on a computer.
 enum Remedy {
-    /// One command installs it.
+    /// One command installs the kernel.
     Command(&'static str),
-    /// No command exists: instructions instead.
+    /// No command exists. The text has instructions instead.
     Words(String),
-    /// Unknown for this system.
+    /// The way is unknown for this system.
     Unknown,
 }
 
@@ -94,7 +94,7 @@ impl Remedy {
     }
 }
 
-/// Returns a value of `/etc/os-release`, without quotes; empty if it is missing.
+/// Returns a value of `/etc/os-release`, without quotes; empty if the value is missing.
 fn field<'a>(system: &'a str, name: &str) -> &'a str {
     system
         .lines()

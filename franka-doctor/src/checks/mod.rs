@@ -19,15 +19,15 @@ pub(crate) struct Check {
     pub(crate) wanted: &'static str,
     pub(crate) why: &'static str,
     pub(crate) source: &'static str,
-    /// True if it only reads files and queries drivers, and starts no thread.
+    /// True if the check only reads files and queries drivers, and starts no thread.
     pub(crate) reads_only: bool,
-    /// True if it is about the network card on the route to the robot.
+    /// True if the check is about the network card on the route to the robot.
     pub(crate) of_card: bool,
     pub(crate) judge: fn(&Readings<'_>) -> Result<Judged, Unread>,
 }
 
 impl Check {
-    /// Returns the finding of this check. An unreadable value is unknown.
+    /// Returns the finding of this check. A value that cannot be read gives [`Verdict::Unknown`].
     pub(crate) fn run(&self, readings: &Readings<'_>, purpose: Purpose) -> Finding {
         let about = About {
             id: self.id,
@@ -46,7 +46,7 @@ impl Check {
     }
 }
 
-/// Returns every check of host and network card, in the order of reports.
+/// Returns every check of the host and the network card, in the order of reports.
 pub(crate) fn all() -> impl Iterator<Item = &'static Check> {
     [
         host::CHECKS,

@@ -7,7 +7,7 @@ use crate::finding::{Group, Judged, Matters, Needs};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
-/// The common fields of the checks of the route to the robot and of its network card.
+/// Fields that the checks of the route and of the network card share.
 pub(super) const NETWORK: Check = Check {
     id: "",
     group: Group::NetworkCard,

@@ -215,7 +215,7 @@ fn count(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// Returns the numbers of a list such as `0-3,8`; `None` if it is not such a list.
+/// Returns the numbers in a list such as `0-3,8`; `None` if the text is not such a list.
 fn members(list: &str) -> Option<Vec<usize>> {
     let mut members = Vec::new();
     for part in list
@@ -233,7 +233,7 @@ fn members(list: &str) -> Option<Vec<usize>> {
     Some(members)
 }
 
-/// A bound above the number of processors of any kernel.
+/// Upper bound of processor numbers, above those of any kernel.
 const CPU_MAX: usize = 1 << 16;
 
 fn isolated(readings: &Readings<'_>) -> Result<Judged, Unread> {
@@ -308,8 +308,8 @@ fn load(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// Checks the frequency of the control thread's processor, or the first one, after a second of load
-/// if load is allowed.
+/// Checks the frequency of the control thread's processor, or else of the first processor. If load
+/// is allowed, the check loads the processor for a second first.
 fn frequency(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let cpu = readings.cpu.unwrap_or(0);
     let file = |name: &str| format!("{CPUS}/cpu{cpu}/cpufreq/{name}");

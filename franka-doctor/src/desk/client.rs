@@ -12,10 +12,10 @@ use super::{DeskState, Page, read};
 /// Returns the state that Desk at this address (usually port 443 of the robot) provides without a
 /// login; otherwise the reason for the failure.
 ///
-/// Sends a few `GET` requests, of at most 2 s each. It changes nothing and sends no password. Desk
-/// signs its own certificate, so the certificate is not checked: an attacker on the network path
-/// could answer instead. If the other end has no TLS, plain HTTP is tried, at port 80 instead of
-/// 443.
+/// This sends a few `GET` requests, of at most 2 s each. It changes nothing and sends no password.
+/// Desk signs its own certificate, so the certificate is not checked: an attacker on the network
+/// path could answer instead. If the other end has no TLS, this tries plain HTTP, at port 80
+/// instead of 443.
 pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
     let agent = agent();
     ask(&agent, "https", desk).or_else(|why| {
@@ -70,5 +70,5 @@ const CONNECT: Duration = Duration::from_secs(1);
 /// Time limit of each request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Largest page that is read, in bytes.
+/// Largest number of bytes of a page that are read.
 const BODY_MAX: u64 = 1 << 20;

@@ -1,5 +1,5 @@
-//! The state of Desk, the robot's web interface, without a login: reasons why the robot refuses a
-//! session.
+//! The state of Desk, the robot's web interface, as read without a login. It can explain why the
+//! robot refuses a session.
 //!
 //! ```text
 //! Desk --GET--> pages (v1 of its interface, or an older one) --> DeskState --> robot.web
@@ -13,19 +13,20 @@ use crate::finding::{About, Finding, Judged, Purpose};
 pub use client::ask_desk;
 pub(crate) use pages::{Page, read};
 
-/// The robot's state from Desk without a login. A field is `None` if Desk does not report it.
+/// State of the robot, as Desk reports it without a login. A field is `None` if Desk does not
+/// report it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DeskState {
-    /// The state of the system: `Started`, or another word.
+    /// State of the system: `Started`, or another word of Desk.
     pub system: Option<String>,
-    /// The operating mode: `Execution`, `Programming`, or another word.
+    /// Operating mode: `Execution`, `Programming`, or another word of Desk.
     pub mode: Option<String>,
     /// The joints whose brakes are closed, counted from one.
     pub braked: Option<Vec<usize>>,
     /// True if FCI is active.
     pub fci: Option<bool>,
-    /// The daily self-test.
+    /// State of the daily self-test.
     pub self_test: Option<SelfTest>,
 }
 
@@ -33,17 +34,17 @@ pub struct DeskState {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SelfTest {
-    /// Not due yet; the remaining seconds, if reported.
+    /// The self-test is not due yet. The value is the remaining time in seconds, if reported.
     Done(Option<u64>),
-    /// Due soon; the remaining seconds, if reported.
+    /// The self-test is due soon. The value is the remaining time in seconds, if reported.
     Soon(Option<u64>),
-    /// Due: the robot does not move before the self-test.
+    /// The self-test is due. The robot does not move before it.
     Due,
-    /// Running.
+    /// The self-test is running.
     Running,
 }
 
-/// Returns the finding about the state of Desk: `robot.web`. A pure function.
+/// Returns the finding about the state of Desk: `robot.web`. This is a pure function.
 pub fn web(asked: &Result<DeskState, String>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.web",
@@ -94,7 +95,8 @@ fn judge(state: &DeskState) -> Judged {
     }
 }
 
-/// Returns the reasons why the robot refuses a session or a motion, each with the action in Desk.
+/// Returns the reasons why the robot refuses a session or a motion. Each text names the action in
+/// Desk.
 fn reasons(state: &DeskState) -> Vec<String> {
     let mut reasons = Vec::new();
     match state.system.as_deref() {

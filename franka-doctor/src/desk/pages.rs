@@ -14,11 +14,11 @@ pub(crate) struct Page {
     pub(crate) json: Option<Value>,
 }
 
-/// Reads the state; `get` returns the answer for a path.
+/// Reads the state of Desk; `get` returns the answer for a path.
 ///
 /// # Errors
-/// If the first path has no answer, or its answer is unknown. If a later path has no answer, its
-/// fields stay unknown.
+/// An error if the first path has no answer, or an unknown answer. If a later path has no answer,
+/// its fields stay `None`.
 pub(crate) fn read(get: &mut dyn FnMut(&str) -> Result<Page, String>) -> Result<DeskState, String> {
     let first = get("/api/system")?;
     let mut statuses = vec![("/api/system", first.status)];
@@ -91,8 +91,8 @@ fn word(value: &Value) -> Option<String> {
     Some(shown)
 }
 
-/// Returns the joints whose brakes are not open, from a list of words, or of objects with such a
-/// field.
+/// Returns the joints whose brakes are not open, from a list of words, or of objects with a field
+/// that contains such a word.
 fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     let joints = joints.as_array().filter(|joints| joints.len() == 7)?;
     let mut braked = Vec::new();
@@ -109,7 +109,7 @@ fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     Some(braked)
 }
 
-/// Converts Desk's word, and the seconds until the self-test is due.
+/// Converts Desk's word for the self-test, and the seconds until it is due.
 fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     let left = left.map(|left| left.max(0.0) as u64);
     match word {
@@ -121,7 +121,7 @@ fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     }
 }
 
-/// Longest word that is shown, in characters.
+/// Longest word of Desk that is shown, in characters.
 const WORD_MAX: usize = 40;
 
 #[cfg(test)]
@@ -130,7 +130,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the state from a Desk that answers these paths, and 404 for all others.
+    /// Returns the state from a simulated Desk. It answers these paths, and 404 for all others.
     fn state(pages: &[(&str, u16, Value)]) -> Result<DeskState, String> {
         read(&mut |path| {
             let known = pages.iter().find(|(known, ..)| *known == path);

@@ -1,4 +1,4 @@
-//! Linux-specific values: the only file of this crate with `unsafe`.
+//! Linux-specific values. This is the only file of the crate with `unsafe`.
 
 use core::time::Duration;
 use std::io;
@@ -15,7 +15,7 @@ use crate::host::{Ethtool, Unread};
 use crate::latencies::Latencies;
 pub(super) use crate::lease::is_lasting;
 
-/// Returns the answer of a network card's driver, by `ioctl`.
+/// Queries the driver of a network card by `ioctl`, and returns its answer.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
@@ -60,7 +60,7 @@ pub(super) fn pin_to(cpu: usize) -> io::Result<()> {
     Ok(())
 }
 
-/// Sleeps until each of `cycles` milliseconds, and records the delay each time.
+/// Sleeps until the end of each of `cycles` milliseconds, and records each delay.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
@@ -90,8 +90,8 @@ pub(super) fn wake_ups(
     Ok(wake_ups)
 }
 
-/// Room for the answer to an ethtool question, in words of four bytes.
+/// Size of the buffer for the answer to an ethtool query, in words of four bytes.
 const ANSWER_WORDS: usize = 64;
 
-/// The request, from `linux/sockios.h`; libc types requests as the platform's `ioctl` does.
+/// Number of the `ioctl` request, from `linux/sockios.h`. Its type in libc depends on the platform.
 const SIOCETHTOOL: libc::Ioctl = 0x8946;

@@ -10,23 +10,23 @@ use std::time::Instant;
 use crate::host::{Ethtool, Unread};
 use crate::latencies::Latencies;
 
-/// Returns an error: drivers of network cards are queried on Linux only.
+/// Returns an error, because drivers of network cards can be queried only on Linux.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
     Err(Unread::Failed(what, "available on Linux only".into()))
 }
 
-/// Returns an error or no answer: leased addresses are queried on Linux only.
+/// Returns no answer, because leased addresses can be detected only on Linux.
 pub(super) fn is_lasting(_: Ipv4Addr) -> io::Result<Option<bool>> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Does nothing: a thread is not bound to a processor.
+/// Does nothing, because a thread cannot be bound to a processor here.
 pub(super) fn pin_to(_: usize) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Sleeps until each of `cycles` milliseconds, and records the delay each time.
+/// Sleeps until the end of each of `cycles` milliseconds, and records each delay.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,

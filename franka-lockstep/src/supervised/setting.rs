@@ -1,4 +1,4 @@
-//! Settings of a supervised robot's program, one at a time.
+//! Settings of a supervised robot's program, sent one at a time.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -7,20 +7,21 @@ use franka_rt::supervision::{Answer, SettingId};
 
 use super::Supervised;
 
-/// Time for an answer, as `franka-async` gives it, `[ms]`.
+/// Longest wait for an answer, as in `franka-async`, `[ms]`.
 const ANSWER: u64 = 5000;
 
-/// Number of states that are looked through for a setting, as in `franka-async`.
+/// Number of states after which a setting that no state shows counts as not shown, as in
+/// `franka-async`.
 const SHOWN: u64 = 200;
 
-/// Settings that are with the robot, or must be sent.
+/// Sends settings to the robot, and keeps those that it must send.
 #[derive(Debug, Default)]
 pub(super) struct Sender {
     queue: VecDeque<Request>,
-    /// True if the supervision requires that its settings are sent again.
+    /// True if the supervision requires that all settings are sent again.
     is_due: bool,
     sent: Option<Sent>,
-    /// The valid setting of each kind: the newest that the robot has not refused.
+    /// The valid setting of each kind: the newest setting that the robot has not refused.
     wanted: BTreeMap<&'static str, Request>,
 }
 
@@ -28,15 +29,15 @@ pub(super) struct Sender {
 struct Sent {
     id: SettingId,
     request: Request,
-    /// True if the program has sent it.
+    /// True if the program set it, false if the supervision sends it again.
     is_program: bool,
-    /// Time at which it was sent, `[ms]`.
+    /// Time at which the setting was sent, `[ms]`.
     at: u64,
-    /// `message_id` of the newest state when the robot had taken it.
+    /// `message_id` of the newest state when the robot accepted the setting.
     taken: Option<u64>,
 }
 
-/// True if a state shows the setting, or if states never show this kind.
+/// True if a state shows the setting, or if states never show settings of this kind.
 pub fn shows(request: &Request, state: &RobotState) -> bool {
     match request {
         Request::SetLoad(load) => (state.m_load - load.m_load).abs() < 1e-5,
@@ -47,7 +48,7 @@ pub fn shows(request: &Request, state: &RobotState) -> bool {
 }
 
 impl Supervised {
-    /// Sends a setting, once the previous one is answered.
+    /// Sends a setting, once the previous setting has been answered.
     pub fn set(&mut self, request: Request) {
         self.sender.queue.push_back(request);
         self.send_settings();
@@ -63,7 +64,7 @@ impl Supervised {
         self.sender.is_due = true;
     }
 
-    /// Passes on the answer to the current setting, and sends the next ones.
+    /// Passes on the answer to the current setting, and sends the next settings.
     pub(super) fn send_settings(&mut self) {
         if let Some(sent) = self.sender.sent.take() {
             match self.answer_to(&sent) {
@@ -81,7 +82,8 @@ impl Supervised {
         while self.sender.sent.is_none() && self.send_next() {}
     }
 
-    /// The answer to a setting, once it has arrived and a state shows it, or none will.
+    /// Returns the answer to a setting, once the answer has arrived and a state shows the setting
+    /// or no state will.
     fn answer_to(&self, sent: &Sent) -> Option<Answer> {
         let text = String::new();
         if !self.is_up_or_silent() {
@@ -118,7 +120,7 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// Sends the next setting, if any. Returns true if another one may follow immediately.
+    /// Sends the next setting, if any. Returns true if another setting may follow immediately.
     fn send_next(&mut self) -> bool {
         let now = self.time();
         let is_program = !self.sender.queue.is_empty();
@@ -150,7 +152,8 @@ impl Supervised {
         false
     }
 
-    /// Ends the command connection after the robot has received the setting, and before its answer.
+    /// Ends the command connection after the robot has received the setting, and before the client
+    /// receives the answer.
     pub fn lose_answers(&mut self) {
         while let Some(bytes) = self.lockstep.client.take_message() {
             let received = self.lockstep.robot.receive(&bytes);
@@ -159,13 +162,12 @@ impl Supervised {
         self.mend(true);
     }
 
-    /// Makes the robot answer no more requests, until it is connected again.
+    /// Makes the robot answer no more requests, until the client connects again.
     pub fn lose_replies(&mut self) {
         self.lockstep.link.replies = false;
     }
 
-    /// Checks that the robot has everything that the program has set, except the setting in
-    /// transit.
+    /// Checks that the robot has all settings of the program, except a setting in transit.
     pub(super) fn check_settings(&mut self) {
         let with_robot = self.sender.sent.as_ref().map(|sent| sent.request.command());
         let state = self.lockstep.robot.state();

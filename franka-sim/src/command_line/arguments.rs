@@ -25,7 +25,7 @@ use crate::arm::SystemLimits;
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Kind of the robot. The kind also sets the protocol version.
+    /// Kind of the robot, which also sets the protocol version.
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     pub robot: Kind,
 
