@@ -16,7 +16,7 @@ use crate::ending::{Ending, Failure};
 use crate::output::say;
 use crate::robots_file::{Realtime, RobotsFile, check_name};
 
-/// Classifies a [`ConnectError`] of any device.
+/// Classifies a `ConnectError` of any device by what was seen of the robot.
 macro_rules! seen {
     ($error:expr) => {
         match &$error {
@@ -51,9 +51,9 @@ pub(crate) struct Which {
 /// The address of a robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
-    /// The user's text.
+    /// Name or address of the robot, as the user wrote it.
     name: String,
-    /// The address of a robot that has a name.
+    /// Address from the file of robots, if the robot has a name there.
     listed: Option<String>,
     pub(crate) address: Endpoint,
     pub(crate) hand: Endpoint,
@@ -72,7 +72,7 @@ impl Which {
         Self { robot }
     }
 
-    /// Returns the place of the robot.
+    /// Returns the name and the address of the robot.
     pub(crate) fn place(&self) -> anyhow::Result<Place> {
         let variable = || {
             std::env::var("FRANKA_ROBOT")
@@ -131,8 +131,8 @@ impl Which {
         })
     }
 
-    /// Connects for commands without motion, which need no real-time scheduling and accept any
-    /// geometry.
+    /// Connects for commands that do not move the arm. They need no real-time scheduling and accept
+    /// any geometry.
     pub(crate) async fn connect(&self) -> anyhow::Result<(Robot, Place)> {
         let place = self.place()?;
         let robot = place
@@ -145,8 +145,8 @@ impl Which {
 }
 
 impl Place {
-    /// Returns the name of a device of this robot: the robot's name, if it has one with this
-    /// address.
+    /// Returns the name of a device of this robot. This is the robot's name, if the robots file has
+    /// this address for it.
     fn with(&self, address: Option<impl fmt::Display>) -> String {
         match address {
             Some(address) => format!("{} ({address})", self.name),
@@ -154,18 +154,18 @@ impl Place {
         }
     }
 
-    /// Returns the user's text.
+    /// Returns the name or address of the robot, as the user wrote it.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
-    /// True if the robot has a name.
+    /// True if the robot has a name in the robots file.
     pub(crate) fn is_listed(&self) -> bool {
         self.listed.is_some()
     }
 
-    /// Connects to the robot. `realtime` is the requested option; without it, the file's setting
-    /// counts.
+    /// Connects to the robot. `realtime` is the user's option; without it, the setting in the
+    /// robots file counts.
     pub(crate) async fn connect(
         &self,
         realtime: Option<Realtime>,
@@ -175,7 +175,7 @@ impl Place {
         robot.map_err(|(_, failure)| failure.into())
     }
 
-    /// Like [`Self::connect`], with the reason why the connection failed.
+    /// Like [`Self::connect`], but returns the reason if the connection fails.
     pub(crate) async fn attempt(
         &self,
         realtime: Option<Realtime>,
@@ -257,7 +257,7 @@ impl Place {
     }
 }
 
-/// The reason why a connection failed, for any device.
+/// Reason why a connection failed, for any device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seen {
     Refused,
@@ -270,7 +270,7 @@ pub(crate) enum Seen {
 }
 
 /// Checks that the robot would accept a motion: it is at rest and ready, and no other program moves
-/// it.
+/// the arm.
 pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failure> {
     let refused =
         |ending, message: String, advice: &str| Err(Failure::new(ending, message).advice(advice));
@@ -326,7 +326,8 @@ pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
 /// Port of a Hand at the robot's address.
 const HAND: u16 = 1338;
 
-/// Returns the first address of an endpoint, with the device's usual port unless it has one.
+/// Returns the first address of an endpoint. `port` is the device's usual port, for an endpoint
+/// without a port.
 pub(crate) async fn resolve(endpoint: &Endpoint, port: u16) -> anyhow::Result<SocketAddr> {
     let text = endpoint.to_string();
     let has_port = match text.rsplit_once(':') {

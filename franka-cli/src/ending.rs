@@ -1,4 +1,4 @@
-//! The end of the program: exit codes, and errors with the next step.
+//! How the program ends: exit codes, and errors that name the next step.
 
 use std::fmt;
 use std::io;
@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use franka_async::error::{CommandError, ConnectError, Party};
 use franka_async::{Error, MotionError};
 
-/// The result of a command. The numbers are the exit codes.
+/// Result of a command. The numbers are the exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Ending {
@@ -15,21 +15,21 @@ pub(crate) enum Ending {
     Done = 0,
     /// The robot refused the command, or a motion ended before its goal.
     Failed = 1,
-    /// The arguments are invalid. The same code as in the argument parser.
+    /// The arguments are invalid. The argument parser uses the same code.
     Usage = 2,
-    /// No connection to the robot, or a lost connection.
+    /// The program could not connect to the robot, or the connection was lost.
     NoRobot = 3,
     /// Another client uses the robot.
     Taken = 4,
-    /// The motion was not confirmed.
+    /// The user did not confirm the motion.
     NotConfirmed = 5,
-    /// Local problem: rights, files, ports.
+    /// The computer has a local problem: rights, files, ports.
     Host = 6,
-    /// The robot needs a person: at the user stop, or in Desk.
+    /// The robot needs a person, at the user stop or in Desk.
     Person = 7,
-    /// Ctrl-C, with the code of shells.
+    /// Ctrl-C ended the program. The code is that of shells.
     Interrupted = 130,
-    /// SIGTERM, with the code of shells.
+    /// SIGTERM ended the program. The code is that of shells.
     Terminated = 143,
 }
 
@@ -52,7 +52,7 @@ impl Ending {
         ExitCode::from(self as u8)
     }
 
-    /// Returns its name in JSON.
+    /// Returns the name of the ending in JSON.
     pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -87,7 +87,7 @@ impl Ending {
     }
 }
 
-/// Returns the party that can act on an error of the driver, and the name of its row in the book's
+/// Returns who can act on an error of the driver, and the name of the error's row in the book's
 /// chapter of errors.
 fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     macro_rules! first_of {
@@ -101,7 +101,7 @@ fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     None
 }
 
-/// Like [`of_driver`], also for errors that a command has rephrased.
+/// Like [`of_driver`], but also for errors whose text a command has replaced.
 pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     match error.downcast_ref::<Failure>() {
         Some(failure) => failure.origin,
@@ -109,14 +109,13 @@ pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> 
     }
 }
 
-/// A failure with its ending, and the next step.
+/// A failure: its text, the ending, and the next step for the user.
 #[derive(Debug)]
 pub(crate) struct Failure {
     ending: Ending,
     message: String,
     pub(crate) advice: Option<String>,
-    /// The party that can act on an error of the driver, and its row in the book's chapter of
-    /// errors.
+    /// Who can act on an error of the driver, and the error's row in the book's chapter of errors.
     origin: Option<(Party, &'static str)>,
 }
 
@@ -134,7 +133,8 @@ impl Failure {
         Self::new(Ending::Usage, message)
     }
 
-    /// Creates the failure for an option that this program was built without.
+    /// Creates the failure for an option that needs a feature with which this program was not
+    /// built.
     #[cfg(not(feature = "full"))]
     pub(crate) fn without(option: &str, feature: &str) -> Self {
         let message = format!("{option}: this `franka` was built without the feature `{feature}`");

@@ -1,14 +1,14 @@
-//! A state by the vendor's names of its fields.
+//! Converts a state to a map by the vendor's names of the fields.
 
 use franka_async::state::RobotState;
 use serde_json::{Map, Value};
 
-/// Returns the fields, with meaningless values.
+/// Returns a map of all fields, with arbitrary values.
 pub(crate) fn fields() -> Map<String, Value> {
     values(&RobotState::default())
 }
 
-/// Returns a state by its fields.
+/// Returns the fields of a state.
 pub(crate) fn values(state: &RobotState) -> Map<String, Value> {
     match serde_json::to_value(state) {
         Ok(Value::Object(fields)) => fields,

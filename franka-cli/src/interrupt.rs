@@ -16,7 +16,7 @@ pub(crate) enum Interruption {
 }
 
 impl Interruption {
-    /// Returns the failure of a program that was interrupted before it was done.
+    /// Returns the failure of a program that was interrupted before it was finished.
     pub(crate) fn failure(self, message: &str) -> Failure {
         let ending = match self {
             Self::CtrlC => Ending::Interrupted,
@@ -35,7 +35,7 @@ impl fmt::Display for Interruption {
     }
 }
 
-/// Returns a future that resolves when the program receives a signal to end from now on.
+/// Returns a future that resolves at the first signal to end the program after this call.
 pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = Interruption>> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

@@ -77,8 +77,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// True if this stream takes colours, by NO_COLOR, CLICOLOR_FORCE and similar variables, as for all
-/// other output.
+/// True if this stream shows colours. As for all other output, NO_COLOR, CLICOLOR_FORCE and similar
+/// variables decide this.
 fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
@@ -96,7 +96,7 @@ mod tests {
         Program::command().debug_assert();
     }
 
-    /// Lines of shell blocks that begin with `franka`, up to a comment.
+    /// Reads lines of shell blocks that begin with `franka`, up to a comment.
     #[test]
     fn the_commands_of_the_book_are_understood() {
         let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src");
@@ -178,7 +178,7 @@ mod tests {
         "trial",
     ];
 
-    /// Places that recommend such a command, because it is necessary there.
+    /// Places that recommend such a command because it is necessary there.
     const ADVISED: [(&str, &str); 8] = [
         // The robot has stopped itself; the text first recommends to remove the cause.
         ("franka-cli/src/connection.rs", "recover"),
@@ -193,8 +193,8 @@ mod tests {
         ("franka-cli/src/command/trial.rs", "trial"),
     ];
 
-    /// Texts of the programs, without comments and tests. A text that sends a reader with a broken
-    /// file or a busy host to a command that acts on a robot is dangerous.
+    /// Texts of the programs, without comments and tests. It is dangerous if a text advises a
+    /// command that acts on a robot to a reader with a damaged file or a busy host.
     #[test]
     fn texts_advise_no_command_that_acts_on_a_robot_unless_listed() {
         use clap::CommandFactory;
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(advised(unsafe_advice), ["recover"]);
     }
 
-    /// Returns the commands that act on a robot and are named in a text of the source.
+    /// Returns the commands that act on a robot and that the texts of a source file name.
     fn advised(source: &str) -> Vec<&'static str> {
         let mut found = Vec::new();
         for line in source.lines() {

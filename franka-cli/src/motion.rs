@@ -32,7 +32,7 @@ pub(crate) struct Mover {
     pub(crate) how: MoverOptions,
 }
 
-/// [`Mover`] without the robot.
+/// The options of [`Mover`], without the robot.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct MoverOptions {
     /// Real-time scheduling of the control thread [default: the robot's setting, or enforce]
@@ -51,7 +51,7 @@ pub(crate) struct MoverOptions {
     pub(crate) output: Output,
 }
 
-/// A robot that may be moved.
+/// A connected robot that the command may move.
 pub(crate) struct Moving {
     pub(crate) robot: Robot,
     pub(crate) place: Place,
@@ -60,19 +60,19 @@ pub(crate) struct Moving {
 }
 
 impl Mover {
-    /// Connects to the robot, and checks that it accepts a motion.
+    /// Connects to the robot, and checks that it would accept a motion.
     pub(crate) async fn begin(&self) -> anyhow::Result<Moving> {
         self.how.begin(&self.which).await
     }
 }
 
 impl MoverOptions {
-    /// Connects to this robot, and checks that it accepts a motion.
+    /// Connects to this robot, and checks that it would accept a motion.
     pub(crate) async fn begin(&self, which: &Which) -> anyhow::Result<Moving> {
         self.begin_with(which, RecordOptions::default()).await
     }
 
-    /// Like [`Self::begin`], recorded with these options.
+    /// Like [`Self::begin`], with these options for the recording.
     pub(crate) async fn begin_with(
         &self,
         which: &Which,
@@ -106,7 +106,7 @@ impl MoverOptions {
 }
 
 impl Moving {
-    /// Asks for permission to move the arm, and then checks that it has not moved since the
+    /// Asks for permission to move the arm. Afterwards checks that the arm has not moved since the
     /// question.
     pub(crate) async fn ask(&self, title: &str, what: &str) -> anyhow::Result<()> {
         let before = self.robot.state();
@@ -129,7 +129,7 @@ impl Moving {
         Ok(())
     }
 
-    /// Returns a state that the robot sent after the call.
+    /// Waits for a state that the robot sent after this call, and returns it.
     async fn state_from_now(&self) -> Result<RobotState, Error> {
         let mut newest = self.robot.state();
         let mut states = self.robot.states();
@@ -141,8 +141,8 @@ impl Moving {
         Ok(newest)
     }
 
-    /// Awaits a motion of the robot, with its progress on the terminal if its length is given.
-    /// Ctrl-C and SIGTERM brake.
+    /// Awaits a motion of the robot. If its length is given, shows the progress on the terminal.
+    /// Ctrl-C and SIGTERM brake the arm.
     pub(crate) async fn drive<T, E: Into<Cause>>(
         &self,
         motion: impl Future<Output = Result<T, E>>,
@@ -173,8 +173,8 @@ impl Moving {
         outcome
     }
 
-    /// Brakes, and returns the result. `by` is `None` if the arm did not stop without an
-    /// interruption.
+    /// Brakes, and returns the result. `by` is the interruption; `None` if there was no
+    /// interruption, and the arm did not stop by itself.
     pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
         say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
@@ -195,7 +195,7 @@ impl Moving {
         }
     }
 
-    /// Returns the reason why a motion failed, with the next step.
+    /// Returns the failure that explains why a motion failed, with the next step.
     pub(crate) async fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
         let error = match error.into() {
             Cause::Motion(error) => error,
@@ -224,7 +224,7 @@ impl Moving {
         }
     }
 
-    /// Closes the connection and ends the recording, after a success or a failure.
+    /// Closes the connection and ends the recording, after both success and failure.
     pub(crate) async fn end<T>(self, outcome: anyhow::Result<T>) -> anyhow::Result<T> {
         self.robot.shutdown().await;
         let Some(recorder) = self.recorder else {
@@ -240,16 +240,17 @@ impl Moving {
     }
 }
 
-/// The source of a motion's duration.
+/// Source of the duration of a motion.
 pub(crate) enum Length {
-    /// The motion itself.
+    /// The motion itself, which reports its progress.
     Of(MotionHandle),
     /// A known or approximate duration.
     About(Duration),
 }
 
 impl Length {
-    /// Returns the completed share of a motion in `[0, 1]`, and the remaining time, if known.
+    /// Returns the completed share of a motion in `[0, 1]` and the remaining time; `None` if
+    /// unknown.
     fn gone(&self, begin: Instant) -> Option<(f64, Duration)> {
         match self {
             Self::Of(handle) => {
@@ -265,7 +266,7 @@ impl Length {
     }
 }
 
-/// Returns a line about a recording.
+/// Returns a line of text about a recording.
 pub(crate) fn recorded(status: &RecordStatus) -> String {
     let file = status.files.first().map(|file| file.display().to_string());
     format!(
@@ -276,7 +277,7 @@ pub(crate) fn recorded(status: &RecordStatus) -> String {
     )
 }
 
-/// The reason why a motion, or a series of motions, failed.
+/// Why a motion, or a series of motions, failed.
 pub(crate) enum Cause {
     Motion(MotionError),
     Other(String),
@@ -306,13 +307,13 @@ impl From<ReplayFailure> for Cause {
     }
 }
 
-/// Returns a progress bar of a thousand steps, hidden if standard error is not a terminal.
+/// Returns a progress bar of a thousand steps. It is hidden if standard error is not a terminal.
 pub(crate) fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}");
     ProgressBar::new(1000).with_style(style.expect("a template"))
 }
 
-/// Awaits a future that takes about `length`, with its progress on the terminal.
+/// Awaits a future that takes about `length`, and shows its progress on the terminal.
 pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Output = T>) -> T {
     let (bar, length, begin) = (progress_bar(), Length::About(length), Instant::now());
     bar.set_message(what.to_owned());
@@ -333,7 +334,7 @@ pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Out
     result
 }
 
-/// Runs a function of unknown duration, with an activity display on the terminal.
+/// Runs a function of unknown duration, and shows on the terminal that the program is working.
 pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let bar = ProgressBar::new_spinner().with_message(what.to_owned());
     bar.enable_steady_tick(Duration::from_millis(100));
@@ -342,8 +343,8 @@ pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Largest distance of a joint from its position at the question, `[rad]`.
+/// Largest distance by which a joint may have moved since the question, `[rad]`.
 const MOVED: f64 = 0.01;
 
-/// Time limit for braking, which usually takes a quarter of a second.
+/// Time limit for braking. Braking usually takes a quarter of a second.
 const PATIENCE: Duration = Duration::from_secs(5);

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::ending::Ending;
 
-/// The format of results.
+/// Format of results.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct Output {
     /// Print JSON
@@ -36,7 +36,7 @@ pub(crate) fn json_line(value: &impl Serialize) -> anyhow::Result<()> {
     line(&serde_json::to_string(&Versioned::new(value))?)
 }
 
-/// A result, an object, with the version of its format.
+/// A result (a JSON object) with the version of its format.
 #[derive(Serialize)]
 struct Versioned<'a, T> {
     schema: u32,
@@ -53,11 +53,11 @@ impl<'a, T> Versioned<'a, T> {
     }
 }
 
-/// Version of the commands' JSON output; `franka doctor` has its own. Increased when a field is
-/// removed or changes its meaning, but not for new fields.
+/// Version of the commands' JSON output. It increases when a field is removed or changes its
+/// meaning, but not for new fields. `franka doctor` has a version of its own.
 const SCHEMA: u32 = 1;
 
-/// Prints a line on standard output, without its colours if they are disabled.
+/// Prints a line on standard output. Colours are removed if they are disabled.
 pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     let mut out = anstream::stdout().lock();
     writeln!(out, "{text}")?;
@@ -81,7 +81,7 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 /// Style of less important text.
 pub(crate) const DIM: Style = Style::new().dimmed();
 
-/// Formats numbers in aligned columns, with any signs.
+/// Formats numbers in aligned columns, with space for signs.
 pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     let width = decimals + 6;
     let cells = values.iter().map(|value| {

@@ -12,7 +12,7 @@ use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{BOLD, numbers, say};
 
-/// Shows what will happen, and asks for consent. `yes` agrees in advance.
+/// Shows what will happen, and asks for consent. If `yes` is true, the user has already agreed.
 pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     say(what);
     if yes {

@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::ending::{Ending, Failure, origin_of};
 use crate::output::json_line;
 
-/// Prints why a command failed, with `json` also as JSON, and returns the program's ending.
+/// Prints why a command failed, if `json` is true also as JSON. Returns how the program ends.
 pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     let ending = Ending::of(error);
     // The reader has closed the pipe: an error text would reach no one.
@@ -32,15 +32,15 @@ pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     ending
 }
 
-/// The failure of a command, for programs.
+/// The failure of a command in JSON, for programs.
 #[derive(Debug, Serialize)]
 struct Reported {
-    /// The exit code, by its name.
+    /// The name of the exit code.
     kind: &'static str,
     exit_code: u8,
-    /// The party that can act on an error of the driver.
+    /// Who can act on an error of the driver.
     party: Option<String>,
-    /// Its row in the book's chapter of errors.
+    /// The error's row in the book's chapter of errors.
     entry: Option<&'static str>,
     text: String,
     advice: Option<String>,

@@ -31,7 +31,7 @@ pub(crate) enum Realtime {
     Ignore,
 }
 
-/// A robot of the file.
+/// A robot in the robots file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Entry {
@@ -42,17 +42,17 @@ pub(crate) struct Entry {
     pub(crate) hand: Option<String>,
 }
 
-/// The file.
+/// The robots file.
 #[derive(Debug)]
 pub(crate) struct RobotsFile {
     pub(crate) path: PathBuf,
     pub(crate) robots: BTreeMap<String, Entry>,
-    /// Its text, with the user's comments.
+    /// Text of the file, with the user's comments.
     document: DocumentMut,
 }
 
 impl RobotsFile {
-    /// Reads the file; a missing file has no robots.
+    /// Reads the file. A missing file has no robots.
     pub(crate) fn read() -> anyhow::Result<Self> {
         let path = path()?;
         let text = match fs::read_to_string(&path) {
@@ -71,7 +71,7 @@ impl RobotsFile {
         })
     }
 
-    /// Adds a robot, or replaces it.
+    /// Adds a robot, or replaces the robot with this name.
     pub(crate) fn insert(&mut self, name: &str, entry: &Entry) {
         let robot = self.document.entry(name);
         let robot = robot.or_insert_with(|| Item::Table(Table::new()));
@@ -101,12 +101,12 @@ impl RobotsFile {
         }
     }
 
-    /// Removes a robot, and returns true if the file had it.
+    /// Removes a robot. Returns true if the file contained it.
     pub(crate) fn remove(&mut self, name: &str) -> bool {
         self.document.remove(name).is_some()
     }
 
-    /// Writes the file: a new file replaces the old one.
+    /// Writes the robots to a new file, which replaces the old file.
     pub(crate) fn write(&self) -> anyhow::Result<()> {
         let write = || {
             if let Some(directory) = self.path.parent() {
@@ -140,7 +140,7 @@ fn parse(text: &str) -> Result<(BTreeMap<String, Entry>, DocumentMut), String> {
     Ok((robots, document))
 }
 
-/// Checks that a name is valid: not an address, and not a field of a state.
+/// Checks that a name is valid. It must not be an address or a field of a state.
 pub(crate) fn check_name(name: &str) -> Result<(), String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || !name.chars().all(is_word) {

@@ -15,7 +15,7 @@ pub(crate) struct PartialPose {
 }
 
 impl PartialPose {
-    /// Returns the whole pose, with the rotation of `now` if none was given.
+    /// Returns the complete pose, with the rotation of `now` if the text contained no rotation.
     pub(crate) fn complete(self, now: &Pose) -> Pose {
         let translation = Translation3::from(self.position);
         Pose::from_parts(translation, self.rotation.unwrap_or(now.rotation))

@@ -1,4 +1,4 @@
-//! Admission: the checks of requests for the files of a page, and of all other requests.
+//! Admission of HTTP requests: one check for the files of a page, and one for all other requests.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use franka_async::connection::admission::{Admission, Refused};
 
-/// Checks requests for files.
+/// Checks a request for a file of the page.
 pub(crate) async fn files(
     State(admissions): State<Arc<[Admission]>>,
     request: Request,
@@ -20,7 +20,7 @@ pub(crate) async fn files(
     answer(any(checks), request, next).await
 }
 
-/// Checks all other requests.
+/// Checks any other request.
 pub(crate) async fn rest(
     State(admissions): State<Arc<[Admission]>>,
     request: Request,
@@ -31,7 +31,7 @@ pub(crate) async fn rest(
     answer(any(checks), request, next).await
 }
 
-/// Accepts if any robot accepts; otherwise returns the last robot's reason.
+/// Accepts a request if any robot accepts it. Otherwise returns the refusal of the last robot.
 fn any(mut checks: impl Iterator<Item = Result<(), Refused>>) -> Result<(), Refused> {
     let first = checks.next().expect("a page has a robot");
     checks.fold(first, Result::or)

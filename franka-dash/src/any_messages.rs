@@ -1,5 +1,5 @@
-//! Arbitrary viewer messages are read or refused, and never cause forbidden effects. Used by a
-//! test, and by the fuzz target `dashboard`.
+//! Passes arbitrary viewer messages to an authority. Every message is accepted or refused, and no
+//! message has a forbidden effect. A test and the fuzz target `dashboard` use this.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use crate::request::Request;
 /// Passes messages to an authority, and panics if a message has a forbidden effect.
 ///
 /// Each line of `bytes` is a message: a byte for the viewer, a byte for the milliseconds since the
-/// last message, and the text. The first byte of all contains the server's permissions.
+/// last message, and the text. The very first byte contains the server's permissions.
 pub(crate) fn check(bytes: &[u8]) {
     let Some((permitted, bytes)) = bytes.split_first() else {
         return;
@@ -145,7 +145,7 @@ mod tests {
 
     use super::*;
 
-    /// Messages with bytes changed, cut and repeated.
+    /// Passes messages in which bytes were changed, cut and repeated.
     #[test]
     fn no_messages_get_what_they_must_not() {
         let seed: u64 = rand::rng().random();

@@ -17,13 +17,13 @@ pub(crate) struct Contact {
     point: [f64; 3],
     /// Force on the arm, `[N]`.
     force: [f64; 3],
-    /// Uncertainty of the point on that link, `[m]`.
+    /// Uncertainty of the point on this link, `[m]`.
     spread: f64,
-    /// Probability of this link, 0 to 1.
+    /// Probability that the contact is on this link, 0 to 1.
     probability: f64,
 }
 
-/// Evaluates states, and learns their torques without a contact.
+/// Finds contacts in states. It learns the torques without a contact.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     tare: Tare,
@@ -32,7 +32,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Returns the contact at this state. States may arrive a few dozen times per second.
+    /// Returns the contact in this state, if any. A few dozen states per second are enough.
     pub(crate) fn update(&mut self, model: &Model, state: &RobotState) -> Option<Contact> {
         let last = self.last.replace(state.message_id);
         let passed = state
@@ -75,7 +75,7 @@ pub(crate) const EVERY: Duration = Duration::from_millis(50);
 /// Joint velocity below which the arm is at rest, `[rad/s]`.
 const STILL: f64 = 0.02;
 
-/// Time without a contact before contacts are shown, `[s]`.
+/// Time without a contact after which contacts are shown, `[s]`.
 const LEARNED: f64 = 0.5;
 
 #[cfg(test)]

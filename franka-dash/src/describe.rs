@@ -13,23 +13,23 @@ use crate::hub::Hub;
 use crate::request::{SPEED_MAX, SPEED_MIN, Tuning};
 use crate::simulated::Simulated;
 
-/// The robot, and the permissions of this viewer.
+/// Data about the robot, and the permissions of this viewer.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename = "hello")]
 pub(crate) struct Hello {
     frame_version: u8,
     viewer: ViewerId,
-    /// Start of the server, `[ms]` since 1970. The times in its frames are relative to it.
+    /// Start of the server, `[ms]` since 1970. The times in its frames are relative to this time.
     server: u64,
     robot: &'static str,
-    /// True if it is simulated, and may be disturbed.
+    /// True if the robot is simulated and viewers may disturb it.
     simulated: bool,
     /// True if the simulated robot has a Hand.
     simulated_hand: bool,
-    /// True if it is simulated in virtual time, whose speed can be set.
+    /// True if the robot is simulated in virtual time, whose speed can be set.
     virtual_time: bool,
     motion_allowed: bool,
-    /// True if the server accepts any commands.
+    /// True if the server accepts any command.
     may_command: bool,
     gripper: bool,
     records: bool,
@@ -37,7 +37,7 @@ pub(crate) struct Hello {
     speed_max: f64,
     joint_lower: [f64; 7],
     joint_upper: [f64; 7],
-    /// Joint targets that the driver accepts, `[rad]`.
+    /// Range of joint targets that the driver accepts, `[rad]`.
     target_lower: [f64; 7],
     target_upper: [f64; 7],
     joint_velocity: [f64; 7],
@@ -54,13 +54,13 @@ pub(crate) struct Hello {
     siblings: Vec<String>,
 }
 
-/// A region that the arm must avoid, base frame, `[m]`.
+/// A region that the arm must avoid, in the base frame, `[m]`.
 #[derive(Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Region {
     /// All points p with `normal . p < offset`.
     Plane { normal: [f64; 3], offset: f64 },
-    /// A box by centre, orientation (x y z w) and half of its sides.
+    /// A box, by its centre, its orientation (x y z w) and half of its side lengths.
     Box {
         position: [f64; 3],
         orientation: [f64; 4],
@@ -87,14 +87,15 @@ impl From<&Obstacle> for Region {
     }
 }
 
-/// A named tuning of the page.
+/// A stiffness setting of the page with a name.
 #[derive(Debug, Serialize)]
 struct Named {
     name: &'static str,
     tuning: Tuning,
 }
 
-/// A guard capsule in the frame of its link: 0 is the base, 1 to 7 the links, 8 the flange, `[m]`.
+/// A capsule of the driver's collision guard, in the frame of its link, `[m]`. Link 0 is the base,
+/// 1 to 7 are the links, 8 is the flange.
 #[derive(Debug, PartialEq, Serialize)]
 struct Capsule {
     link: usize,
@@ -155,7 +156,7 @@ impl Hello {
     }
 }
 
-/// Returns the capsules that the guards check against obstacles, on their links.
+/// Returns the capsules with which the guards check distances to obstacles.
 fn capsules(model: &Model, with_hand: bool) -> Vec<Capsule> {
     let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     let shape = if with_hand { shape.with_hand() } else { shape };

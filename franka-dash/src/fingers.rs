@@ -1,5 +1,5 @@
-//! Controls a Franka Hand for viewers. An action ends with the lease of its viewer, and with a
-//! stop; a held object stays held.
+//! Controls a Franka Hand for viewers. An action ends when its viewer loses the lease, and with a
+//! stop. A held object stays held.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,7 +18,7 @@ pub(crate) struct Fingers {
     under_way: Arc<Mutex<Option<UnderWay>>>,
 }
 
-/// The current action. Dropping it ends the action.
+/// The current action of the fingers. Dropping this value ends the action.
 struct UnderWay {
     viewer: ViewerId,
     end: CancellationToken,
@@ -37,7 +37,7 @@ pub(crate) struct FingerState {
     max_width: f64,
     is_grasped: bool,
     temperature: u16,
-    /// True if an action is running.
+    /// True while an action of the fingers is running.
     acting: bool,
 }
 
@@ -65,7 +65,7 @@ impl Fingers {
         }
     }
 
-    /// Starts an action of a viewer, which ends the previous one. The future resolves with the
+    /// Starts an action for a viewer, and ends the previous action. The future resolves with the
     /// result: true for success, and a line of text.
     pub(crate) fn begin(
         &self,
@@ -101,7 +101,7 @@ impl Fingers {
         self.lock().take();
     }
 
-    /// Ends the current action unless it belongs to the commander.
+    /// Ends the current action, unless the commander started it.
     pub(crate) fn end_unless(&self, commander: Option<ViewerId>) {
         self.lock().take_if(|it| Some(it.viewer) != commander);
     }

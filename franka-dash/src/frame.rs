@@ -36,7 +36,7 @@ pub(crate) const VERSION: u8 = 3;
 pub(crate) const LENGTH: usize = 736;
 const MAGIC: u16 = 0x4446;
 
-/// The frames whose poses are sent.
+/// The frames whose poses a state frame contains.
 const FRAMES: [Frame; 9] = [
     Frame::Joint1,
     Frame::Joint2,
@@ -49,18 +49,18 @@ const FRAMES: [Frame; 9] = [
     Frame::EndEffector,
 ];
 
-/// The server's data in addition to the robot's state.
+/// Data of the server that a frame contains in addition to the robot's state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Server {
     /// Time of the server, `[ms]`.
     pub(crate) ms: u64,
     /// True if a hold is active.
     pub(crate) holding: bool,
-    /// Width between the fingers, `[m]`, of a connected gripper.
+    /// Width between the fingers, `[m]`; `None` without a connected gripper.
     pub(crate) width: Option<f64>,
 }
 
-/// Returns the frame of a sample.
+/// Returns the encoded frame for a sample.
 pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> {
     let Sample {
         state,
@@ -116,8 +116,8 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
 }
 
 /// Returns the number of the law that computes the torques: 0 none, 1 target control of this
-/// driver, 2 torques of another client or motion, 3 the robot's joint impedance, 4 its Cartesian
-/// impedance.
+/// driver, 2 torques of another client or motion, 3 the robot's joint impedance, 4 the robot's
+/// Cartesian impedance.
 fn law(state: &RobotState, ours: bool) -> u32 {
     if !state.motion_running() {
         return 0;
@@ -145,7 +145,7 @@ pub(crate) fn poses(
     })
 }
 
-/// Returns the end effector in a state; the default if it is not a rigid transformation.
+/// Returns the end effector of a state; the default if its pose is not a rigid transformation.
 pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
     let on_flange = pose::from_array(&state.F_T_EE).unwrap_or_default();
     EndEffector {

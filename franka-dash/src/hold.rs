@@ -1,5 +1,5 @@
-//! The motion of one hold: begins a session of target control, moves until it must end, and
-//! releases the arm.
+//! The motion of one hold. It begins a session of target control, moves until the hold must end,
+//! and releases the arm.
 
 use std::time::Duration;
 
@@ -18,15 +18,16 @@ use crate::plan::{self, Plan};
 use crate::request::{Axes, Motion, SPEED_MAX, Tuning};
 use crate::way::Way;
 
-/// The server's handle of a hold. Dropping it brakes the arm: the deadman stops the control thread,
-/// even if this process's runtime fails, and the token stops the task.
+/// The server's handle of a hold. Dropping it brakes the arm, in two ways: the token stops the
+/// task, and the deadman makes the control thread brake, even if the runtime of this process fails.
 pub(crate) struct Hold {
     deadman: Deadman,
     end: CancellationToken,
 }
 
 impl Hold {
-    /// Creates the hold, and the inputs of its motion. Its messages may be late by `patience`.
+    /// Creates the hold, and the inputs of its motion. Messages of the hold may be late by
+    /// `patience`.
     pub(crate) fn new(patience: Duration) -> (Self, DeadmanMonitor, CancellationToken) {
         let (deadman, monitor) = Deadman::new(SILENCE + patience);
         deadman.keep_alive();
@@ -54,16 +55,16 @@ pub(crate) struct Settings {
     pub(crate) tuning: Tuning,
 }
 
-/// The end of a motion before its button was released.
+/// How a motion ended before its button was released.
 #[derive(Debug)]
 pub(crate) enum Ended {
-    /// The motion reached its target, or was ended on request.
+    /// The motion reached its target, or a viewer requested its end.
     AsAsked,
-    /// The motion failed: one line of text, and the recommended change.
+    /// The motion failed. The values are one line of text, and the recommended change.
     Failed(String, Option<String>),
 }
 
-/// The task while a button is held.
+/// The motion to perform while a button is held.
 pub(crate) struct Task {
     pub(crate) motion: Motion,
     pub(crate) settings: watch::Receiver<Settings>,
@@ -72,8 +73,9 @@ pub(crate) struct Task {
     pub(crate) end: CancellationToken,
 }
 
-/// Moves until the task is cancelled or the target is reached. The arm is braked and released on
-/// return. For a planned motion, `show` is called with the plan before the motion begins.
+/// Moves until the task is cancelled or the target is reached. When this returns, the arm has
+/// braked and is released. For a planned motion, this calls `show` with the plan before the motion
+/// begins.
 pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Ended {
     let end = task.end.clone();
     match attempt(robot, task, show).await {
@@ -127,14 +129,14 @@ async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(
     moved.and(let_go.map(drop))
 }
 
-/// The reason why a hold ended early.
+/// Reason why a hold ended early.
 enum Fault {
-    /// The motion was refused before it began.
+    /// The driver refused the motion before it began.
     Refused(String),
     Motion(MotionError),
 }
 
-/// Applies changes of speed and tuning to the session, until it ends.
+/// Applies changes of speed and stiffness to the session, until the session ends.
 async fn keep_tuned(
     arm: &Arm,
     way: Way,
@@ -153,7 +155,7 @@ async fn keep_tuned(
     arm.ended().await.map(drop)
 }
 
-/// Moves to the target, or in a direction until the future is dropped.
+/// Moves to the target, or moves in a direction until the future is dropped.
 async fn go(
     arm: &Arm,
     motion: Motion,
@@ -237,5 +239,5 @@ fn ticks(period: Duration) -> tokio::time::Interval {
 /// Silence after which the control thread itself brakes, in robot time.
 const SILENCE: Duration = Duration::from_millis(200);
 
-/// Interval between two targets of a jog.
+/// Interval between two targets of a motion in a direction.
 const STEP: Duration = Duration::from_millis(20);

@@ -48,27 +48,27 @@
 //! ```
 //!
 //! `axum::serve(listener, page.into_make_service_with_connect_info::<SocketAddr>())` then serves
-//! it. Any back end may instead nest the router under a path that ends with a slash. It must also
-//! provide the peers' addresses in this way: without them the server requires a token from all
-//! peers. [`several`] serves more than one robot.
+//! the page. Any back end may instead nest the router under a path that ends with a slash. The back
+//! end must also provide the addresses of the peers in this way; without them, the server requires
+//! a token from all peers. [`several`] serves more than one robot.
 //!
 //! # Moving the arm
 //!
-//! Only a server with [`Options::allow_motion`] moves an arm. One viewer has the lease; it becomes
-//! free when released, when the viewer's socket closes, and after 5 s of silence. Motions continue
-//! only while a button is held. The page then sends 20 messages per second, and the arm brakes when
-//! the next one does not arrive within 150 ms. The driver's control thread has a separate deadman
-//! of 200 ms. Any viewer can stop the arm.
+//! Only a server with [`Options::allow_motion`] moves an arm. One viewer has the lease, the
+//! exclusive right to move the arm. The lease becomes free when the viewer releases it, when the
+//! viewer's socket closes, and after 5 s of silence. Motions continue only while a button is held.
+//! The page then sends 20 messages per second, and the arm brakes if no message arrives for 150 ms.
+//! The driver's control thread has a separate deadman of 200 ms. Any viewer can stop the arm.
 //!
-//! The budget of a joint motion keeps every point of the arm below the requested speed, 0.25 m/s at
-//! most. The budget of an end-effector motion bounds the end effector. The control thread ends the
+//! The limits of a joint motion keep every point of the arm below the requested speed, 0.25 m/s at
+//! most. The limits of an end-effector motion bound the end effector. The control thread ends the
 //! hold in the cycle in which a joint, the flange or the end effector exceeds 0.25 m/s.
 //!
 //! A browser is neither an enabling device nor an emergency stop.
 //!
 //! # What it does not do
 //!
-//! TLS: put a proxy in front if the network is not trusted.
+//! The server has no TLS. Put a proxy in front of it if the network is not trusted.
 
 mod admission;
 #[cfg(test)]
@@ -120,14 +120,14 @@ use source::{Source, Watched};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// The reason why a server cannot listen.
+/// Reason why a server cannot listen.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// Other computers could connect without authentication.
+    /// Other computers could connect without a token.
     #[error(transparent)]
     NoToken(#[from] NoToken),
-    /// The operating system refuses the address.
+    /// The operating system refused the address.
     #[error("listening on {address}")]
     Io {
         /// The requested address.
@@ -138,11 +138,11 @@ pub enum BindError {
 }
 
 /// Listens for viewers: on a loopback address, or on any address with a token. Connections have
-/// `TCP_NODELAY`. A back end with its own listener should also set it: without it, a frame waits up
-/// to 40 ms behind every message that the page does not answer.
+/// `TCP_NODELAY`. A back end with a listener of its own should also set this option; without it, a
+/// frame waits up to 40 ms behind every message that the page does not answer.
 ///
 /// # Errors
-/// [`BindError`].
+/// [`BindError`] if a token is missing, or if the system refuses the address.
 ///
 /// # Cancel safety
 /// Dropping the future has no further effect.
@@ -166,16 +166,16 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     socket.listen(WAITING)
 }
 
-/// Returns the page and its socket (`/ws`) for a connected robot. Must be called within a Tokio
-/// runtime. The router keeps a handle of the robot.
+/// Returns the page and its socket (`/ws`) for a connected robot. Call this within a Tokio runtime.
+/// The router keeps a handle of the robot.
 pub fn router(robot: Robot, options: Options) -> Router {
     let admission = options.admission.clone();
     serve(Hub::start(Source::Robot(robot), options), admission)
 }
 
-/// Returns the page for a simulated robot that another program controls: it is shown and can be
-/// disturbed. To move it from the page, connect to it and use [`router`] with
-/// [`Options::simulated`].
+/// Returns the page for a simulated robot that another program controls. The page shows the robot,
+/// and viewers can disturb it. To move the robot from the page, connect to it and use [`router`]
+/// with [`Options::simulated`].
 ///
 /// # Errors
 /// [`Stopped`] if the simulation has ended.
@@ -222,11 +222,11 @@ async fn connect(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Resp
 /// The subprotocol of the socket.
 const PROTOCOL: &str = "franka-dash";
 
-/// Largest number of connections that wait to be accepted.
+/// Largest number of connections that may wait to be accepted.
 const WAITING: u32 = 1024;
 
 /// Largest request in bytes.
 const MESSAGE_MAX: usize = 4096;
 
-/// Largest number of bytes that wait for one viewer's socket.
+/// Largest number of bytes that may wait for one viewer's socket.
 const WRITE_MAX: usize = 64 * 1024;

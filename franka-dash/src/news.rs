@@ -6,7 +6,8 @@ use franka_async::supervision::EventKind;
 
 use crate::reply::Level;
 
-/// Returns level, line and explanation of an event; `None` for events that the page shows anyway.
+/// Returns level, line and explanation of an event; `None` for events that the page shows in
+/// another way.
 pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String>)> {
     let level = match kind {
         EventKind::MotionBegun { .. } | EventKind::MotionEnded { .. } => return None,
@@ -32,7 +33,7 @@ pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String
     Some((level, text, why))
 }
 
-/// Returns the changes of a watched robot's mode and errors between two samples.
+/// Returns the changes of mode and errors of a watched robot between two samples.
 pub(crate) fn of_states(
     before: &RobotState,
     state: &RobotState,

@@ -13,7 +13,7 @@ use franka_sim::Running;
 use crate::recording::Writing;
 use crate::simulated::Simulated;
 
-/// Permissions of viewers. The default is view-only, for this computer.
+/// Permissions of viewers. By default, viewers on this computer can watch, and do nothing else.
 #[derive(Clone, Default)]
 #[must_use = "options do nothing until `router` takes them"]
 pub struct Options {
@@ -36,21 +36,21 @@ impl Options {
         self
     }
 
-    /// Requires this token from every page, in the fragment of its address: `http://HOST/#TOKEN`.
-    /// Other computers are then served as well.
+    /// Requires this token from every page, in the fragment of the page's address:
+    /// `http://HOST/#TOKEN`. The server then also accepts other computers.
     pub fn token(mut self, token: Token) -> Self {
         self.admission = self.admission.token(token);
         self
     }
 
-    /// Accepts requests with this host name, in addition to `localhost` and addresses.
+    /// Accepts requests with this host name, in addition to `localhost` and IP addresses.
     pub fn host(mut self, name: impl Into<String>) -> Self {
         self.admission = self.admission.host(name);
         self
     }
 
-    /// Allows the viewer with the lease to disturb this simulated robot, which must be the
-    /// displayed robot.
+    /// Allows the viewer with the lease to disturb this simulated robot. It must be the displayed
+    /// robot.
     pub fn simulated(mut self, running: &Arc<Running>) -> Self {
         self.simulated = Some(Simulated::new(running.clone()));
         self
@@ -64,31 +64,31 @@ impl Options {
     }
 
     /// Allows the viewer with the lease to record the robot, and its gripper, to new files in this
-    /// existing folder. Files are named by the time. A recording ends after an hour, and with the
-    /// connection to the robot. See [`Self::recordings_ended`].
+    /// existing folder. The time gives the name of a file. A recording ends after an hour, or when
+    /// the connection to the robot ends. See [`Self::recordings_ended`].
     pub fn record_to(mut self, folder: impl Into<PathBuf>) -> Self {
         self.recordings = Some(folder.into());
         self
     }
 
-    /// Resolves when all recordings started by viewers with these options, or with clones of them,
-    /// have been written. Await it before the program ends, after
-    /// [`Robot::shutdown`](franka_async::Robot::shutdown): until then, a recording has no index and
-    /// lacks its last second. The disk has 10 s for this.
+    /// Resolves when all recordings that viewers started under these options, or under clones of
+    /// them, have been written. Before the program ends, call
+    /// [`Robot::shutdown`](franka_async::Robot::shutdown) and then await this future. Otherwise a
+    /// recording may lack its index and its last second. Writing takes at most 10 s.
     pub fn recordings_ended(&self) -> impl Future<Output = ()> + Send + 'static {
         self.writing.clone().none()
     }
 
-    /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows
-    /// them. See [`Engage::keep_out`](franka_async::Engage::keep_out) for the number of regions
-    /// allowed.
+    /// Keeps the arm out of these regions, given in the base frame, in the motions of the page. The
+    /// page shows them. See [`Engage::keep_out`](franka_async::Engage::keep_out) for the number of
+    /// regions allowed.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.keep_out = regions.into_iter().collect();
         self
     }
 
-    /// Allows messages of a held button to be late by this duration, for tests of the page on a
-    /// busy computer. Only has an effect with [`Self::simulated`], never with a real robot.
+    /// Allows messages of a held button to be late by this duration. Use it to test the page on a
+    /// busy computer. It has an effect only with [`Self::simulated`], never with a real robot.
     pub fn patience(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
@@ -96,7 +96,7 @@ impl Options {
 }
 
 impl std::fmt::Debug for Options {
-    /// Omits the token.
+    /// Formats the options without the token.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Options")
             .field("motion", &self.motion)

@@ -1,4 +1,4 @@
-//! Speeds of the arm such that none of its points exceeds a limit.
+//! Speed limits for motions, with which no point of the arm exceeds a given speed.
 
 use franka_async::goal::Budget;
 use franka_async::model::Model;
@@ -10,8 +10,8 @@ use franka_async::state::RobotState;
 const BODY: f64 = 0.11;
 
 /// Returns a bound on the distance of any point of an arm with these lengths from the axis of each
-/// joint, `[m]`, at any posture. The bound is the sum of the lengths in between, with a tool that
-/// ends `tool` from the flange.
+/// joint, `[m]`, at any posture. The bound is the sum of the lengths between them, with a tool that
+/// extends `tool` from the flange.
 fn reach(lengths: &Lengths, tool: f64) -> [f64; 7] {
     let origins = lengths.joint_origins();
     let mut rest = FLANGE + tool + BODY;
@@ -27,8 +27,8 @@ fn tool_length(state: &RobotState) -> f64 {
     Vector3::new(state.F_T_EE[12], state.F_T_EE[13], state.F_T_EE[14]).norm()
 }
 
-/// Returns the budget for a joint motion by `way`, `[rad]`, such that no point of the arm is faster
-/// than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the way.
+/// Returns the limits for a joint motion by `way`, `[rad]`. With these limits no point of the arm
+/// is faster than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the way.
 pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f64) -> Budget {
     let reach = reach(model.lengths(), tool_length(state));
     let way = way.map(|joint| joint.abs().max(SHORTEST));
@@ -40,9 +40,9 @@ pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f6
     budget
 }
 
-/// Returns the budget for an end effector that moves at `speed`, `[m/s]`, or turns so that points
-/// at [`TURNING_RADIUS`] do. It bounds only the end effector; the session's speed cap bounds the
-/// rest of the arm.
+/// Returns the limits for an end effector that moves at `speed`, `[m/s]`. In a rotation, points at
+/// [`TURNING_RADIUS`] have this speed. The limits bound only the end effector; the session's speed
+/// cap bounds the rest of the arm.
 pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     let mut budget = Budget::of(model.joint_limits());
     budget.translation.velocity = speed;
@@ -50,10 +50,10 @@ pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     budget
 }
 
-/// Smallest way of a joint that is used, `[rad]`, because velocities must be above zero.
+/// Smallest displacement of a joint that is used, `[rad]`, because velocities must be above zero.
 const SHORTEST: f64 = 1e-3;
 
-/// Distance from the end effector at which a turn has the requested speed, `[m]`.
+/// Distance from the end effector at which points have the requested speed in a rotation, `[m]`.
 pub(crate) const TURNING_RADIUS: f64 = 0.25;
 
 #[cfg(test)]
@@ -64,7 +64,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns postures over the whole ranges, from a repeatable sequence.
+    /// Returns postures over the whole ranges of the joints, from a repeatable sequence.
     fn postures(model: &Model) -> impl Iterator<Item = JointVector> + '_ {
         let limits = model.joint_limits();
         (0..500u32).map(|k| {

@@ -1,4 +1,4 @@
-//! The page's files, which are part of the program. `cargo xtask assets` generates them.
+//! The files of the page, which are part of the program. `cargo xtask assets` generates them.
 
 use axum::Router;
 use axum::extract::OriginalUri;
@@ -6,12 +6,12 @@ use axum::http::{HeaderName, StatusCode, header};
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-/// Returns the routes of the files of a robot's page.
+/// Returns the routes for the files of a robot's page.
 pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(INDEX)
 }
 
-/// Returns the routes of the files of the page that shows several robots.
+/// Returns the routes for the files of the page that shows several robots.
 pub(crate) fn overview<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(OVERVIEW)
 }
@@ -24,7 +24,7 @@ pub(crate) fn is_file(name: &str) -> bool {
     paths.any(|path| first(path)) || ["ws", "access", "robots.json"].contains(&name)
 }
 
-/// Returns the routes of all files; `page` is the main page.
+/// Returns the routes for all files; `page` is the main page.
 fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     let first = async move |OriginalUri(asked): OriginalUri| {
         if asked.path().ends_with('/') {
@@ -44,8 +44,8 @@ fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     router
 }
 
-/// Returns the error text for a page path without a slash, from which a browser would look for the
-/// files elsewhere.
+/// Returns the error text for a page path without a slash. From such a path, a browser would look
+/// for the files elsewhere.
 fn needs_a_slash(path: &str) -> String {
     format!(
         "got the path \"{path}\", expected \"{path}/\": nest the router there, since the \
@@ -57,7 +57,7 @@ const HTML: &str = "text/html; charset=utf-8";
 static INDEX: &[u8] = include_bytes!("../page/index.html");
 static OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
 
-/// Headers that forbid caching, so that page and server have the same version.
+/// Returns headers that forbid caching. Page and server thus always have the same version.
 fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
     [
         (header::CONTENT_TYPE, kind),
@@ -65,7 +65,7 @@ fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
     ]
 }
 
-/// Path, type and content.
+/// Path, type and content of each file.
 static FILES: &[(&str, &str, &[u8])] = &[
     (
         "/dash.css",
@@ -84,7 +84,7 @@ static FILES: &[(&str, &str, &[u8])] = &[
     ),
 ];
 
-/// The same files, compressed: every browser supports gzip.
+/// The same files, compressed with gzip, which every browser supports.
 static COMPRESSED: &[(&str, &str, &[u8])] = &[(
     "/dash.js",
     "text/javascript; charset=utf-8",

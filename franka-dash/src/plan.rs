@@ -1,4 +1,5 @@
-//! Previews of motions with a target, for the page and for the hold: both refuse the same motions.
+//! Previews of motions with a target. The page and the hold both use them, so both refuse the same
+//! motions.
 
 use franka_async::error::PathError;
 use franka_async::model::JointVector;
@@ -16,14 +17,14 @@ use crate::way::Way;
 /// A viewer's question about a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Question {
-    /// Number of the question, repeated in the answer.
+    /// Number of the question. The answer repeats it.
     pub(crate) number: u32,
     pub(crate) motion: Motion,
     /// Largest speed, `[m/s]`.
     pub(crate) speed: f64,
 }
 
-/// True if a motion has an end chosen by its viewer, so that it can be planned.
+/// True if the viewer has chosen the end of the motion, so that the motion can be planned.
 pub(crate) fn has_end(motion: &Motion) -> bool {
     matches!(
         motion,
@@ -34,7 +35,7 @@ pub(crate) fn has_end(motion: &Motion) -> bool {
 /// The preview of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Plan {
-    /// Time until arrival without delays, `[s]`.
+    /// Time until arrival if nothing delays the motion, `[s]`.
     duration: f64,
     /// Length of the end effector's path, `[m]`.
     length: f64,
@@ -42,14 +43,14 @@ pub(crate) struct Plan {
     fastest: f64,
     /// Joint positions at the end, `[rad]`.
     q: [f64; 7],
-    /// Poses of the state frame's frames at the end: position and quaternion x y z w of each.
+    /// Poses at the end, for the frames of a state frame: position and quaternion x y z w of each.
     poses: Vec<f64>,
     /// Path of the end effector, `[m]`.
     line: Vec<[f64; 3]>,
 }
 
-/// Previews a motion that [has an end](has_end), starting now, or returns the reason for a refusal.
-/// It takes milliseconds.
+/// Previews a motion that [has an end](has_end) and starts now, or returns the reason for a
+/// refusal. It takes milliseconds.
 pub(crate) fn plan(
     robot: &Robot,
     motion: &Motion,
@@ -97,7 +98,7 @@ pub(crate) fn plan(
     })
 }
 
-/// Like [`plan`], computed in a task that delays nothing else.
+/// Like [`plan`], but computed in a task of its own, which delays nothing else.
 pub(crate) async fn in_background(
     robot: &Robot,
     motion: Motion,
@@ -160,7 +161,7 @@ fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
     speeds.fold(0.0, f64::max)
 }
 
-/// Returns at most [`LINE_MAX`] points of a line, including its ends.
+/// Returns at most [`LINE_MAX`] points of a line, its ends included.
 fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
     let last = line.len().saturating_sub(1);
     let count = last.min(LINE_MAX - 1);
@@ -168,7 +169,7 @@ fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
     points.map(Into::into).collect()
 }
 
-/// Largest number of points of a line that are sent.
+/// Largest number of points of a line that the server sends.
 const LINE_MAX: usize = 100;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Recordings controlled by viewers, in a folder of the server.
+//! Recordings that viewers control, in a folder of the server.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,7 +12,7 @@ use serde::Serialize;
 use tokio::sync::watch;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// The recordings of a server, one at a time.
+/// The recordings of a server. Only one runs at a time.
 pub(crate) struct Recordings {
     folder: PathBuf,
     writing: Writing,
@@ -23,7 +23,7 @@ pub(crate) struct Recordings {
 /// The current recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Progress {
-    /// Name of its file in the folder.
+    /// Name of the recording's file in the folder.
     file: String,
     cycles: u64,
     dropped: u64,
@@ -51,8 +51,9 @@ impl Recordings {
     }
 
     /// Records the robot, and the gripper if there is one. Resolves when the recording has ended:
-    /// through [`Self::end`], after [`LONGEST`], with the connection, or with an error. The result
-    /// is a line of text about it. Returns `None` without effect while another recording runs.
+    /// through [`Self::end`], after [`LONGEST`], when the connection ends, or with an error. The
+    /// result is a line of text about the recording. While another recording runs, this has no
+    /// effect and returns `None`.
     pub(crate) async fn record(
         &self,
         robot: &Robot,
@@ -136,7 +137,7 @@ impl Recordings {
     }
 }
 
-/// Number of recordings of all servers that are being written.
+/// Number of recordings of all servers that are not completely written.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Writing(Arc<watch::Sender<usize>>);
 
@@ -160,7 +161,7 @@ impl Writing {
     }
 }
 
-/// Runs a function that waits for the disk without delaying other tasks.
+/// Runs a function that waits for the disk, without delaying other tasks.
 async fn off_the_runtime<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, String> {

@@ -16,21 +16,21 @@ use crate::statistics::Statistics;
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Reply {
-    /// A request had no effect, with the reason.
+    /// A request had no effect. The message contains the reason.
     Refused {
         why: String,
-        /// As in `Status`, at the time of the refusal.
+        /// The same number as in `Status`, at the time of the refusal.
         begun: u64,
     },
     /// The current commander and its hold.
     Status {
         #[serde(flatten)]
         status: Status,
-        /// Number of this viewer's requests to begin a hold that have been processed. A page uses
-        /// it to decide whether a message belongs to its newest hold.
+        /// Number of this viewer's requests to begin a hold that have been processed. With this
+        /// number, a page decides whether a message belongs to its newest hold.
         begun: u64,
     },
-    /// A stop of this viewer has been received.
+    /// The server has received this viewer's stop.
     Stopping {},
     /// An event.
     Event(News),
@@ -42,7 +42,7 @@ pub(crate) enum Reply {
     Gripper(FingerState),
     /// The current recording.
     Recording { recording: Option<Progress> },
-    /// The preview for a question, or the reason for a refusal.
+    /// The preview for a question, or the reason why it is refused.
     Preview {
         /// Number of the question.
         number: u32,
@@ -53,11 +53,11 @@ pub(crate) enum Reply {
     Heading { way: Option<Plan> },
     /// The estimated contact on the arm; `null` without a contact.
     Contact { contact: Option<Contact> },
-    /// The tare of a frame's wrench; `null` without a tare.
+    /// The tare of the wrench in frames; `null` without a tare.
     Tare { tare: Option<TareShown> },
 }
 
-/// The tare of the wrench, and its range of validity.
+/// The tare (the zero) of the wrench, and the range in which it is valid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct TareShown {
     /// Force, then torque about the stiffness frame, in base axes, `[N, N m]`.
@@ -95,21 +95,21 @@ impl Reply {
         }
     }
 
-    /// Returns the plan of a hold, without the number of the hold.
+    /// Returns the message about the plan of a hold, without the number of the hold.
     pub(crate) fn heading(heading: Option<(u64, Plan)>) -> Self {
         let way = heading.map(|(_, plan)| plan);
         Self::Heading { way }
     }
 }
 
-/// The current state and settings.
+/// The current commander, hold and settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
     #[serde(flatten)]
     pub(crate) authority: authority::Status,
     /// The stiffness of the arm during a hold.
     pub(crate) tuning: Tuning,
-    /// `None` for a robot that viewers cannot disturb.
+    /// Settings of the simulation; `None` for a robot that viewers cannot disturb.
     pub(crate) simulation: Option<Setting>,
 }
 
@@ -128,8 +128,8 @@ pub(crate) struct News {
     /// Time of the server, `[ms]`.
     pub(crate) server_ms: u64,
     pub(crate) level: Level,
-    /// One line.
+    /// Text of one line.
     pub(crate) text: String,
-    /// The reason and the recommended change; several lines.
+    /// Reason and recommended change, in several lines.
     pub(crate) detail: Option<String>,
 }

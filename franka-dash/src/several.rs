@@ -1,4 +1,4 @@
-//! Several robots on one server: a page for each, and a page with all of them side by side.
+//! Several robots on one server. Each robot has a page, and one page shows all robots side by side.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ use crate::options::Options;
 use crate::source::Source;
 use crate::{admission, page, serve};
 
-/// The reason why names of robots are not accepted: they are parts of addresses.
+/// Reason why names of robots are not valid. The names are parts of addresses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NameError {
-    /// A name is empty, is longer than 40 characters, or contains characters other than letters,
+    /// A name is empty, has more than 40 characters, or contains characters other than letters,
     /// digits and `-_.:~`.
     #[error(
         "got the name {name:?}, expected 1 to 40 characters of a-z, A-Z, 0-9 and -_.:~, since \
@@ -29,7 +29,7 @@ pub enum NameError {
         /// The name.
         name: String,
     },
-    /// Two robots have the same name, or a file of the page has it.
+    /// Two robots have the same name, or a file of the page has the name of a robot.
     #[error("the name {name:?} is already in use, expected a different one")]
     Taken {
         /// The name.
@@ -38,12 +38,12 @@ pub enum NameError {
 }
 
 /// Returns the pages of several robots. Each robot's page is at `/NAME/`, as served by
-/// [`router`](crate::router). The page at `/` shows all of them side by side, for viewing and
-/// stopping. Must be called within a Tokio runtime. Each robot has a separate commander. Use the
-/// same token for all.
+/// [`router`](crate::router). The page at `/` shows all robots side by side; there, viewers can
+/// watch and stop them. Call this within a Tokio runtime. Each robot has a separate commander. Use
+/// the same token for all robots.
 ///
 /// # Errors
-/// [`NameError`]; nothing has been started in this case.
+/// [`NameError`] if a name is not valid. Nothing has been started in this case.
 pub fn several<N: Into<String>>(
     robots: impl IntoIterator<Item = (N, Robot, Options)>,
 ) -> Result<Router, NameError> {

@@ -20,16 +20,17 @@ pub(crate) struct Simulated {
     setting: Arc<Mutex<Setting>>,
 }
 
-/// The simulated conditions; `None` for values unchanged since the start of the simulator.
+/// The current conditions of the simulation; `None` for values that have not changed since the
+/// simulator started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Setting {
-    /// Seed of all its randomness; `None` while unknown.
+    /// Seed of all randomness of the simulator; `None` while unknown.
     seed: Option<u64>,
     arm: Option<ArmKind>,
     network: Option<Conditions>,
     /// Width of the object between the fingers, `[m]`.
     object: Option<f64>,
-    /// Mass on the flange, `[kg]`.
+    /// Mass attached to the flange, `[kg]`.
     load: f64,
     /// Speed of robot time in virtual time; 0 is a pause, `None` is as fast as possible.
     speed: Option<f64>,
@@ -44,12 +45,12 @@ impl Simulated {
         }
     }
 
-    /// True if it has a Hand, which can hold an object.
+    /// True if the robot has a Hand, which can hold an object.
     pub(crate) fn has_hand(&self) -> bool {
         self.running.hand().is_some()
     }
 
-    /// True if the speed of its time can be set.
+    /// True if the speed of robot time can be set.
     pub(crate) fn is_in_virtual_time(&self) -> bool {
         self.running.is_in_virtual_time()
     }
@@ -61,7 +62,7 @@ impl Simulated {
         }
     }
 
-    /// Reads the start options of the simulator.
+    /// Reads the options with which the simulator was started.
     pub(crate) async fn look(&self) {
         let started = self.running.with(|robot| {
             let config = robot.config();
@@ -90,7 +91,7 @@ impl Simulated {
     /// Performs a [checked](crate::request::Request::check) disturbance.
     ///
     /// # Errors
-    /// The reason why it was not performed.
+    /// The reason why the disturbance was not performed.
     pub(crate) async fn disturb(&self, disturbance: Disturbance) -> Result<(), String> {
         self.apply(disturbance).await?;
         let mut setting = self.lock();
@@ -161,7 +162,8 @@ impl Simulated {
         }
     }
 
-    /// Copies the newest state to `watched`, at the rate of the page. Ends with the simulation.
+    /// Copies the newest state to `watched`, at the rate of the page. Returns when the simulation
+    /// has ended.
     pub(crate) async fn copy_to(&self, watched: impl Fn(RobotState) -> bool) {
         let mut clock = tokio::time::interval(Duration::from_millis(10));
         clock.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Skip);

@@ -11,15 +11,15 @@ use franka_async::state::RobotState;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) state: RobotState,
-    /// This driver's reference of the joints, `[rad]`; `None` while it moves nothing.
+    /// Joint reference of this driver, `[rad]`; `None` while this driver does not move the arm.
     pub(crate) reference: Option<[f64; 7]>,
-    /// Guards that were active recently.
+    /// Guards (safety checks of the driver) that were active recently.
     pub(crate) guards: Bindings,
 }
 
 /// The source of states.
 pub(crate) enum Source {
-    /// A robot that this process is connected to, simulated or not.
+    /// A robot to which this process is connected, simulated or not.
     Robot(Robot),
     /// A simulated robot whose client is another program.
     Watched(Box<Watched>),

@@ -10,17 +10,17 @@ use serde::Serialize;
 /// Counters and quantiles of the control thread since it was started, `[us]`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Statistics {
-    /// Round trip to this page, `[ms]`; `None` before the first one.
+    /// Round trip to this page, `[ms]`; `None` before the first measurement.
     round_trip_ms: Option<f64>,
     /// Values of the control thread; `None` if another program controls the robot.
     thread: Option<Thread>,
-    /// Values since the last statistics of this viewer; `None` in the first.
+    /// Values since the last statistics for this viewer; `None` in the first statistics.
     recent: Option<Recent>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct Thread {
-    /// Priority under `SCHED_FIFO`; `None` if it was not granted.
+    /// Priority of the thread under `SCHED_FIFO`; `None` if it was not granted.
     priority: Option<i32>,
     states: u64,
     lost: u64,
@@ -37,7 +37,7 @@ struct Recent {
     slack: [f64; 3],
 }
 
-/// Contents of the histograms at a viewer's last statistics.
+/// Contents of the histograms at the last statistics for a viewer.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
     turnaround: Buckets,
@@ -48,7 +48,8 @@ pub(crate) struct Counts {
 type Buckets = BTreeMap<Duration, u64>;
 
 impl Counts {
-    /// Returns the values since the last call; `None` without new values, and for the first call.
+    /// Returns the values since the last call; `None` if there are no new values, and for the first
+    /// call.
     fn take(&mut self, stats: &Stats) -> Option<Recent> {
         let turnaround = since(&mut self.turnaround, &stats.turnaround);
         let slack = since(&mut self.slack, &stats.slack);
@@ -59,8 +60,8 @@ impl Counts {
     }
 }
 
-/// Returns minimum, median and maximum of a histogram's new values since `before`, which is then
-/// updated.
+/// Returns minimum, median and maximum of the values that a histogram gained since `before`, and
+/// updates `before`.
 fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
     spread(before, histogram.buckets().collect())
 }
@@ -96,7 +97,7 @@ struct Spread {
 }
 
 impl Statistics {
-    /// Creates the statistics; `before` holds this viewer's last ones.
+    /// Creates the statistics. `before` is the state at the last statistics for this viewer.
     pub(crate) fn of(
         robot: Option<&Robot>,
         round_trip: Option<Duration>,

@@ -1,9 +1,9 @@
 //! One viewer's socket: receives requests, and sends frames, events and statistics.
 //!
-//! A frame is sent only when the previous one has been acknowledged, and then it is the newest:
-//! frames that a slow viewer would not read are never created. Reading continues while a send
-//! waits, so that a stop is received. A viewer that does not accept a message within [`SEND`], or
-//! is silent for [`SILENCE`], is disconnected.
+//! The server sends a frame only after the viewer has acknowledged the previous frame, and then it
+//! sends the newest state. So it never creates frames that a slow viewer would not read. It
+//! continues to read while a send waits, so it receives a stop. The server disconnects a viewer
+//! that does not accept a message within [`SEND`], or that is silent for [`SILENCE`].
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,7 +27,7 @@ use crate::reply::{Reply, Status};
 use crate::request::Request;
 use crate::statistics::{Counts, Statistics};
 
-/// Serves a viewer until it disconnects, and then ends its hold.
+/// Serves a viewer until the viewer disconnects, and then ends its hold.
 pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
     let viewer = hub.next_viewer();
     let (sink, stream) = socket.split();
@@ -48,9 +48,9 @@ pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
 struct Link {
     /// Server time of the newest frame sent, `[ms]`.
     sent: AtomicU64,
-    /// True until the newest frame is acknowledged.
+    /// True until the viewer has acknowledged the newest frame.
     in_flight: AtomicBool,
-    /// Number of processed requests to begin a hold.
+    /// Number of this viewer's requests to begin a hold that have been processed.
     begun: AtomicU64,
     round_trip: Mutex<Option<(Instant, Duration)>>,
 }
@@ -67,8 +67,8 @@ impl Link {
         *self.lock() = Some((Instant::now(), took));
     }
 
-    /// Returns the newest round trip, if it is recent. If a frame has been in flight for longer,
-    /// returns this time.
+    /// Returns the newest round trip, if it is recent. If a frame has been waiting for its
+    /// acknowledgement for longer, returns this time instead.
     fn round_trip(&self, now_ms: u64) -> Option<Duration> {
         let (at, took) = (*self.lock())?;
         let waiting = match self.in_flight.load(Ordering::Relaxed) {
@@ -94,7 +94,7 @@ impl Link {
     }
 }
 
-/// Processes requests until the socket ends, or replies are not read.
+/// Processes requests until the socket ends, or until the viewer does not read the replies.
 async fn read(
     hub: &Arc<Hub>,
     viewer: ViewerId,
@@ -152,7 +152,7 @@ async fn read(
     }
 }
 
-/// Answers the newest question, one at a time, until the viewer disconnects.
+/// Answers questions until the viewer disconnects. It answers one at a time, the newest first.
 async fn answer(
     hub: &Hub,
     mut questions: watch::Receiver<Option<Question>>,
@@ -254,7 +254,7 @@ async fn write(
     }
 }
 
-/// Returns values that change continuously, and are sent a few times per second.
+/// Returns the values that change continuously. The server sends them a few times per second.
 fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = Reply> + use<> {
     let round_trip = link.round_trip(hub.now_ms());
     let statistics = Statistics::of(hub.source.robot(), round_trip, before);
@@ -269,7 +269,7 @@ fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = 
         .flatten()
 }
 
-/// Sends a message within the time limit; `None` if that fails.
+/// Sends a message within the time limit; `None` if sending fails.
 async fn send(sink: &mut SplitSink<WebSocket, Message>, message: Message) -> Option<()> {
     timeout(SEND, sink.send(message)).await.ok()?.ok()
 }
@@ -285,14 +285,16 @@ const STATISTICS: Duration = Duration::from_millis(200);
 /// Time limit for a viewer to accept a message.
 const SEND: Duration = Duration::from_secs(2);
 
-/// Silence after which a viewer counts as disconnected: it acknowledges frames continuously.
+/// Silence after which a viewer counts as disconnected. A connected viewer acknowledges frames
+/// continuously.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Age from which a round trip is no longer used.
+/// Age above which a round trip is no longer used.
 const FRESH: Duration = Duration::from_secs(1);
 
-/// Largest number of replies that wait for a viewer.
+/// Largest number of replies that may wait for a viewer.
 const REPLIES: usize = 32;
 
-/// Largest message rate, above the page's own: 60 acknowledgements, 20 holds, 20 pushes.
+/// Largest number of messages of a viewer per second. The page itself sends fewer: 60
+/// acknowledgements, 20 holds, 20 pushes.
 const MESSAGES_PER_SECOND: u32 = 250;

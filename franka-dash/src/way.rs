@@ -9,11 +9,11 @@ use crate::request::{Motion, SPEED_MAX, Tuning};
 /// The path of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Way {
-    /// The joints to a target, with the displacement from their start, `[rad]`.
+    /// The joints move to a target. `way` is the displacement from their start, `[rad]`.
     Joints { target: [f64; 7], way: [f64; 7] },
-    /// The end effector to a pose, on a straight line.
+    /// The end effector moves to a pose, on a straight line.
     Pose(Pose),
-    /// The end effector in a direction.
+    /// The end effector moves in a direction.
     EndEffector,
 }
 
@@ -47,7 +47,7 @@ impl Way {
         Self::Joints { target, way }
     }
 
-    /// Returns the end of the motion; `None` if it continues while its button is held.
+    /// Returns the target of the motion; `None` if the motion continues while its button is held.
     pub(crate) fn target(&self) -> Option<Target> {
         match self {
             Self::Joints { target, .. } => Some(Target::Joints(*target)),
@@ -56,8 +56,8 @@ impl Way {
         }
     }
 
-    /// Returns the budget such that no point of the arm is faster than `speed`, `[m/s]`, in joint
-    /// motions, and the end effector is not in other motions.
+    /// Returns the speed limits of the motion. In joint motions, no point of the arm is faster than
+    /// `speed`, `[m/s]`. In other motions, the end effector is not faster.
     pub(crate) fn budget(&self, robot: &Robot, speed: f64) -> Budget {
         match self {
             Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
@@ -67,7 +67,8 @@ impl Way {
         }
     }
 
-    /// Returns the driver's gains for this kind of motion, with the tuning.
+    /// Returns the driver's gains for this kind of motion, with the viewer's stiffness setting
+    /// applied.
     pub(crate) fn gains(&self, tuning: &Tuning) -> Gains {
         let preset = match self {
             Self::Joints { .. } => Gains::joint(),

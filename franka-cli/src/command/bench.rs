@@ -114,7 +114,7 @@ impl Loop {
     }
 }
 
-/// Returns the text for a thread's scheduling, by its `SCHED_FIFO` priority.
+/// Returns the text for the scheduling of a thread with this `SCHED_FIFO` priority.
 fn scheduling(priority: Option<i32>) -> String {
     match priority {
         Some(priority) => format!("SCHED_FIFO {priority}"),
@@ -122,14 +122,14 @@ fn scheduling(priority: Option<i32>) -> String {
     }
 }
 
-/// The result of a control loop against a simulated robot.
+/// Result of a control loop against a simulated robot.
 pub(super) struct DryRun {
     pub(super) outcome: Result<MotionReport, MotionError>,
-    /// The counts of the loop.
+    /// Statistics of the control loop.
     pub(super) stats: Arc<Stats>,
-    /// The rights granted by the operating system.
+    /// Rights that the operating system granted.
     pub(super) granted: Arc<Granted>,
-    /// The time when each command left, with the `message_id` of the state that it answers.
+    /// Time at which each command left, with the `message_id` of the state that it answers.
     pub(super) left: Vec<(u64, Instant)>,
 }
 
@@ -158,7 +158,7 @@ pub(super) async fn dry_run(sim: Sim, length: Duration) -> anyhow::Result<DryRun
     })
 }
 
-/// Returns the times when commands left, until the connection ends.
+/// Returns the times at which commands left, until the connection ends.
 fn departures(mut cycles: CycleReader) -> Vec<(u64, Instant)> {
     let mut left = Vec::new();
     while !cycles.has_ended() {

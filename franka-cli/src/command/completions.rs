@@ -30,8 +30,8 @@ impl Completions {
     }
 }
 
-/// Returns the lines for fish that `clap_complete` leaves out: values of positional arguments, and
-/// no file names unless they are accepted.
+/// Returns the lines for fish that `clap_complete` omits: the values of positional arguments, and
+/// no file names where arguments are not files.
 fn positionals(program: &Command) -> Result<String, std::fmt::Error> {
     let mut lines = String::new();
     for command in program.get_subcommands() {

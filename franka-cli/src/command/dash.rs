@@ -71,7 +71,8 @@ impl Access {
         .map_err(no_token)
     }
 
-    /// Returns the fragment of the printed addresses. The user's own token is not shown again.
+    /// Returns the fragment of the printed addresses. It does not repeat a token that the user
+    /// provided.
     fn fragment(&self, token: Option<&Token>) -> String {
         match token {
             Some(token) if self.new_token => format!("#{}", token.reveal()),
@@ -194,7 +195,7 @@ impl Dash {
     }
 }
 
-/// Listens for pages.
+/// Listens for connections of browsers.
 pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<TcpListener, Failure> {
     let bound = franka_dash::bind(address, options).await;
     bound.map_err(|error| match &error {
@@ -203,7 +204,7 @@ pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<Tcp
     })
 }
 
-/// Returns the failure of an invalid token.
+/// Returns the failure for an invalid token.
 pub(super) fn no_token(error: TokenError) -> Failure {
     let text = format!("{:#}", anyhow::Error::new(error));
     Failure::usage(text).advice(ADVICE)

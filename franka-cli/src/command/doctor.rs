@@ -141,7 +141,7 @@ impl Doctor {
         })
     }
 
-    /// Returns the duration of the count of states, and of the dry run.
+    /// Returns the duration for which states are counted, and of the dry run.
     fn length(&self) -> Duration {
         Duration::from_secs(match (self.quick, self.long) {
             (true, _) => 1,
@@ -150,8 +150,8 @@ impl Doctor {
         })
     }
 
-    /// Runs the checks of this computer, including the card on the route to `robot`, to which echo
-    /// requests are sent if `ping`.
+    /// Runs the checks of this computer, including the network card on the route to `robot`. If
+    /// `ping` is true, this sends echo requests to the robot.
     async fn host(
         &self,
         robot: Option<IpAddr>,
@@ -213,8 +213,8 @@ impl Doctor {
         }
     }
 
-    /// Returns the findings on the robot's address and its states, and true if another client is
-    /// connected.
+    /// Returns the findings about the robot's address and its states. The flag is true if another
+    /// client is connected.
     async fn robot(
         &self,
         place: &Place,
@@ -267,8 +267,8 @@ impl Doctor {
         Ok((found, taken))
     }
 
-    /// Returns the finding about Desk, at the given address, or at the robot's address with the
-    /// usual port.
+    /// Returns the finding about Desk, at the given address, or otherwise at the robot's address
+    /// with the usual port.
     #[cfg(feature = "desk")]
     async fn desk(&self, robot: SocketAddr) -> anyhow::Result<Option<Finding>> {
         let desk = match &self.desk {
@@ -281,8 +281,8 @@ impl Doctor {
     }
 }
 
-/// Returns a simulated robot that keeps its millisecond as precisely as this computer can, and ends
-/// a motion if too many commands are late. It records when it has `sent` each state.
+/// Returns a simulated robot that sends its states as punctually as this computer can, and that
+/// ends a motion if too many commands are late. It records in `sent` when it has sent each state.
 fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     // Runs on the thread of the robot. If it is refused, the thread keeps its scheduling.
     let mut scheduling = Some(Scheduling {
@@ -300,7 +300,7 @@ fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     })
 }
 
-/// Returns the states that arrive during this time.
+/// Returns the states that arrive within this time.
 async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Received>> {
     let begin = Instant::now();
     let mut reader = robot.cycles(CycleFeed::<()>::DEFAULT_CAPACITY)?;
@@ -318,7 +318,7 @@ async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Receive
     Ok(tokio::task::spawn_blocking(read).await?)
 }
 
-/// The checks that contact the robot, or Desk.
+/// Ids of the checks that contact the robot or Desk.
 const ROBOT_CHECKS: [&str; 13] = [
     "net.firewall",
     "robot.busy",

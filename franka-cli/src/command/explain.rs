@@ -70,7 +70,7 @@ pub(crate) enum Source {
 }
 
 impl Recorded {
-    /// Opens the file; its content determines the kind.
+    /// Opens the file. The content of the file determines its kind.
     pub(super) fn open_any(&self) -> anyhow::Result<Source> {
         match Recording::open(&self.file) {
             Ok(recording) => {
@@ -82,7 +82,7 @@ impl Recorded {
         }
     }
 
-    /// Opens the recording; returns it with the name and the model of the robot.
+    /// Opens the recording. Returns the recording, and the name and the model of the robot.
     pub(super) fn open(&self) -> anyhow::Result<(Recording, String, &'static Model)> {
         let recording = Recording::open(&self.file);
         self.of_recording(recording.map_err(|error| self.unreadable(&error))?)

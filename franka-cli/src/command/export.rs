@@ -122,8 +122,7 @@ impl Export {
         })
     }
 
-    /// Writes the requested tables with the chosen ones of these columns; returns the number of
-    /// rows.
+    /// Writes the requested tables with the selected columns. Returns the number of rows.
     fn write_tables<E, I>(
         &self,
         cycles: impl Fn() -> I,
@@ -158,7 +157,7 @@ impl Export {
         Ok(rows)
     }
 
-    /// Adds the chosen episodes to a dataset, and returns the numbers of episodes and frames.
+    /// Adds the selected episodes to a dataset. Returns the numbers of episodes and frames.
     #[cfg(feature = "export")]
     fn add_to_dataset(
         &self,
@@ -212,7 +211,7 @@ impl Export {
     }
 }
 
-/// Ends an export at Ctrl-C. Incomplete output is then deleted, as after any other error.
+/// Ends an export on Ctrl-C. Incomplete output is then deleted, as after any other error.
 struct Stop(Arc<OnceLock<Interruption>>);
 
 impl Stop {
@@ -230,7 +229,7 @@ impl Stop {
         self.0.get().copied()
     }
 
-    /// Returns the items, with an error once the export must end.
+    /// Returns the items. Once the export must end, the next item is an error.
     fn until_asked<T, E: Error + Send + Sync + 'static>(
         &self,
         items: impl Iterator<Item = Result<T, E>>,
@@ -242,7 +241,7 @@ impl Stop {
     }
 }
 
-/// Converts an error of an exported file to the program's failure.
+/// Converts an error about an exported file to the program's failure.
 pub(super) fn of_file(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } | ExportError::Io { .. } => {

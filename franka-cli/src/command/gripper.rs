@@ -166,7 +166,7 @@ impl Fingers {
         )
     }
 
-    /// Asks, moves the fingers, and reports the result. Ctrl-C stops them.
+    /// Asks, moves the fingers, and reports the result. Ctrl-C stops the fingers.
     async fn act(
         &self,
         hand: &Hand,
@@ -192,7 +192,7 @@ impl Fingers {
     }
 }
 
-/// Stops the fingers; returns the program's failure.
+/// Stops the fingers, and returns the program's failure.
 async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     say(&format!("{by}: stopping the fingers"));
     let why = match timeout(PATIENCE, hand.stop()).await {
@@ -210,8 +210,8 @@ async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     )
 }
 
-/// Moves the fingers; returns false if they did not arrive, for example because of an obstacle: the
-/// Hand itself would try for minutes.
+/// Moves the fingers. Returns false if they did not arrive, for example because of an obstacle. The
+/// Hand itself would continue to try for minutes.
 async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError> {
     let stuck = async {
         let mut before = hand.state();
@@ -258,5 +258,5 @@ const STUCK_MS: u32 = 1000;
 /// Interval between two checks of the fingers.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Distance of fingers at rest, `[m]`.
+/// Largest change of the width of fingers at rest, `[m]`.
 const STILL: f64 = 1e-4;

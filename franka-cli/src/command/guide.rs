@@ -30,7 +30,7 @@ pub(crate) struct Guide {
     seconds: Option<Duration>,
 }
 
-/// The free directions.
+/// The directions in which the arm is free.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
     /// Position, orientation and elbow
@@ -141,10 +141,10 @@ impl Guide {
     }
 }
 
-/// Reasons why guiding failed.
+/// Reason why guiding failed.
 enum Guiding {
     Failed(MotionError),
-    /// The arm was still moved by hand, and did not stop.
+    /// The arm did not come to rest at the end, because a person still moved it.
     NotAtRest(Option<Interruption>),
     Host(std::io::Error),
 }

@@ -34,7 +34,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// Returns the model of its constants.
+    /// Returns the model with the constants of this kind.
     pub(crate) fn model(self) -> &'static Model {
         Model::of(match self {
             Self::Fr3 => RobotKind::Fr3,

@@ -54,7 +54,7 @@ pub(crate) enum Model {
     },
 }
 
-/// The arm, and its joint positions.
+/// An arm and its joint positions.
 #[derive(Debug, Args)]
 pub(crate) struct Arm {
     #[command(flatten)]
@@ -93,7 +93,7 @@ fn frame() -> impl TypedValueParser<Value = Frame> {
     })
 }
 
-/// The inputs of the computation.
+/// Inputs of the computation.
 struct Known {
     model: ArmModel,
     q: JointVector,
@@ -190,7 +190,8 @@ fn print_pose(pose: &Pose, output: Output) -> anyhow::Result<Ending> {
     })
 }
 
-/// Prints a matrix with a column for each joint; its rows have `names`, and units by their index.
+/// Prints a matrix with a column for each joint. `names` are the names of the rows, whose index
+/// determines the unit.
 fn print_rows<'a, S: Storage<f64, U1, U7> + 'a>(
     what: &str,
     names: &[&str],

@@ -46,7 +46,7 @@ impl Recover {
         })
     }
 
-    /// Returns the state before the recovery.
+    /// Recovers the robot, and returns the state before the recovery.
     async fn recover(&self, robot: &Robot, place: &Place) -> anyhow::Result<RobotState> {
         let state = robot.state();
         if state.robot_mode != RobotMode::Reflex {
@@ -79,8 +79,8 @@ impl Recover {
     }
 }
 
-/// Explains why the robot stopped, from its errors only, because another program received the
-/// cycles before.
+/// Explains why the robot stopped. The explanation uses only the robot's errors, because another
+/// program received the cycles before the stop.
 fn diagnosis(state: &RobotState, robot: &Robot) -> String {
     let case = Case {
         commander: Commander::Goals,

@@ -106,7 +106,7 @@ impl Screen {
         })
     }
 
-    /// Replaces the shown page, without a blank screen in between.
+    /// Replaces the displayed page, without a blank screen in between.
     fn draw(&self, page: &str) -> io::Result<()> {
         // Another line would scroll.
         let (rows, _) = Term::stdout().size();
@@ -134,7 +134,7 @@ impl Drop for Screen {
     }
 }
 
-/// Duration of the count of states before they are shown once.
+/// Time for which states are counted before the state is shown once.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// Silence after which the link counts as lost.

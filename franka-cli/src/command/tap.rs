@@ -29,7 +29,7 @@ pub(crate) struct Tap {
     output: Output,
 }
 
-/// The addresses for clients.
+/// Addresses at which clients connect to the tap.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Listening {
     /// Address for clients
@@ -42,7 +42,7 @@ pub(crate) struct Listening {
 }
 
 impl Listening {
-    /// Returns the address for clients of a device.
+    /// Returns the address at which clients of a device connect.
     pub(super) fn at(self, device: Device) -> SocketAddr {
         let port = match self.port {
             0 => 0,
@@ -105,7 +105,7 @@ impl Tap {
     }
 }
 
-/// Converts an error of a cassette to the program's failure.
+/// Converts an error about a cassette to the program's failure.
 pub(super) fn failed(file: &Path, error: &CassetteError) -> Failure {
     Failure::new(Ending::Host, format!("{}: {error}", file.display()))
 }

@@ -131,7 +131,7 @@ impl Communication {
     }
 }
 
-/// Commands zero torques for a while.
+/// Commands zero torques for this time.
 async fn nothing(moving: &Moving, seconds: Duration) -> Result<MotionReport, MotionError> {
     let mut time = Duration::ZERO;
     let control = moving.robot.control_torques(move |_, step| {
@@ -170,7 +170,7 @@ pub(super) fn times(quantiles: &Value) -> String {
     format!("p50 {p50:>6}  p99 {p99:>6}  p99.9 {p999:>6}  max {max:>6}  us")
 }
 
-/// Returns the figures of one robot as text.
+/// Returns the results of one robot as text.
 pub(super) fn table(figures: &Value) -> String {
     let rate = |of: &str| figures["success_rate"][of].as_f64().unwrap_or(0.0);
     format!(
@@ -189,6 +189,6 @@ pub(super) fn table(figures: &Value) -> String {
     )
 }
 
-/// Mean success rates that count as good and as usable.
+/// Least mean success rate that counts as good; the next constant is for usable.
 const GOOD_RATE: f64 = 0.95;
 const USABLE_RATE: f64 = 0.9;

@@ -84,7 +84,7 @@ impl Trial {
         output.print(&report, || report.summary())
     }
 
-    /// Sets the name of the recording, if no other name was given. Returns the name without its
+    /// Sets the name of the recording, if the user gave no name. Returns the name without its
     /// folder.
     fn recording(&mut self) -> anyhow::Result<String> {
         let beside = self.report.with_extension("mcap");
@@ -106,7 +106,7 @@ impl Trial {
     }
 }
 
-/// Returns the texts that a report must not contain.
+/// Returns the texts that a report must not contain, for example addresses.
 fn secrets(moving: &Moving) -> Vec<String> {
     let address = moving.robot.address();
     vec![

@@ -112,7 +112,7 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
     }
 }
 
-/// Returns a line with a mark at a share of its length.
+/// Returns a bar with a mark at a share of its length.
 fn bar(share: f64, style: Style) -> String {
     let at = (share * (BAR - 1) as f64).round() as usize;
     let (before, after) = ("─".repeat(at), "─".repeat(BAR - 1 - at));
@@ -162,7 +162,7 @@ fn link(text: &mut String, state: &RobotState, stats: &Stats) {
     let _ = writeln!(text);
 }
 
-/// Columns of a bar between its ends.
+/// Number of columns of a bar between its ends.
 const BAR: usize = 24;
 
 #[cfg(test)]

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! Requests and the time are inputs ([`Authority::handle`], [`Authority::tick`]); effects and
-//! refusals are outputs. Time is any monotonic count; a time that decreases counts as unchanged.
-//! The lease belongs to the robot, so other services may hold it too. A hold that has ended stays
+//! refusals are outputs. Time may count from any moment; a time that decreases counts as unchanged.
+//! The lease (the exclusive right to move the arm) belongs to the robot, so other services may also
+//! have it. In a hold, the arm moves while a viewer holds a button. A hold that has ended stays
 //! ended: only another `Begin` moves the arm.
 
 mod refusal;
@@ -29,42 +30,42 @@ use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 /// Number of a viewer.
 pub(crate) type ViewerId = u64;
 
-/// The requests that viewers may make to this server.
+/// Kinds of requests that viewers may make to this server.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Permissions {
-    /// Motions and recoveries.
+    /// True if viewers may move and recover the robot.
     pub(crate) motion: bool,
-    /// Disturbances of a simulated robot.
+    /// True if viewers may disturb a simulated robot.
     pub(crate) disturbances: bool,
-    /// Motions of the fingers, if motions are allowed at all.
+    /// True if viewers may move the fingers, provided that motions are allowed.
     pub(crate) gripper: bool,
-    /// Recordings.
+    /// True if viewers may record.
     pub(crate) recording: bool,
-    /// Extra time for late messages: zero except for a simulated robot.
+    /// Additional time for late messages. It is zero except for a simulated robot.
     pub(crate) patience: Duration,
 }
 
-/// The current commander and its hold.
+/// The current commander (the viewer that may move the arm) and its hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
-    /// Number of the viewer that has the lease; `None` for a holder that is not a viewer.
+    /// Number of the viewer that has the lease; `None` if the holder of the lease is not a viewer.
     pub(crate) commander: Option<u64>,
     /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
     /// True if a hold is active.
     pub(crate) holding: bool,
-    /// True if the commander's last hold ended because of silence.
+    /// True if the commander's last hold ended because no message came in time.
     pub(crate) expired: bool,
 }
 
 impl Permissions {
-    /// True if the server accepts any commands.
+    /// True if the server accepts any command.
     pub(crate) fn any(&self) -> bool {
         self.motion || self.disturbances || self.recording
     }
 }
 
-/// An action of the server.
+/// An action for the server to perform.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
     /// Begin the motion of this hold.
@@ -79,14 +80,14 @@ pub(crate) enum Effect {
         motion: Motion,
         speed: f64,
     },
-    /// Feed the deadman of the hold.
+    /// Keep the deadman of the hold alive.
     KeepAlive,
     /// Brake any motion, including motions of other programs.
     Stop,
     Recover,
-    /// Set the tuning of the arm, in this hold and later ones.
+    /// Set the stiffness of the arm, for this hold and later holds.
     Tune(Tuning),
-    /// Take a tare of the wrench, or clear it.
+    /// Take a tare (the zero) of the wrench, or clear it.
     Tare(bool),
     /// Continue at this speed, `[m/s]`.
     Speed(f64),
@@ -96,7 +97,7 @@ pub(crate) enum Effect {
     Disturb(Disturbance),
 }
 
-/// The reason why a hold ended.
+/// Reason why a hold ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Lost {
     #[error("released")]
@@ -115,10 +116,10 @@ pub(crate) enum Lost {
     Stopped,
 }
 
-/// The result of a request.
+/// Result of a request.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Step {
-    /// The hold has ended: brake first.
+    /// Set if the hold has ended. The server must then brake first.
     pub(crate) ended: Option<Lost>,
     pub(crate) effect: Option<Effect>,
     pub(crate) refusal: Option<Refusal>,
@@ -129,14 +130,14 @@ pub(crate) struct Step {
 pub(crate) struct Authority {
     permissions: Permissions,
     lease: Lease,
-    /// Time zero of `now`.
+    /// Moment at which the time `now` is zero.
     start: Instant,
     now: Duration,
     commander: Option<Commander>,
     holds: u64,
 }
 
-/// The viewer that has the lease.
+/// The viewer that has the lease, and its hold.
 #[derive(Debug)]
 struct Commander {
     viewer: ViewerId,
@@ -153,7 +154,7 @@ struct Hold {
 }
 
 impl Authority {
-    /// Creates an authority whose commander holds `lease`. Time counts from `start`.
+    /// Creates an authority that uses the robot's `lease`. Time counts from `start`.
     pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,
@@ -179,8 +180,8 @@ impl Authority {
         self.start + self.now
     }
 
-    /// Processes a request of a viewer. `round_trip` is the newest round trip measured with it,
-    /// `None` if there is no recent one.
+    /// Processes a request of a viewer. `round_trip` is the newest round trip measured with this
+    /// viewer; `None` without a recent measurement.
     pub(crate) fn handle(
         &mut self,
         now: Duration,
@@ -235,7 +236,8 @@ impl Authority {
         }
     }
 
-    /// Removes the command from a viewer that has lost the lease.
+    /// Removes the command from a viewer that has lost the lease. Returns the reason if a hold
+    /// ended.
     fn lose(&mut self) -> Option<Lost> {
         let commander = self.commander.take()?;
         commander.hold.map(|_| Lost::Silent)
@@ -271,7 +273,7 @@ impl Authority {
         Ok(Step::default())
     }
 
-    /// Returns the commander, if it is this viewer.
+    /// Returns the commander if `viewer` is the commander.
     fn commander_mut(&mut self, viewer: ViewerId) -> Option<&mut Commander> {
         self.commander.as_mut().filter(|it| it.viewer == viewer)
     }
@@ -385,7 +387,7 @@ fn effect(effect: Effect) -> Step {
     }
 }
 
-/// Returns the end of a hold, if there was one.
+/// Returns the step that reports the end of a hold, if a hold was active.
 fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     Step {
         ended: hold.map(|_| lost),
@@ -393,10 +395,11 @@ fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     }
 }
 
-/// Silence after which a hold ends. The page sends every 50 ms, so two messages may be late.
+/// Silence after which a hold ends. The page sends a message every 50 ms, so two messages may be
+/// late.
 pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
 
-/// Silence after which a lease is free.
+/// Silence after which another viewer may take the lease.
 pub(crate) const LEASE: Duration = Duration::from_secs(5);
 
 /// Longest round trip with which a motion may begin.

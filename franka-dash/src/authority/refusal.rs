@@ -6,7 +6,7 @@ use franka_async::connection::lease::Taken;
 
 use super::ROUND_TRIP_MAX;
 
-/// The reason why a request has no effect. The text contains the received and the expected value.
+/// Reason why a request has no effect. The text contains the received and the expected value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refusal {
     #[error("this server is view-only: it was started without permission to move the arm")]

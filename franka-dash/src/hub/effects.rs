@@ -1,4 +1,4 @@
-//! Performs the effects of allowed requests.
+//! Performs the effects of requests that the authority has allowed.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -15,7 +15,8 @@ use crate::request::{Disturbance, GripperAction, Motion};
 use crate::source::Source;
 
 impl Hub {
-    /// Performs an effect, or returns the question that the viewer's socket answers.
+    /// Performs an effect. If the effect is a question, returns it for the viewer's socket to
+    /// answer.
     pub(super) fn perform(
         self: &Arc<Self>,
         command: &mut Command,
@@ -126,8 +127,8 @@ impl Hub {
         });
     }
 
-    /// Brakes any motion, and ends the action of the fingers. Another program's simulated robot is
-    /// stopped by its user stop.
+    /// Brakes any motion, and ends the action of the fingers. If another program controls the
+    /// simulated robot, this presses the robot's user stop.
     fn stop(self: &Arc<Self>) {
         if let Some(fingers) = &self.fingers {
             fingers.end();

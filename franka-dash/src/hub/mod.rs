@@ -1,4 +1,4 @@
-//! The shared state of all viewers: the robot, its commander, and the events.
+//! The state that all viewers share: the robot, its commander, and the events.
 
 mod effects;
 mod taring;
@@ -24,23 +24,23 @@ use crate::simulated::Simulated;
 use crate::source::Source;
 use taring::Tared;
 
-/// The shared state of all viewers.
+/// The state that all viewers share.
 pub(crate) struct Hub {
     pub(crate) source: Source,
     pub(crate) permissions: Permissions,
     pub(crate) news: broadcast::Sender<News>,
     pub(crate) status: watch::Sender<Status>,
-    /// The number of the active hold, and its motion if it is planned.
+    /// The number of the active hold, and the plan of its motion if it has one.
     pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
-    /// The current contact on the arm.
+    /// The current contact on the arm, if any.
     pub(crate) contact: watch::Sender<Option<Contact>>,
-    /// The tare of the wrench.
+    /// The tare (the zero) of the wrench.
     pub(crate) tare: watch::Sender<Tared>,
     /// Regions that the arm must avoid.
     pub(crate) keep_out: Vec<Obstacle>,
     /// The names of all robots of the server, if it has several.
     pub(crate) siblings: Arc<[String]>,
-    /// One permit per viewer.
+    /// Permits for viewers, one for each.
     pub(crate) seats: Arc<Semaphore>,
     pub(crate) simulated: Option<Simulated>,
     pub(crate) fingers: Option<Fingers>,
@@ -49,7 +49,7 @@ pub(crate) struct Hub {
     stopping: AtomicBool,
     viewers: AtomicU64,
     start: Instant,
-    /// Time of the start, `[ms]` since 1970.
+    /// Time at which the server started, `[ms]` since 1970.
     pub(crate) began_ms: u64,
 }
 
@@ -60,7 +60,7 @@ struct Command {
 }
 
 impl Hub {
-    /// Starts the tasks, which end with the last handle. Needs a Tokio runtime.
+    /// Starts the background tasks. They end with the last handle. This needs a Tokio runtime.
     pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
         let Options {
             admission: _,
@@ -128,7 +128,7 @@ impl Hub {
         u64::try_from(self.now().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// Returns an unused viewer number.
+    /// Returns a viewer number that is not in use.
     pub(crate) fn next_viewer(&self) -> ViewerId {
         self.viewers.fetch_add(1, Ordering::Relaxed) + 1
     }
@@ -164,7 +164,7 @@ impl Hub {
         refusal.map_or(Ok(question), Err)
     }
 
-    /// Processes the disconnection of a viewer: its hold ends.
+    /// Processes the disconnection of a viewer. The viewer's hold ends.
     pub(crate) fn gone(&self, viewer: ViewerId) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
         let ended = command.authority.gone(viewer);
@@ -199,7 +199,8 @@ impl Hub {
         }
     }
 
-    /// Publishes changes to all viewers. A commander's settings end with its lease.
+    /// Publishes changes to all viewers. The settings of a commander end with the commander's
+    /// lease.
     fn publish(&self, command: &Command) {
         let authority = command.authority.status();
         if authority.commander != self.status.borrow().authority.commander {
@@ -222,7 +223,7 @@ impl Hub {
     }
 }
 
-/// Number of events that a viewer may lag behind before it misses some.
+/// Number of events by which a viewer may lag behind before it misses some.
 const NEWS: usize = 64;
 
 /// Largest number of simultaneous viewers.

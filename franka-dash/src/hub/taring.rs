@@ -1,4 +1,4 @@
-//! The tare of the displayed wrench.
+//! The tare (the zero) of the displayed wrench.
 
 use std::sync::Arc;
 
@@ -8,16 +8,16 @@ use franka_async::supervision::EventKind;
 use super::Hub;
 use crate::reply::Level;
 
-/// The tare of the wrench, and the number of its request.
+/// The tare of the wrench, and the number of the request for it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tared {
-    /// Number of requests to take or clear it.
+    /// Number of requests to take or to clear the tare so far.
     number: u64,
     pub(crate) tare: Option<WrenchTare>,
 }
 
 impl Hub {
-    /// Takes a tare of the wrench, or clears it. The newest request counts.
+    /// Takes a tare of the wrench, or clears it. Only the newest request has an effect.
     pub(super) fn tare(self: &Arc<Self>, on: bool) {
         let Some(robot) = self.source.robot() else {
             return;
@@ -49,8 +49,8 @@ impl Hub {
         });
     }
 
-    /// Clears the tare, and cancels a running one, if this event changed the robot's computation of
-    /// the wrench.
+    /// Clears the tare, and cancels a tare in progress, if this event changed how the robot
+    /// computes the wrench.
     pub(super) fn check_tare(&self, event: &EventKind) {
         let why = match event {
             EventKind::LoadChanged { .. } => "the load has changed",

@@ -1,5 +1,5 @@
-//! Background tasks of the server, independent of viewers. They end with the last handle of the
-//! hub.
+//! Background tasks of the server that do not depend on viewers. They end with the last handle of
+//! the hub.
 
 use std::sync::{Arc, Weak};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use crate::news;
 use crate::simulated::Simulated;
 use crate::source::Source;
 
-/// Spawns the tasks.
+/// Starts the tasks.
 pub(super) fn begin(hub: &Arc<Hub>) {
     tokio::spawn(watch_silence(Arc::downgrade(hub)));
     tokio::spawn(watch_contacts(Arc::downgrade(hub)));
@@ -35,7 +35,7 @@ pub(super) fn begin(hub: &Arc<Hub>) {
     }
 }
 
-/// Ends silent holds and leases.
+/// Ends holds and leases whose viewers are silent for too long.
 async fn watch_silence(hub: Weak<Hub>) {
     let mut clock = interval(Duration::from_millis(10));
     clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
@@ -46,7 +46,7 @@ async fn watch_silence(hub: Weak<Hub>) {
     }
 }
 
-/// Estimates contacts while there are viewers.
+/// Estimates contacts while viewers are connected.
 async fn watch_contacts(hub: Weak<Hub>) {
     let mut clock = interval(contact::EVERY);
     clock.set_missed_tick_behavior(MissedTickBehavior::Skip);

@@ -8,9 +8,8 @@ use super::within;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Disturbance {
-    /// Pushes link 1 to 7 at an offset from its frame, in the axes of the link, `[m]`, with a force
-    /// in base axes, `[N]`, for
-    /// [`PUSH_MS`] or until the next push.
+    /// Pushes link 1 to 7 for [`PUSH_MS`], or until the next push. The point is an offset from the
+    /// link's frame, in the axes of the link, `[m]`. The force is in base axes, `[N]`.
     Push {
         link: usize,
         offset: [f64; 3],
@@ -22,26 +21,26 @@ pub(crate) enum Disturbance {
     Guide { pressed: bool },
     /// Closes or opens the brakes.
     Brakes { closed: bool },
-    /// Causes a reflex, as by a collision.
+    /// Causes a reflex, as a collision would.
     Reflex {},
-    /// Sets the conditions of the network, both ways.
+    /// Sets the conditions of the network in both directions.
     Network { conditions: Conditions },
     /// Loses every state and command for this duration, `[ms]`.
     Cut { milliseconds: u32 },
-    /// Puts an object of this width between the fingers, `[m]`, replacing any other; removes it for
-    /// `null`.
+    /// Puts an object of this width between the fingers, `[m]`, in place of any other object.
+    /// `null` removes the object.
     Object { width: Option<f64> },
-    /// Attaches this mass to the flange, `[kg]`, 5 cm from it, replacing any other, without
-    /// declaring it.
+    /// Attaches this mass to the flange, `[kg]`, 5 cm from it, in place of any other load. The
+    /// robot is not told about it.
     Load { mass: f64 },
-    /// Replaces the arm with another one, at rest in the current position.
+    /// Replaces the arm with another arm, at rest in the current position.
     Arm { arm: ArmKind },
-    /// Sets the speed of robot time relative to the wall clock; 0 pauses, `null` is as fast as
-    /// possible. In virtual time only.
+    /// Sets the speed of robot time relative to the wall clock. 0 pauses, `null` is as fast as
+    /// possible. This is possible only in virtual time.
     Speed { speed: Option<f64> },
 }
 
-/// Families of simulated arms, by their deviation from the model.
+/// Families of simulated arms, by how much they deviate from the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ArmKind {
@@ -55,15 +54,15 @@ pub(crate) enum ArmKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Conditions {
-    /// Share of lost datagrams.
+    /// Share of datagrams that are lost.
     pub(crate) loss: f64,
-    /// Mean number of consecutive lost datagrams.
+    /// Mean number of consecutive datagrams that are lost.
     pub(crate) burst: f64,
     /// Delay of each direction, `[ms]`.
     pub(crate) delay_ms: f64,
     /// Largest additional delay, `[ms]`.
     pub(crate) jitter_ms: f64,
-    /// Rate at which the robot's interface pauses, `[1/s]`.
+    /// Number of pauses of the robot's network interface per second, `[1/s]`.
     pub(crate) stalls_per_second: f64,
     /// Duration of a pause, `[ms]`.
     pub(crate) stall_ms: f64,
@@ -82,7 +81,7 @@ impl Conditions {
 }
 
 impl Disturbance {
-    /// Checks that its numbers are in range; otherwise returns the valid range.
+    /// Checks that all numbers are in range. Otherwise returns the valid range.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Push {
@@ -115,7 +114,8 @@ impl Disturbance {
     }
 }
 
-/// Duration of one push, `[ms]`; the page renews it every 50 ms while the pointer drags.
+/// Duration of one push, `[ms]`. The page renews the push every 50 ms while the user drags the
+/// pointer.
 pub(crate) const PUSH_MS: u64 = 200;
 
 const OFFSET_MAX: f64 = 1.0;

@@ -12,8 +12,8 @@ pub(crate) enum GripperAction {
     Home {},
     /// Move to a width, `[m]`, at a speed, `[m/s]`.
     Move { width: f64, speed: f64 },
-    /// Close on an object of a width, `[m]`, up to `tolerance` wider or narrower, at a speed,
-    /// `[m/s]`, and hold it with a force, `[N]`.
+    /// Close at a speed, `[m/s]`, on an object of a width, `[m]`, and hold it with a force, `[N]`.
+    /// The object may be wider or narrower by `tolerance`.
     Grasp {
         width: f64,
         tolerance: f64,

@@ -1,4 +1,4 @@
-//! Requests of viewers, as JSON: plain data, with range checks.
+//! Requests of viewers, as JSON. They are plain data, with checks of the ranges.
 
 mod disturbance;
 mod gripper;
@@ -19,15 +19,16 @@ pub(crate) use tuning::Tuning;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// Acknowledges the state frame with this server time, `[ms]`: the next one may be sent.
+    /// Acknowledges the state frame with this server time, `[ms]`. The server may then send the
+    /// next frame.
     Seen { server_ms: u64 },
-    /// Requests the lease, with a name that the others see.
+    /// Requests the lease, under a name that the other viewers see.
     Take { name: String },
     /// Keeps the lease.
     Alive {},
     /// Releases the lease.
     Release {},
-    /// Begins a hold: the arm moves while `Hold` follows.
+    /// Begins a hold: the arm moves as long as `Hold` messages follow.
     Begin {
         motion: Motion,
         /// Largest speed of any point of the arm, `[m/s]`.
@@ -35,23 +36,23 @@ pub(crate) enum Request {
     },
     /// Requests the preview of a motion with a target. The arm does not move.
     Preview {
-        /// Number of the question, repeated in the answer.
+        /// Number of the question. The answer repeats it.
         number: u32,
         motion: Motion,
-        /// The speed, as for `Begin`.
+        /// Largest speed, as for `Begin`.
         speed: f64,
     },
-    /// Continues the hold; counts from 1 without a gap.
+    /// Continues the hold. `seq` counts from 1 without a gap.
     Hold { seq: u32 },
-    /// The pointer or key was released.
+    /// Ends the hold, because the pointer or key was released.
     End {},
-    /// Brakes any motion. Allowed for every viewer.
+    /// Brakes any motion. Every viewer may send this.
     Stop {},
-    /// Recovers the robot from a reflex; does not move it.
+    /// Recovers the robot from a reflex. The robot does not move.
     Recover {},
-    /// Sets the stiffness of the arm, in the active hold and in later ones.
+    /// Sets the stiffness of the arm, for the active hold and later holds.
     Tune { tuning: Tuning },
-    /// Takes or clears a tare of the displayed wrench at rest; does not move the robot.
+    /// Takes or clears a tare (the zero) of the displayed wrench at rest. The robot does not move.
     Tare { on: bool },
     /// Sets the largest speed of any point of the arm in the active hold, `[m/s]`.
     Speed { speed: f64 },
@@ -64,7 +65,7 @@ pub(crate) enum Request {
 }
 
 impl Request {
-    /// Checks that its numbers are in range; otherwise returns the received value and the valid
+    /// Checks that all numbers are in range. Otherwise returns the received value and the valid
     /// range.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
@@ -98,8 +99,8 @@ fn check_speed(speed: f64) -> Result<(), String> {
     within("the speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
 }
 
-/// Checks that `got` is in a range; otherwise returns an error text. `what` is the name of the
-/// number, and `unit` follows it: empty, or with a space before it.
+/// Checks that `got` is in a range. Otherwise returns an error text. `what` is the name of the
+/// number. `unit` follows the number; it is empty or begins with a space.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::within;
 
-/// The axes of a direction.
+/// The axes in which a direction is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Axes {
@@ -16,29 +16,29 @@ pub(crate) enum Axes {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Motion {
-    /// The end effector along a direction.
+    /// Moves the end effector along a direction.
     Translate { direction: [f64; 3], axes: Axes },
-    /// The end effector about an axis through its origin.
+    /// Turns the end effector about an axis through its origin.
     Rotate { direction: [f64; 3], axes: Axes },
-    /// One joint, 1 to 7, up or down, to the end of its range.
+    /// Moves one joint, 1 to 7, up or down, to the end of its range.
     Joint { joint: usize, up: bool },
-    /// All joints to these positions, `[rad]`.
+    /// Moves all joints to these positions, `[rad]`.
     Joints { q: [f64; 7] },
-    /// All joints to the ready pose.
+    /// Moves all joints to the ready pose.
     Ready {},
-    /// No motion: the arm is held in place, with its current tuning.
+    /// Holds the arm in place, with its current stiffness.
     Stay {},
-    /// The end effector on a straight line to a pose in the base frame.
+    /// Moves the end effector on a straight line to a pose in the base frame.
     Pose {
         /// Position x y z, `[m]`.
         position: [f64; 3],
-        /// A quaternion, x y z w, of any non-zero length.
+        /// Orientation as a quaternion x y z w, of any non-zero length.
         orientation: [f64; 4],
     },
 }
 
 impl Motion {
-    /// Checks that the numbers form a motion; otherwise returns the error.
+    /// Checks that the numbers form a valid motion. Otherwise returns the error.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Translate { direction, .. } | Self::Rotate { direction, .. } => {
@@ -76,5 +76,5 @@ pub(crate) const SPEED_MAX: f64 = 0.25;
 /// Smallest speed, `[m/s]`.
 pub(crate) const SPEED_MIN: f64 = 0.001;
 
-/// Bound of coordinates, `[m]`: beyond the reach of any arm.
+/// Bound of coordinates, `[m]`. It is beyond the reach of any arm.
 const FAR: f64 = 2.0;

@@ -4,16 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use super::within;
 
-/// The stiffness of the arm while a button is held: factors on the driver's gains for the kind of
-/// motion, and the force limit.
+/// The stiffness of the arm while a button is held. It consists of factors on the driver's gains
+/// for the kind of motion, and of the force limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Tuning {
-    /// Factor on the springs at the end effector. Their damping grows with its square root.
+    /// Factor on the stiffness at the end effector. The damping grows with the square root of this
+    /// factor.
     pub(crate) end_effector: f64,
-    /// Factor on the springs at the joints, with the same rule for damping.
+    /// Factor on the stiffness at the joints. The damping grows with the square root of this
+    /// factor.
     pub(crate) joints: f64,
-    /// Factor on all damping.
+    /// Additional factor on all damping.
     pub(crate) damping: f64,
     /// Largest force of springs and dampers, `[N]`.
     pub(crate) force_cap: f64,
@@ -22,7 +24,7 @@ pub(crate) struct Tuning {
 }
 
 impl Default for Tuning {
-    /// Returns the driver's gains.
+    /// Returns the setting that leaves the driver's gains unchanged.
     fn default() -> Self {
         Self {
             end_effector: 1.0,
@@ -35,7 +37,7 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// Returns the named tunings of the page. Stiffer tunings were not observed to be stable on all
+    /// Returns the named stiffness settings of the page. Stiffer settings were not stable on all
     /// simulated arms: see the table in the book's chapter on arms that stick.
     pub(crate) fn presets() -> [(&'static str, Self); 4] {
         let default = Self::default();

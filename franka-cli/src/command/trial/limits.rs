@@ -3,10 +3,10 @@
 use franka_async::model::limits::JointLimits;
 use franka_async::model::{JointVector, RobotKind};
 
-/// A table of limits, and its name.
+/// A table of limits: its name and the limits.
 type Table = (&'static str, &'static JointLimits);
 
-/// Returns the tables for this kind of robot.
+/// Returns the known tables of limits for this kind of robot.
 fn tables(kind: RobotKind) -> Vec<Table> {
     match kind {
         RobotKind::Fr3 => vec![
@@ -17,7 +17,7 @@ fn tables(kind: RobotKind) -> Vec<Table> {
     }
 }
 
-/// Returns the closest table, and the largest difference from it, if any.
+/// Returns the closest table, and the largest difference from this table, if any.
 pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, Option<String>) {
     let compared = tables(kind).into_iter().map(|(name, table)| {
         let most = differences(served, table)
@@ -31,7 +31,7 @@ pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, O
     (name, most.map(|(_, text)| text))
 }
 
-/// Returns the difference of each limit, with a text.
+/// Returns the difference of each limit, with a text that describes it.
 fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item = (f64, String)> {
     let (of_served, of_table) = (columns(served), columns(table));
     of_served
@@ -49,7 +49,7 @@ fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item 
         })
 }
 
-/// Returns the limits that robot descriptions contain.
+/// Returns those limits that robot descriptions contain.
 pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, JointVector); 7] {
     let (deceleration, offset) = match &limits.envelope {
         Some(envelope) => (envelope.deceleration, envelope.offset),
@@ -66,7 +66,7 @@ pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, Joi
     ]
 }
 
-/// Largest difference that comes from the digits of a text.
+/// Largest difference that comes from the limited number of digits in a text.
 const SAME: f64 = 1e-4;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Observation of an arm for a while: its mean pose, zero fields of its states, and the match with
-//! the model.
+//! Observation of an arm for some time: its mean pose, fields of its states that are zero, and how
+//! well the states match the model.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 use franka_async::{Pose, Robot, pose};
 
-/// The mean of some states.
+/// Mean of some states.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mean {
     count: u32,
@@ -30,13 +30,13 @@ impl Mean {
         }
     }
 
-    /// Returns the pose reported by the robot, if it is a valid pose.
+    /// Returns the mean pose that the robot reported, if it is a valid pose.
     pub(super) fn pose(&self) -> Option<Pose> {
         let count = f64::from(self.count);
         pose::from_array(&self.pose.map(|sum| sum / count)).ok()
     }
 
-    /// Returns the joint positions, `[rad]`.
+    /// Returns the mean joint positions, `[rad]`.
     pub(super) fn q(&self) -> [f64; 7] {
         let count = f64::from(self.count);
         self.q.map(|sum| sum / count)
@@ -63,9 +63,10 @@ pub(super) struct Look {
     pub(super) begin: Mean,
     /// Mean over the last second.
     pub(super) end: Mean,
-    /// True for each of [`SPARSE`] that was zero in every state.
+    /// For each field of [`SPARSE`], true if it was zero in every state.
     pub(super) zero: [bool; SPARSE.len()],
-    /// Distances between reported poses and the poses of each of [`sets`], `[m]`.
+    /// For each state, the distances between the reported pose and the pose of each model of
+    /// [`sets`], `[m]`.
     gaps: Vec<[f64; SETS]>,
 }
 
@@ -82,7 +83,7 @@ impl Look {
         }
     }
 
-    /// Observes for this duration, by the robot's clock.
+    /// Observes the arm for this duration, measured by the robot's clock.
     pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
         let mut look = Self::new();
         let sets = sets(&described(robot));
@@ -99,7 +100,7 @@ impl Look {
         Ok(look)
     }
 
-    /// Processes a state; returns the time since the first one, `[ms]`.
+    /// Processes a state. Returns the time since the first state, `[ms]`.
     fn push(&mut self, state: &RobotState, sets: &[Model; SETS], duration: u64) -> u64 {
         let id = state.message_id;
         let (first, _) = self.ids.unwrap_or((id, id));
@@ -129,14 +130,14 @@ impl Look {
         since
     }
 
-    /// Number of missing states between the first and the last.
+    /// Number of missing states between the first and the last state.
     pub(super) fn missing(&self) -> u64 {
         let (first, last) = self.ids.unwrap_or_default();
         (last - first + 1).saturating_sub(self.states)
     }
 
-    /// Returns the median distance of reported poses for each of the lengths, `[m]`. The first
-    /// lengths are the model's.
+    /// Returns each set of lengths with the median distance between reported poses and the model's
+    /// poses, `[m]`. The first set is that of `model`.
     pub(super) fn geometry(&self, model: &Model) -> [(Lengths, f64); SETS] {
         let lengths = sets(model).map(|model| *model.lengths());
         std::array::from_fn(|i| {
@@ -174,7 +175,7 @@ fn gap(model: &Model, state: &RobotState) -> f64 {
 
 const SETS: usize = 1 + Lengths::KNOWN.len();
 
-/// Time after which a drift is measured, `[ms]`.
+/// Time after which the measurement of a drift begins, `[ms]`.
 const SETTLED: u64 = 2000;
 
 /// One second, `[ms]`.
@@ -187,7 +188,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns an observation of an arm with these lengths that creeps up, in metres per second.
+    /// Returns an observation of an arm with these lengths that drifts upwards, in metres per
+    /// second.
     fn look(lengths: Lengths, creep: f64) -> Look {
         let arm = Model::fr3().clone().with_lengths(lengths);
         let pose = arm.pose(Frame::EndEffector, &READY, &EndEffector::default());

@@ -11,7 +11,7 @@ use crate::connection::kind_name;
 use crate::ending::{Ending, Failure};
 use crate::output::{BAD, GOOD, WARN, say};
 
-/// The findings, in the order of the trial.
+/// Findings of a trial, in their order.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     driver: &'static str,
@@ -25,19 +25,19 @@ pub(super) struct Report {
     force_cap: f64,
     recording: String,
     complete: bool,
-    /// The reason why it is incomplete.
+    /// Reason why the report is incomplete, if it is.
     ended: Option<Ended>,
     pub(super) steps: Vec<Step>,
 }
 
-/// A step, with its findings.
+/// A step of the trial, with its findings.
 #[derive(Debug, Serialize)]
 pub(super) struct Step {
     name: &'static str,
     findings: Vec<Finding>,
 }
 
-/// A check, with its figures.
+/// A check of the trial, with its numbers.
 #[derive(Debug, Serialize)]
 pub(super) struct Finding {
     check: &'static str,
@@ -46,19 +46,19 @@ pub(super) struct Finding {
     figures: Value,
 }
 
-/// The comparison of a finding with its expected value.
+/// Result of the comparison of a finding with its expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Verdict {
     Good,
-    /// Noticeable, but not a reason to stop.
+    /// The finding is noticeable, but no reason to stop.
     Look,
-    /// Ends the trial.
+    /// The finding ends the trial.
     Bad,
 }
 
 impl Verdict {
-    /// Returns good up to the first of two limits, and noticeable up to the second.
+    /// Returns good up to the first limit, and noticeable up to the second limit.
     pub(super) fn of(value: f64, [good, bad]: [f64; 2]) -> Self {
         match value {
             value if value <= good => Self::Good,
@@ -77,7 +77,7 @@ impl Verdict {
     }
 }
 
-/// The early end of a trial.
+/// Early end of a trial.
 #[derive(Debug, Serialize)]
 struct Ended {
     step: &'static str,
@@ -148,7 +148,7 @@ impl Report {
         }
     }
 
-    /// Records the end, with the texts of `secrets` removed.
+    /// Records the end of the trial, and removes the texts of `secrets`.
     pub(super) fn end(&mut self, outcome: &anyhow::Result<()>, secrets: &[String]) {
         self.complete = outcome.is_ok();
         self.ended = outcome.as_ref().err().map(|error| {
@@ -162,7 +162,7 @@ impl Report {
         });
     }
 
-    /// Returns the result in one line.
+    /// Returns the result of the trial in one line.
     pub(super) fn summary(&self) -> String {
         let all = self.steps.iter().flat_map(|step| &step.findings);
         let count = |verdict| all.clone().filter(|it| it.verdict == verdict).count();
@@ -236,7 +236,7 @@ fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-/// Returns the text, with a placeholder for each of these.
+/// Returns the text, with placeholders for all `secrets`.
 fn without(text: &str, secrets: &[String]) -> String {
     let mut secrets: Vec<_> = secrets.iter().filter(|it| !it.is_empty()).collect();
     // One text may be a part of another.
@@ -246,7 +246,8 @@ fn without(text: &str, secrets: &[String]) -> String {
     })
 }
 
-/// Version of the figures in a report: increased when a figure is removed or changes its meaning.
+/// Version of the JSON data in a report. It increases when a value is removed or changes its
+/// meaning.
 const SCHEMA: u32 = 1;
 
 #[cfg(test)]

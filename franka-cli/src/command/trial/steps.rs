@@ -19,7 +19,7 @@ use super::{FORCE, PACE, limits};
 use crate::motion::Moving;
 use crate::output::say;
 
-/// Performs all steps. The report contains the findings, regardless of the end.
+/// Performs all steps. The report contains the findings, even if a step fails.
 pub(super) async fn all(moving: &Moving, report: &mut Report) -> anyhow::Result<()> {
     let mut steps = Steps { moving, report };
     let tare = steps.look().await?;
@@ -60,7 +60,7 @@ impl Steps<'_> {
         Ok(tare)
     }
 
-    /// Compares the reported pose with the pose of the joint positions.
+    /// Compares the reported pose with the model's pose at the reported joint positions.
     fn geometry(&mut self, look: &Look) -> anyhow::Result<()> {
         let sets = look.geometry(&described(&self.moving.robot));
         let [(own, gap), known @ ..] = sets;
@@ -144,7 +144,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Measures the robot's wrench for the untouched arm.
+    /// Measures the robot's estimated wrench while nothing touches the arm.
     async fn tare(&mut self) -> anyhow::Result<Option<WrenchTare>> {
         let tare = match self.moving.robot.tare().await {
             Ok(tare) => tare,
@@ -167,7 +167,7 @@ impl Steps<'_> {
         Ok(Some(tare))
     }
 
-    /// Checks that all following motions are possible from the current position.
+    /// Checks that all later motions are possible from the current position.
     fn room(&mut self) -> anyhow::Result<()> {
         let robot = &self.moving.robot;
         let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
@@ -197,7 +197,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Holds the arm.
+    /// Holds the arm in place.
     async fn hold(&mut self) -> anyhow::Result<()> {
         let seconds = HOLD.as_secs();
         let what = format!("The arm holds its position for {seconds} s.");
@@ -272,7 +272,7 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// Follows a stream of targets, which rise and sink.
+    /// Follows a stream of targets that rise and sink.
     async fn stream(&mut self) -> anyhow::Result<()> {
         let (height, fastest) = (2e3 * WAVE.height, 1e3 * WAVE.velocity(0.25 * WAVE.period));
         let what = format!(
@@ -336,7 +336,7 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// Measures the remaining wrench after the motions, with the first tare.
+    /// Measures the wrench that remains after the motions, relative to the first measurement.
     async fn after(&mut self, tare: Option<WrenchTare>) -> anyhow::Result<()> {
         self.name("after the motions");
         let (Some(first), Some(second)) = (tare, self.tare().await?) else {
@@ -371,13 +371,13 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Begins a step without motion.
+    /// Begins a step without a motion.
     fn name(&mut self, name: &'static str) {
         say(name);
         self.report.begin(name);
     }
 
-    /// Asks for permission for a step, and engages the arm.
+    /// Asks for permission for a step, and begins a session that holds the arm.
     async fn begin(&mut self, name: &'static str, what: &str) -> anyhow::Result<Arm> {
         self.report.begin(name);
         let what = format!("{what}\nforce {FORCE:.0} N at the hand at most");
@@ -390,7 +390,7 @@ impl Steps<'_> {
         }
     }
 
-    /// Releases the arm.
+    /// Ends the session and releases the arm.
     async fn end(&self, arm: Arm) -> anyhow::Result<MotionReport> {
         match arm.disengage().await {
             Ok(report) => Ok(report),
@@ -398,7 +398,7 @@ impl Steps<'_> {
         }
     }
 
-    /// Returns the mean over a moment.
+    /// Returns the mean of the states over a short time.
     async fn mean(&self) -> anyhow::Result<Mean> {
         let (mut first, mut mean) = (None, Mean::default());
         let read = self.moving.robot.read(|state| {
@@ -413,7 +413,7 @@ impl Steps<'_> {
         Ok(mean)
     }
 
-    /// Returns the target of joint 7, towards the middle of its range.
+    /// Returns joint positions with joint 7 turned towards the middle of its range.
     fn turned(&self, state: &RobotState) -> [f64; 7] {
         let limits = self.moving.robot.model().joint_limits();
         let middle = 0.5 * (limits.lower[6] + limits.upper[6]);
@@ -423,7 +423,7 @@ impl Steps<'_> {
     }
 }
 
-/// Targets that rise and sink again, with rest at both ends.
+/// A series of targets that rise and sink again, with rest at both ends.
 struct Wave {
     /// Half of the height, `[m]`.
     height: f64,
@@ -436,19 +436,19 @@ impl Wave {
         core::f64::consts::TAU * time.min(self.period) / self.period
     }
 
-    /// Returns the height above the start, `[m]`.
+    /// Returns the height above the start at `time`, `[m]`.
     fn at(&self, time: f64) -> f64 {
         self.height * (1.0 - self.phase(time).cos())
     }
 
-    /// Returns the velocity, `[m/s]`.
+    /// Returns the velocity at `time`, `[m/s]`.
     fn velocity(&self, time: f64) -> f64 {
         let pace = core::f64::consts::TAU / self.period;
         self.height * pace * self.phase(time).sin()
     }
 }
 
-/// 16 mm/s at most, well below the budget's limit.
+/// Wave of the stream. Its speed is at most 16 mm/s, well below the limit of the motion.
 const WAVE: Wave = Wave {
     height: 0.015,
     period: 6.0,
@@ -460,36 +460,39 @@ const EVERY: u64 = 20;
 /// Turn of joint 7, 10 degrees, `[rad]`.
 const TURN: f64 = 0.1745;
 
-/// Speed of any joint of the arm that ends a step, `[m/s]`: more than twice the commanded speed.
+/// Speed of any point of the arm at which a step ends, `[m/s]`. It is more than twice the commanded
+/// speed.
 const FASTEST: f64 = 0.2;
 
-/// Duration of the observation before the arm moves: the drift is measured from the third to the
+/// Duration of the observation before the arm moves. The drift is measured from the third to the
 /// fourth second.
 const LOOK: Duration = Duration::from_secs(4);
 
 /// Duration of the hold.
 const HOLD: Duration = Duration::from_secs(10);
 
-/// Averaging time of a position, `[ms]`.
+/// Time over which a position is averaged, `[ms]`.
 const MOMENT: u64 = 200;
 
-/// Drift while the arm is held, `[m]`: limits for good and bad. The driver aims at less than the
-/// first.
+/// Limits of the drift while the arm is held, `[m]`, for good and for bad. The driver aims at less
+/// than the first limit.
 const DRIFT: [f64; 2] = [5e-5, 1e-3];
 
-/// Distance from a target, `[mm]`: the error of the law on arms with stiction, and the limit that
-/// ends the trial.
+/// Limits of the distance from a target, `[mm]`: the error of the control law on arms with
+/// stiction, and the limit that ends the trial.
 const ARRIVAL_MM: [f64; 2] = [1.0, 10.0];
 
-/// Distance of a joint from its target, `[mrad]`.
+/// Limits of the distance of a joint from its target, `[mrad]`.
 const ARRIVAL_MRAD: [f64; 2] = [3.0, 30.0];
 
-/// Distance from the targets of a stream, `[mm]`.
+/// Limits of the distance from the targets of a stream, `[mm]`.
 const BEHIND_MM: [f64; 2] = [4.0, 20.0];
 
-/// Force that remains after motions with a tare, `[N]`, because stiction has changed.
+/// Limit of the force that remains after the motions, relative to the first measurement, `[N]`.
+/// Some force remains because stiction has changed.
 const LEFT: f64 = 3.0;
 
-/// Mean success rates that count as good and as usable, as in `franka test communication`.
+/// Least mean success rate that counts as good, as in `franka test communication`; the next
+/// constant is for usable.
 const GOOD_RATE: f64 = 0.95;
 const USABLE_RATE: f64 = 0.9;
