@@ -45,29 +45,30 @@ __all__ = [
 
 
 class FrankaError(Exception):
-    """Anything that can go wrong with a robot or its end effectors."""
+    """Base of all errors of a robot and its end effectors."""
 
     kind: str
     """The cause in snake case: ``superseded``, ``link_lost``, ``refused``. :mod:`franka_async.kinds` lists the kinds of each
-    class. They are part of the interface."""
+    class. The kinds are part of the interface."""
 
     party: kinds.Party
-    """Who can act on it."""
+    """Who can act on the error."""
 
     entry: str | None = None
-    """Row of the book's chapter of errors, which states the remedy: ``errors.md#`` and this name. A traceback has it as a
-    note."""
+    """Name of the error's row in the book's chapter of errors, ``errors.md#`` and this name. The row states the remedy. A
+    traceback shows it as a note."""
 
 
 class ConnectError(FrankaError):
-    """There is no connection."""
+    """No connection could be made."""
 
     kind: kinds.ConnectErrorKind
 
 
 class ConnectionLostError(FrankaError):
-    """The robot is silent (``link_lost``), or the connection has ended (``connection_closed``): under a motion, a command,
-    a read or an action of a gripper."""
+    """No more states arrive (``link_lost``), or the connection has ended (``connection_closed``), during a motion, a
+    command, a read or an action of a gripper.
+    """
 
 
 class CommandError(FrankaError):
@@ -77,7 +78,7 @@ class CommandError(FrankaError):
 
 
 class CommandConnectionLostError(CommandError, ConnectionLostError):
-    """A connection was lost before the answer to a command; the robot may have carried it out."""
+    """The connection was lost before the answer to a command arrived. The robot may have carried out the command."""
 
 
 class ReadError(FrankaError):
@@ -87,7 +88,7 @@ class ReadError(FrankaError):
 
 
 class ReadConnectionLostError(ReadError, ConnectionLostError):
-    """A connection was lost while states were read."""
+    """The connection was lost while the program read states."""
 
 
 class ActionError(FrankaError):
@@ -97,11 +98,11 @@ class ActionError(FrankaError):
 
 
 class ActionConnectionLostError(ActionError, ConnectionLostError):
-    """A connection was lost before an end effector had answered; it may have carried out the action."""
+    """The connection was lost before an end effector answered. It may have carried out the action."""
 
 
 class RecordError(FrankaError):
-    """A recording is not written, or not to its end. Motions continue."""
+    """A recording could not be written, or not completely. Motions continue."""
 
     kind: kinds.RecordErrorKind
 
@@ -113,51 +114,53 @@ class RecordingError(FrankaError):
 
 
 class ExportError(FrankaError):
-    """Nothing, or not everything, was exported."""
+    """An export failed or is incomplete."""
 
     kind: kinds.ExportErrorKind
 
 
 class IdentifyError(FrankaError):
-    """An arm was not identified."""
+    """The load and friction of an arm could not be identified."""
 
     kind: kinds.IdentifyErrorKind
 
 
 class TareError(FrankaError):
-    """No tare was taken: the arm moves, is touched or guided, or is near a singularity."""
+    """No tare (zero of the wrench) was taken, because the arm moves, is touched or guided, or is near a singularity."""
 
     kind: kinds.TareErrorKind
 
 
 class MotionError(FrankaError):
-    """A motion ended short of its goal. An error after a reaction has its usual class and the kind ``after_reaction``."""
+    """A motion ended before its goal. An error after a reaction has its usual class and the kind ``after_reaction``."""
 
     kind: kinds.MotionErrorKind | kinds.ActiveErrorKind | kinds.ControlErrorKind | kinds.ReplayErrorKind
 
     is_ready_for_more: bool
-    """True if the robot takes a new motion without help from outside."""
+    """True if the robot accepts a new motion without action by a person."""
 
     code: int | None = None
-    """Value below 0 that the control law returned when it gave up; `None` unless the kind is ``given_up``."""
+    """Negative value that the control law returned when it gave up; `None` unless the kind is ``given_up``."""
 
 
 class GoalError(MotionError):
-    """A goal or a path was refused. Nothing has moved; a stream that the goal belongs to brakes the arm. The kind is ``goal``
-    or ``path``.
+    """The driver refused a goal or a path. Nothing has moved. If the goal belongs to a stream, the stream brakes the arm.
+    The kind is ``goal`` or ``path``.
     """
 
 
 class SupersededError(MotionError):
-    """A newer goal took the place of this one."""
+    """A newer goal replaced this goal."""
 
 
 class StoppedError(MotionError):
-    """The motion was stopped: by ``stop()`` or ``cancel()``."""
+    """The motion was stopped by ``stop()`` or ``cancel()``."""
 
 
 class GuardError(MotionError):
-    """A guard ended the goal. The kind is ``held`` if the arm holds where it is, or ``braked`` if its session has ended."""
+    """A guard (a safety check of the driver) ended the goal. The kind is ``held`` if the arm holds its position, or
+    ``braked`` if the session has ended.
+    """
 
 
 class BusyError(MotionError):
@@ -165,19 +168,19 @@ class BusyError(MotionError):
 
 
 class NotReadyError(MotionError):
-    """A supervised robot takes no motions now. The motion has not begun."""
+    """A supervised robot accepts no motions now. The motion has not begun."""
 
 
 class TargetNotReachedError(MotionError):
-    """The arm rests away from its target."""
+    """The arm is at rest, but not at its target."""
 
 
 class MotionConnectionLostError(MotionError, ConnectionLostError):
-    """A connection was lost under a motion."""
+    """The connection was lost during a motion."""
 
 
 class ReplayError(MotionError):
-    """A recorded motion was not repeated. Unless the kind is ``off`` nothing has moved."""
+    """A recorded motion was not repeated. Nothing has moved, unless the kind is ``off``."""
 
     kind: kinds.ReplayErrorKind
 
@@ -185,13 +188,15 @@ class ReplayError(MotionError):
 
 
 class TeamError(MotionError):
-    """A joint motion ended short of its goal. Its text, ``kind`` and ``party`` are copied from the arm at fault."""
+    """A joint motion of several arms ended before its goal. The text, ``kind`` and ``party`` are those of the arm that
+    caused the end.
+    """
 
     member: int
-    """Number of the arm at fault, in the order of the team."""
+    """Number of the arm that caused the end, in the order of the team."""
 
     outcomes: list[MotionReport | MotionError]
-    """The end of the motion of each arm: a ``MotionReport`` if it arrived."""
+    """How the motion of each arm ended: a ``MotionReport`` if the arm arrived."""
 
 
 class ActiveError(MotionError):
@@ -201,25 +206,25 @@ class ActiveError(MotionError):
 
 
 class ControlError(MotionError):
-    """The robot ended the motion: a reflex, a user stop, another client's stop."""
+    """The robot ended the motion, because of a reflex, a user stop, or a stop by another client."""
 
     kind: kinds.ControlErrorKind
 
     errors: list[str]
-    """The errors that stopped it, by the vendor's names."""
+    """Errors that stopped the robot, by the vendor's names."""
 
     move_status: str
     """The robot's last report on the motion: ``reflex_aborted``, ``preempted``, ..."""
 
     log: ControlLog
-    """The last cycles of the motion. A log that was pickled can be read, but not given to ``explain``."""
+    """The last cycles of the motion. A log that was pickled can be read, but ``explain`` does not accept it."""
 
     diagnosis: str | None
-    """The limit that was exceeded, by how much, since when, and what to change; ``None`` if no limit was."""
+    """The exceeded limit, the excess, its first cycle, and what to change; ``None`` if no limit was exceeded."""
 
     findings: dict[str, Any] | None
     """The diagnosis as data, for programs: ``finding``, ``causes``, ``advice`` and more, as lists, ``dict`` and numbers."""
 
     def to_csv(self) -> str:
-        """Returns the log as comma-separated values, a line for each cycle."""
+        """Returns the log as comma-separated values, with a line for each cycle."""
         return self.log.to_csv()

@@ -1,4 +1,4 @@
-"""The parts of an ``Explanation``, which ``franka_async.explain`` makes: the reasons why a robot stopped."""
+"""Parts of an ``Explanation``, the result of ``franka_async.explain``: why a robot stopped."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ __all__ = ["Approach", "Contact", "Moment", "Peak"]
 
 @dataclass(frozen=True)
 class Moment:
-    """Something that happened, with its time."""
+    """An event and its time."""
 
     time_ms: int
-    """The cycle, by the robot's clock."""
+    """Time of the cycle, by the robot's clock, ms."""
 
     kind: str
     """``goal``, ``mode``, ``contact``, ``collision``, ``error``, ``guard``, ``loss`` or ``note``."""
@@ -28,19 +28,19 @@ class Moment:
 
 @dataclass(frozen=True)
 class Approach:
-    """Smallest distance of a quantity to its limit."""
+    """Smallest distance of a quantity from its limit."""
 
     joint: int | None
     """The joint, 1 to 7; ``None`` for the end effector."""
 
     value: float
-    """Measured value: rad, rad/s or N m of joints, m/s or rad/s of the end effector."""
+    """Measured value: in rad, rad/s or N m for joints, in m/s or rad/s for the end effector."""
 
     limit: float
-    """The limit at that cycle, on the side of the value."""
+    """Limit in this cycle, on the side of the value."""
 
     margin: float
-    """Distance from the value to the limit; negative beyond it."""
+    """Distance from the value to the limit; negative beyond the limit."""
 
     time_ms: int
     """Time by the robot's clock, ms."""
@@ -54,7 +54,7 @@ class Peak:
     """The joint, 1 to 7; ``None`` for the end effector."""
 
     value: float
-    """Its size: N m of ``external_torque``, N of ``force``, rad of ``following_error``."""
+    """Magnitude: in N m for ``external_torque``, N for ``force``, rad for ``following_error``."""
 
     time_ms: int
     """Time by the robot's clock, ms."""
@@ -65,7 +65,7 @@ class Contact(Value):
     """Place of a contact with the arm in the base frame, derived from the external torques of the joints."""
 
     link: int
-    """The link that was touched, ``0`` to ``7``. The number ``8`` stands for everything mounted on the flange."""
+    """The touched link, ``0`` to ``7``. The number ``8`` stands for everything mounted on the flange."""
 
     point: NDArray[np.float64]
     """Point of contact, ``(3,)`` m."""
@@ -74,13 +74,13 @@ class Contact(Value):
     """Force that the contact exerted on the arm, ``(3,)`` N."""
 
     spread: float
-    """Extent of the places that explain the torques equally well, m."""
+    """Extent of the points that explain the torques equally well, m."""
 
     probability: float
     """Probability of this link, 0 to 1."""
 
     next: tuple[int, float] | None
-    """The next likely link, and its probability."""
+    """The second most likely link, and its probability."""
 
     time_ms: int
-    """The cycle whose torques were evaluated, by the robot's clock."""
+    """Time of the cycle whose torques were evaluated, by the robot's clock, ms."""

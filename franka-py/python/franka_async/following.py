@@ -18,9 +18,9 @@ __all__ = ["follow"]
 async def follow(
     begin: Callable[..., Awaitable[MotionReport]], targets: AsyncIterable[Target], options: dict[str, Any] | None
 ) -> MotionReport:
-    """Awaits ``begin(latest, **options)`` while ``targets`` are set to the latest one, in the event loop.
+    """Awaits ``begin(latest, **options)``, while a task in the event loop sets ``latest`` to each new target of ``targets``.
 
-    An exception of ``targets`` brakes the arm and is raised. Cancelling ends both.
+    An exception in ``targets`` brakes the arm and is raised. Cancelling ends both the motion and the task.
     """
     latest = Latest()
 

@@ -1,4 +1,4 @@
-"""Parts of goals: targets, limits, gains, tolerances, guards. All of them are checked when a motion begins."""
+"""Parts of goals: targets, limits, gains, tolerances, guards. The driver checks all of them when a motion begins."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ Controller = Literal["joint_impedance", "cartesian_impedance"]
 """The robot's own controllers."""
 
 Setpoints = Literal["joint_positions", "joint_velocities", "cartesian_poses", "cartesian_velocities"]
-"""The kind of setpoints that a controller of the robot gets."""
+"""Kind of setpoints for a controller of the robot."""
 
 Backend: TypeAlias = 'Literal["torques"] | tuple[Controller, Setpoints]'
-"""The controller that turns setpoints into torques: the law of this package, or one of the robot's own controllers."""
+"""The controller that turns setpoints into torques: the control law of this package, or one of the robot's own controllers."""
 
 
 @dataclass(frozen=True, eq=False)
 class Joints(Value):
-    """Joint positions as a target: 7 numbers, rad; with velocities, rad/s, for a target that moves."""
+    """Joint positions as a target, 7 numbers, rad. A moving target also has velocities, rad/s."""
 
     q: ArrayLike
     dq: ArrayLike | None = None
@@ -61,17 +61,18 @@ class Joints(Value):
 
 @dataclass(frozen=True, eq=False)
 class Offset(Value):
-    """A way of the end effector: 3 numbers, m, or 6, with a rotation vector, rad; or a pose, ``(4, 4)``.
+    """A displacement of the end effector: 3 numbers, m; or 6 numbers, with a rotation vector, rad; or a pose, ``(4, 4)``.
 
-    It counts from the present target, so that several add up exactly, or from the measured arm.
+    It is relative to the current target, so that several offsets add up exactly, or relative to the measured pose of the
+    arm.
     """
 
     way: ArrayLike
     frame: Literal["base", "tool"] = "base"
-    """The frame whose axes it is along and about."""
+    """The frame in whose axes the displacement is given."""
 
     from_arm: bool = False
-    """True if it counts from the measured arm. It also does if there is no target."""
+    """True if the displacement is relative to the measured pose. Without a current target, it always is."""
 
 
 Target: TypeAlias = "ArrayLike | Joints | tuple[ArrayLike, ArrayLike]"
@@ -97,16 +98,16 @@ Destination: TypeAlias = "ArrayLike | Joints | Offset | tuple[ArrayLike, ArrayLi
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits of one axis, or of a norm. ``None`` stands for the default."""
+    """Limits of one axis, or of a norm. ``None`` means the default."""
 
     velocity: float | None = None
-    """m/s or rad/s."""
+    """Largest velocity, m/s or rad/s."""
 
     acceleration: float | None = None
-    """m/s^2 or rad/s^2."""
+    """Largest acceleration, m/s^2 or rad/s^2."""
 
     jerk: float | None = None
-    """m/s^3 or rad/s^3."""
+    """Largest jerk, m/s^3 or rad/s^3."""
 
     def _scaled(self, factor: float) -> Limits:
         if self.velocity is None or self.acceleration is None or self.jerk is None:
@@ -116,16 +117,16 @@ class Limits:
 
 @dataclass(frozen=True)
 class Budget:
-    """Limits of the approach to a goal. ``None`` stands for the default of the robot: see ``robot.budget()``."""
+    """Limits of the motion to a goal. ``None`` means the default of the robot: see ``robot.budget()``."""
 
     translation: Limits = Limits()
-    """For the norm of the end effector's translation."""
+    """Limits of the norm of the end effector's translation."""
 
     rotation: Limits = Limits()
-    """For the norm of its rotation."""
+    """Limits of the norm of the end effector's rotation."""
 
     joints: Limits | Sequence[Limits] = Limits()
-    """For each joint: the same for all, or seven."""
+    """Limits of the joints: one for all, or seven."""
 
     def __post_init__(self) -> None:
         for name, limits in (("translation", self.translation), ("rotation", self.rotation)):
@@ -140,7 +141,9 @@ class Budget:
             _set(self, joints=joints)
 
     def scaled(self, factor: float) -> Budget:
-        """The budget for the same paths ``factor`` times as fast: velocities times it, accelerations times its square, and so on."""
+        """Returns the budget for the same paths ``factor`` times as fast. It multiplies velocities by ``factor``,
+        accelerations by its square and jerks by its cube.
+        """
         joints = [self.joints] * 7 if isinstance(self.joints, Limits) else self.joints
         return Budget(
             self.translation._scaled(factor), self.rotation._scaled(factor), [limits._scaled(factor) for limits in joints]
@@ -152,19 +155,20 @@ _COMPLIANT: dict[str, Any] = _native._gains("cartesian")
 
 @dataclass(frozen=True, kw_only=True)
 class Gains:
-    """Law and gains: a spring and damper at the end effector, along the axes of the base frame, and one at each joint.
+    """Control law and gains: a spring and damper at the end effector, along the axes of the base frame, and a spring and
+    damper at each joint.
 
     The default is ``Gains.cartesian()``.
     """
 
     law: Literal["hybrid", "operational_space"] = _COMPLIANT["law"]
-    """The way from springs to torques: summed in joint space, or coupled by the inertia at the end effector."""
+    """How the law turns springs into torques: summed in joint space, or coupled by the inertia at the end effector."""
 
     cartesian_stiffness: Sequence[float] = _COMPLIANT["cartesian_stiffness"]
-    """At the end effector, x y z N/m and about x y z N m/rad, 6 numbers."""
+    """Stiffness at the end effector, 6 numbers: along x y z, N/m, and about x y z, N m/rad."""
 
     cartesian_damping: Sequence[float] = _COMPLIANT["cartesian_damping"]
-    """At the end effector, N s/m and N m s/rad, 6 numbers."""
+    """Damping at the end effector, 6 numbers: along x y z, N s/m, and about x y z, N m s/rad."""
 
     joint_stiffness: Sequence[float] = _COMPLIANT["joint_stiffness"]
     """Stiffness of each joint, N m/rad, 7 numbers."""
@@ -173,22 +177,22 @@ class Gains:
     """Damping of each joint, N m s/rad, 7 numbers."""
 
     feedforward: float = _COMPLIANT["feedforward"]
-    """Weight of the reference velocity in the dampers, 0 to 1. At full weight they oppose only the velocity error."""
+    """Weight of the reference velocity in the dampers, 0 to 1. At weight 1 the dampers oppose only the velocity error."""
 
     feedforward_cutoff: float = _COMPLIANT["feedforward_cutoff"]
-    """Cutoff frequency of the low-pass on that velocity, Hz; 1000 is off."""
+    """Cutoff frequency of the low-pass on the reference velocity, Hz; 1000 switches it off."""
 
     project_joint_gains: bool = _COMPLIANT["project_joint_gains"]
-    """True if the springs of the joints act only where they do not push at the end effector."""
+    """True if the joint springs act only in directions that do not push at the end effector."""
 
     compensation: Sequence[float] = _COMPLIANT["compensation"]
-    """Largest compensation of friction and bias of each joint, N m, 7 numbers; 0 for none."""
+    """Largest compensation of friction and bias for each joint, N m, 7 numbers; 0 for no compensation."""
 
     torque_limits: Sequence[float] = _COMPLIANT["torque_limits"]
     """Largest commanded torque of each joint, N m, 7 numbers."""
 
     torque_cutoff: float = _COMPLIANT["torque_cutoff"]
-    """Cutoff frequency of the low-pass on the torques, Hz; 1000 is off."""
+    """Cutoff frequency of the low-pass on the torques, Hz; 1000 switches it off."""
 
     def __post_init__(self) -> None:
         for name, length in [
@@ -203,27 +207,32 @@ class Gains:
 
     @classmethod
     def cartesian(cls) -> Gains:
-        """Compliant at the end effector, with light springs at the joints, which keep the elbow: the default for poses."""
+        """Returns gains that are compliant at the end effector. Light springs at the joints keep the elbow. The default for
+        poses.
+        """
         return cls()
 
     @classmethod
     def joint(cls) -> Gains:
-        """Stiff joints, and no spring at the end effector: the default for joint positions."""
+        """Returns gains with stiff joints, and without a spring at the end effector. The default for joint positions."""
         return cls(**_native._gains("joint"))
 
     @classmethod
     def droid(cls) -> Gains:
-        """As compliant, with the softer wrist and lighter damping of the DROID platform, without feedforward and compensation."""
+        """Returns compliant gains as on the DROID platform: a softer wrist and lighter damping, no feedforward, no
+        compensation.
+        """
         return cls(**_native._gains("droid"))
 
     def with_cartesian_stiffness(self, stiffness: ArrayLike) -> Gains:
-        """The same with another stiffness at the end effector, 6 numbers; dampings keep their ratio."""
+        """Returns the same gains with another stiffness at the end effector, 6 numbers. The damping ratio does not change."""
         return Gains(**_native._softened(self, stiffness))
 
     def with_joint_stiffness(self, stiffness: ArrayLike) -> Gains:
-        """The same with another stiffness of the joints, 7 numbers, N m/rad; dampings keep their ratio.
+        """Returns the same gains with another stiffness of the joints, 7 numbers, N m/rad. The damping ratio does not
+        change.
 
-        A joint without a spring takes its ratio from ``Gains.joint()``.
+        A joint without a spring has the damping ratio of ``Gains.joint()``.
         """
         preset = Gains.joint()
         wanted = _native._row("joint_stiffness", stiffness, 7).tolist()
@@ -237,23 +246,23 @@ class Gains:
 
 @dataclass(frozen=True)
 class Margin:
-    """Distance of gains to the first oscillation of an arm that lags like the slowest realistic ones."""
+    """Margin of gains up to the first oscillation, for an arm with the lag of the slowest realistic arms."""
 
     damping: float
-    """The factor by which all dampers may grow."""
+    """Factor by which all dampers may grow."""
 
     stiffness: float
-    """The factor by which all springs may grow while the dampers stay."""
+    """Factor by which all springs may grow while the dampers do not change."""
 
     @property
     def is_wanted(self) -> bool:
-        """True if both are at least 2, as gains should have."""
+        """True if both factors are at least 2, which is recommended for gains."""
         return min(self.damping, self.stiffness) >= _native._MARGIN
 
 
 @dataclass(frozen=True)
 class Leash:
-    """Largest distance of the reference ahead of the arm."""
+    """Largest distance by which the reference (the commanded motion) may be ahead of the arm."""
 
     translation: float = _native._LEASH[0]
     """Distance of the end effector, m."""
@@ -267,7 +276,7 @@ class Leash:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Largest deviation of the arm from its path before the motion is given up. Infinite numbers switch it off."""
+    """Largest deviation of the arm from its path. A larger deviation ends the motion. Infinity switches the check off."""
 
     translation: float = _native._DEVIATION[0]
     """Distance of the end effector, m."""
@@ -281,35 +290,35 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Distance to the target that counts as arrived, measured at the end effector."""
+    """Distance from the target, measured at the end effector, within which the arm counts as arrived."""
 
     translation: float = _native._TOLERANCE[0]
-    """m."""
+    """Distance, m."""
 
     rotation: float = _native._TOLERANCE[1]
-    """rad."""
+    """Angle, rad."""
 
 
 @dataclass(frozen=True)
 class Settling:
-    """Conditions under which an arm counts as settled at its target."""
+    """Conditions under which an arm counts as settled (at rest) at its target."""
 
     hold: float = _native._SETTLING[0]
-    """Time for which it has to stay within the tolerance and at rest, s, in whole milliseconds."""
+    """Time for which the arm must stay within the tolerance and at rest, s, in whole milliseconds."""
 
     timeout: float = _native._SETTLING[1]
-    """Longest time for that, s, up to 60."""
+    """Longest time until the arm settles, s, up to 60."""
 
 
 @dataclass(frozen=True)
 class Lead:
-    """Largest distance of a followed target ahead of the arm; a target that is further away is drawn nearer."""
+    """Largest distance by which a followed target may be ahead of the arm. A target further away is moved nearer."""
 
     translation: float
-    """m."""
+    """Distance, m."""
 
     rotation: float
-    """rad."""
+    """Angle, rad."""
 
     joints: float
     """Angle of each joint, rad."""
@@ -323,65 +332,65 @@ class Waypoint(Value):
     """The place: a pose or ``Joints``."""
 
     blend: float = 0.0
-    """Distance from it at which the path may begin to round its corner: m for poses, rad (norm) for joints. At 0 the arm
-    stops there."""
+    """Distance from the waypoint at which the path may begin to round the corner: m for poses, rad (norm) for joints. At 0
+    the arm stops at the waypoint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chunk(Value):
     """Points with times, as a policy predicts them from one observation. Give ``dt`` or ``times``.
 
-    ``points`` are positions ``(N, 3)``, with the orientation kept; poses ``(N, 7)``, x y z and a quaternion x y z w, or
-    ``(N, 4, 4)``; with ``joints=True`` joint positions ``(N, 7)``, rad.
+    ``points`` are positions ``(N, 3)``, at which the orientation does not change; or poses ``(N, 7)``, x y z and a
+    quaternion x y z w; or poses ``(N, 4, 4)``. With ``joints=True`` they are joint positions ``(N, 7)``, rad.
     """
 
     points: ArrayLike
     dt: float | None = None
-    """Time between two points, s; the first one is at the origin."""
+    """Time between two points, s. The first point is at the origin of time."""
 
     times: ArrayLike | None = None
-    """Time of each point after the origin, ``(N,)`` s."""
+    """Time of each point after the origin of time, ``(N,)`` s."""
 
     velocities: ArrayLike | None = None
-    """Twists ``(N, 6)`` or joint velocities ``(N, 7)``; estimated from the neighbours if ``None``."""
+    """Twists ``(N, 6)`` or joint velocities ``(N, 7)``. With ``None`` they are estimated from neighbouring points."""
 
     joints: bool = False
     """True if the points are joint positions."""
 
     observed_at: Any = None
-    """The ``RobotState`` that the policy saw, or its ``time_ms``: the origin. ``None`` counts from the time at which the
-    chunk is taken up."""
+    """Origin of time: the ``RobotState`` that the policy observed, or its ``time_ms``. With ``None`` it is the time at which
+    the driver accepts the chunk."""
 
     blend: float | None = None
-    """Time over which it is blended with the present motion of the arm, s; 0 turns to it as fast as the limits allow.
-    ``None`` is 0.1 s."""
+    """Time over which the chunk is blended with the current motion of the arm, s. At 0 the arm turns to it as fast as the
+    limits allow. ``None`` is 0.1 s."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plane(Value):
-    """A region that the arm keeps out of: all points ``p`` with ``normal @ p < offset``, base frame."""
+    """A region that the arm avoids: all points ``p`` with ``normal @ p < offset``, in the base frame."""
 
     normal: ArrayLike
-    """Points out of the region; 3 numbers of any length."""
+    """Normal that points out of the region; 3 numbers of any length."""
 
     offset: float
     """Distance of the surface from the origin along the normal, m."""
 
     @classmethod
     def floor(cls, z: float) -> Plane:
-        """Everything below the height ``z``, m."""
+        """Returns the region below the height ``z``, m."""
         return cls((0.0, 0.0, 1.0), z)
 
 
 @dataclass(frozen=True, eq=False)
 class Box(Value):
-    """A region that the arm keeps out of: a box in any orientation, base frame."""
+    """A region that the arm avoids: a box in any orientation, in the base frame."""
 
     pose: ArrayLike
-    """Pose of its centre, ``(4, 4)`` or 7 numbers."""
+    """Pose of the centre of the box, ``(4, 4)`` or 7 numbers."""
 
     sides: ArrayLike
-    """Its sides, 3 numbers, m, along the axes of ``pose``."""
+    """Side lengths of the box, 3 numbers, m, along the axes of ``pose``."""
 
 
 def _set(value: object, **fields: Any) -> None:

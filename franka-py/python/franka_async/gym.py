@@ -53,17 +53,18 @@ Array: TypeAlias = NDArray[np.float64]
 ActionKind: TypeAlias = Literal["joint_velocity", "joint_delta", "cartesian_delta", "torque"]
 
 Reward: TypeAlias = Callable[[Array, Array], ArrayLike]
-"""The reward of an observation, ``(69,)``, and the action that led there; of many robots, ``(n, 69)``, one for each."""
+"""Reward for an observation, ``(69,)``, and the action that led to it. For many robots, one reward for each row of ``(n,
+69)``."""
 
 Terminate: TypeAlias = Callable[[Array], ArrayLike]
-"""True if an episode ends at an observation, ``(69,)``; for many robots, ``(n, 69)``, one value for each."""
+"""True if an episode ends with an observation, ``(69,)``. For many robots, one value for each row of ``(n, 69)``."""
 
 Start: TypeAlias = Callable[[np.random.Generator], ArrayLike]
 """Joint positions, ``(7,)`` rad, at which an episode begins."""
 
 
 def part(observation: Array, name: str) -> Array:
-    """Returns the part of an observation, or of many, that ``FLAT_LAYOUT`` calls ``name``: a view."""
+    """Returns the part of an observation, or of many, that ``FLAT_LAYOUT`` calls ``name``, as a view."""
     for known, begin, end in FLAT_LAYOUT:
         if known == name:
             return observation[..., begin:end]
@@ -80,30 +81,30 @@ class EnvOptions(TypedDict, total=False):
     """Milliseconds of the robot's time in a step, 20 by default."""
 
     action_scale: ArrayLike | None
-    """Size of an action of 1, a number or one for each axis. The default is the way that the robot covers in one step at
-    ``speed``, and a tenth of the greatest torque."""
+    """Size of an action of 1: one number, or one for each axis. The default is the distance that the robot covers in one
+    step at ``speed``; for torques it is a tenth of the largest torque."""
 
     arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"]
-    """``realistic`` by default; ``sampled`` is another realistic one in each episode."""
+    """``realistic`` by default. ``sampled`` draws another realistic arm for each episode."""
 
     hand: bool
     """True if the robot has a Franka Hand, the default."""
 
     speed: float
-    """Share of the robot's greatest velocity, 0.5 by default."""
+    """Share of the robot's largest velocity, 0.5 by default."""
 
     start: Start | None
-    """Draws the joint positions at the beginning of an episode. The default is the ready pose, or ``options={"q": ...}`` of
-    ``reset``."""
+    """Function that draws the joint positions at the beginning of an episode. The default is the ready pose, or
+    ``options={"q": ...}`` of ``reset``."""
 
     reward: Reward | None
-    """Called after each step; 0 without it."""
+    """Function that computes the reward after each step. Without it, the reward is 0."""
 
     terminate: Terminate | None
-    """Called after each step, also for observations of a robot that has stopped itself."""
+    """Function that decides after each step if the episode ends, even if the robot has stopped itself."""
 
     max_steps: int | None
-    """Truncates episodes."""
+    """Number of steps after which an episode is truncated."""
 
 
 class VectorOptions(EnvOptions, total=False):
@@ -114,7 +115,7 @@ class VectorOptions(EnvOptions, total=False):
 
 
 class _Episodes:
-    """Shared part of the two environments: robots, hooks, and the count of steps."""
+    """Shared part of the two environments: robots, user functions, and the count of steps."""
 
     def __init__(
         self,
@@ -147,7 +148,7 @@ class _Episodes:
         self.observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (RobotState.FLAT_LEN,), np.float64)
 
     def begin(self, index: int, random: np.random.Generator, options: dict[str, Any] | None) -> Array:
-        """Begins an episode of one robot; returns its observation, ``(69,)``."""
+        """Begins an episode of one robot, and returns its observation, ``(69,)``."""
         q = (options or {}).get("q")
         if q is None and self.start is not None:
             q = self.start(random)
@@ -156,7 +157,9 @@ class _Episodes:
         return self.robots.state(index).flat()
 
     def advance(self, actions: Array) -> tuple[Array, Array, NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
-        """Returns observations, rewards, and for each robot: terminated, truncated, stopped by the robot itself."""
+        """Performs a step. Returns observations, rewards, and for each robot: terminated, truncated, stopped by the robot
+        itself.
+        """
         count = len(self.robots)
         observations, running = self.robots.step(np.clip(actions, -1.0, 1.0) * self.scale, self.cycles)
         self.steps += 1
@@ -182,7 +185,7 @@ class _Episodes:
 
 def _scale(bound: Array, action: ActionKind, scale: ArrayLike | None) -> Array:
     if scale is None:
-        # A tenth of the greatest torque moves an arm that carries itself fast enough.
+        # A tenth of the largest torque moves a gravity-compensated arm fast enough.
         return bound * 0.1 if action == "torque" else bound
     scale = np.asarray(scale, np.float64)
     if scale.shape not in ((), bound.shape):
@@ -214,7 +217,7 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
 
     @property
     def robots(self) -> VirtualRobots:
-        """The robot, as number 0 of one: to push it, and to read whole states."""
+        """The robot, as number 0 of a group of one. Use it to push the robot, or to read whole states."""
         return self._episodes.robots
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
@@ -223,7 +226,7 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
         return self._episodes.begin(0, self.np_random, options), {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
-        """Takes an action for ``cycles`` milliseconds of the robot's time."""
+        """Performs an action for ``cycles`` milliseconds of the robot's time."""
         actions = np.asarray(action, np.float64)[None]
         results = self._episodes.advance(actions)
         observation, reward, terminated, truncated, stopped = (result[0] for result in results)
@@ -232,11 +235,11 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
 
 
 class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
-    """Many simulated robots in one process, all stepped by one call while the interpreter is free for other threads.
+    """Many simulated robots in one process. One call steps all of them, while the interpreter is free for other threads.
 
-    Arguments as in ``FrankaEnv``, and ``threads``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. An episode
-    that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
-    Robot i acts as a ``FrankaEnv`` that is reset with ``seed + i``.
+    The arguments are those of ``FrankaEnv``, and ``threads``. ``reward`` and ``terminate`` get all robots together, ``(n,
+    69)``. After an episode has ended, the next step begins another episode and ignores the action
+    (``AutoresetMode.NEXT_STEP``). Robot i behaves as a ``FrankaEnv`` that is reset with ``seed + i``.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -253,13 +256,13 @@ class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
 
     @property
     def robots(self) -> VirtualRobots:
-        """The robots: to push them, and to read whole states."""
+        """The robots. Use them to push robots, or to read whole states."""
         return self._episodes.robots
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Array, dict[str, Any]]:
-        """Begins an episode of every robot, or of those in the array ``options["reset_mask"]``, ``(n,)``."""
+        """Begins an episode of every robot, or of the robots that the array ``options["reset_mask"]``, ``(n,)``, selects."""
         options = dict(options or {})
         mask = np.asarray(options.pop("reset_mask", np.ones(self.num_envs, bool)))
         if mask.shape != (self.num_envs,) or mask.dtype != bool:
@@ -279,7 +282,9 @@ class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
         return self._episodes.robots.observations(), {}
 
     def step(self, actions: Array) -> tuple[Array, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """Gives every robot an action for ``cycles`` milliseconds of its time; begins the episodes that have ended."""
+        """Performs an action of every robot for ``cycles`` milliseconds of the robots' time, and begins new episodes for
+        those that have ended.
+        """
         begun = self._ended.copy()
         results = self._episodes.advance(np.asarray(actions, np.float64))
         observations, rewards, terminated, truncated, stopped = results

@@ -1,7 +1,7 @@
 """Kinds of errors: the values that ``error.kind`` of each class of :mod:`franka_async.errors` may have.
 
-The driver's internal changes do not alter them. A kind that is removed changes the interface and is in the change log. New
-ones may be added.
+Internal changes of the driver do not alter the kinds. The removal of a kind changes the interface, and the change log
+mentions it. New kinds may be added.
 """
 
 from __future__ import annotations

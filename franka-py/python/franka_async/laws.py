@@ -1,7 +1,8 @@
-"""Control laws that need no interpreter in the control cycle: from Python by numba, or from any compiler.
+"""Control laws that need no interpreter in the control cycle. Numba compiles them from Python, or any compiler from another
+language.
 
-A law is a C function, described in ``franka_async_law.h`` (:func:`header`), that the real-time thread calls with every state. It
-runs through the filter, the limiter and the checks of every control function. With the extra ``numba``::
+A law is a C function, described in ``franka_async_law.h`` (:func:`header`), that the real-time thread calls with every
+state. It runs through the filter, the limiter and the checks of every control function. With the extra ``numba``::
 
     @laws.compiled
     def spring(cycle, parameters, memory, output):
@@ -31,10 +32,10 @@ if TYPE_CHECKING:
 __all__ = ["CYCLE", "FINISH", "GO_ON", "RAISED", "address_of", "compiled", "header", "make_cycle"]
 
 GO_ON = 0
-"""Return value of a law that expects to be called with the next state."""
+"""Return value of a law that continues: it expects the next state."""
 
 FINISH = 1
-"""Return value of a law with its last output."""
+"""Return value of a law that ends the motion with its current output."""
 
 RAISED = -(2**31)
 """Return value of a law made by :func:`compiled` after an exception in it."""
@@ -63,20 +64,20 @@ def _cycle_dtype() -> np.dtype[np.record]:
 
 
 CYCLE: np.dtype[np.record] = _cycle_dtype()
-"""Input of a law in a cycle, as a structured type: names, shapes and meanings match the header."""
+"""Input of a law in one cycle, as a structured type. Names, shapes and meanings match the header."""
 
 
 def header() -> Path:
-    """Returns the path of ``franka_async_law.h``, which a law in C or C++ includes."""
+    """Returns the path of ``franka_async_law.h``. A law in C or C++ includes this file."""
     return Path(__file__).with_name("include") / "franka_async_law.h"
 
 
 def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
     """Compiles ``function(cycle, parameters, memory, output) -> int`` with numba into code for :class:`franka_async.Law`.
 
-    ``cycle`` has the fields of :data:`CYCLE` as attributes; the others are arrays. ``output`` has 18 numbers, of which the first
-    ones are the command; a pose is row by row. Divisions by zero give infinity. An exception in it stops the robot, with
-    :data:`RAISED` as the code.
+    ``cycle`` has the fields of :data:`CYCLE` as attributes; the other arguments are arrays. ``output`` has 18 numbers, and
+    the command comes first; a pose is given row by row. Divisions by zero give infinity. An exception in the function stops
+    the robot, with :data:`RAISED` as the code.
 
     Raises ``ImportError`` without numba, and ``TypeError`` for a function that allocates (array expressions make new arrays:
     write loops over ``range`` instead) or that numba cannot compile.
@@ -90,7 +91,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
     cycles = numba.types.CPointer(numba.from_dtype(CYCLE))
     signature = numba.types.int32(cycles, numbers, numbers, numbers)
     try:
-        # Without numba's runtime nothing can be allocated.
+        # Without numba's runtime, the function cannot allocate.
         law = numba.njit(error_model="numpy", _nrt=False)(function)
 
         def entry(cycle: Any, parameters: Any, memory: Any, output: Any) -> Any:
@@ -113,7 +114,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
 
 
 def make_cycle(**fields: npt.ArrayLike) -> np.record:
-    """Returns the input of a law with these fields and zeros in the others, to try out a law before it is compiled."""
+    """Returns the input of a law with these fields, and zeros in all others. Use it to try out a law before you compile it."""
     cycle = np.zeros((), dtype=CYCLE)
     for name, value in fields.items():
         cycle[name] = value

@@ -6,7 +6,7 @@
         text = franka_async.metrics.text({"left": left, "right": right})
         return web.Response(body=text.encode(), headers={"Content-Type": franka_async.metrics.CONTENT_TYPE})
 
-``robot.metrics()`` is the text of one robot. Readers refuse two such texts in one answer, since each has its own end.
+``robot.metrics()`` is the text of one robot. Readers refuse two such texts in one answer, because each text has an end mark.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ CONTENT_TYPE = _native._METRICS_CONTENT_TYPE
 
 
 def text(robots: Mapping[str, Robot | sync.Robot]) -> str:
-    """Returns the metrics of these robots. The keys become the label ``robot``; use the same ones in every run of the program.
+    """Returns the metrics of these robots. The keys become the label ``robot``. Use the same keys in every run of the
+    program.
 
-    A robot that is not connected yet, or was shut down, is left out. A robot whose connection was lost has
+    The text omits a robot that is not connected yet or was shut down. A robot whose connection was lost has
     ``franka_connected`` 0.
     """
     return _native._metrics([(label, getattr(robot, "_awaiting", robot)) for label, robot in robots.items()])

@@ -1,4 +1,4 @@
-"""Reports of motions: how they ended, their progress, and the reference of the arm."""
+"""Reports of motions: how they ended, their progress, and the reference (the commanded motion) of the arm."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class PoseError:
     """Distance of the measured end effector from its target."""
 
     translation: float
-    """m."""
+    """Distance, m."""
 
     rotation: float
-    """rad."""
+    """Angle, rad."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reacted(Value):
-    """State of a motion at the moment when the condition of ``until`` became true."""
+    """State of a motion at the moment at which the condition ``until`` became true."""
 
     after: float
     """Time since the first state of the motion, s, by the robot's clock."""
@@ -36,25 +36,25 @@ class Reacted(Value):
     """The robot's clock at that moment, ms."""
 
     wrench: NDArray[np.float64]
-    """External wrench at that moment, ``(6,)`` N and N m, in base axes with its torque about the origin of the stiffness
-    frame. Positive values are exerted by the arm."""
+    """External wrench at that moment, ``(6,)`` N and N m, in base axes, with the torque about the origin of the stiffness
+    frame. It is positive when the arm pushes its environment."""
 
     pose: NDArray[np.float64]
-    """Pose of the end effector at that moment, base frame, ``(4, 4)``."""
+    """Pose of the end effector at that moment, in the base frame, ``(4, 4)``."""
 
 
 @dataclass(frozen=True)
 class Quantiles:
-    """Three numbers of a distribution of times, s."""
+    """Three values of a distribution of times, s."""
 
     p50: float
-    """The median, to 1/16."""
+    """Median, with a resolution of 1/16."""
 
     p99: float
-    """The 99th percentile, to 1/16."""
+    """99th percentile, with a resolution of 1/16."""
 
     max: float
-    """The longest one."""
+    """Longest time."""
 
 
 @dataclass(frozen=True)
@@ -62,27 +62,28 @@ class Phases:
     """Durations of the parts of one cycle, s."""
 
     orders: float
-    """Orders from outside the control thread."""
+    """Time for orders from outside the control thread."""
 
     decode: float
-    """The state, read from its bytes."""
+    """Time to decode the state."""
 
     program: float
-    """Law and guards, a compiled law, or, under active control, the work of the program until it wrote."""
+    """Time for control law and guards, or for a compiled law. Under active control, time until the program wrote its
+    command."""
 
     send: float
-    """The command, written into bytes and sent."""
+    """Time to encode and send the command."""
 
     publish: float
     """Time for everything after the command: log, newest state, records, events."""
 
     prepare: float
-    """Time for the preparation of the next answer that needs no next state: goals, plans, the generator."""
+    """Time for the preparation of the next answer that is possible without the next state: goals, plans, the generator."""
 
 
 @dataclass(frozen=True)
 class CycleTimes:
-    """The times of one cycle of control, s."""
+    """Times of one control cycle, s."""
 
     time_ms: int
     """The robot's clock, ms."""
@@ -91,7 +92,7 @@ class CycleTimes:
     """Time from the due time of the state to its receipt by the control thread."""
 
     turnaround: float
-    """Time from the receipt to the departure of the command."""
+    """Time from the receipt of the state to the departure of its command."""
 
     slack: float
     """Time left until the next state was due; negative if the command left later."""
@@ -106,46 +107,48 @@ class MotionReport(Value):
 
     duration: float
     """Time from the first state of the motion to the arrival, by the robot's clock. It excludes the time for which the arm
-    then has to rest there, 0.25 s unless ``settling`` states another one; the counts below include it."""
+    must then stay at rest, 0.25 s unless ``settling`` states another time. The counts below include this time."""
 
     final_error: PoseError | None
-    """Distance of the measured end effector from its target; ``None`` for a motion without one."""
+    """Distance of the measured end effector from its target; ``None`` for a motion without a target."""
 
     released_error: PoseError | None
     """The same distance after the arm was released; ``None`` without a target, and if the arm is still held."""
 
     compensation: NDArray[np.float64] | None
-    """Compensation of friction and bias of each joint at the arrival, ``(7,)`` N m; ``None`` without this package's law."""
+    """Compensation of friction and bias for each joint at the arrival, ``(7,)`` N m; ``None`` if another law computed the
+    torques."""
 
     reacted: Reacted | None
-    """State at which the condition ``until`` became true; ``None`` if the motion arrived without."""
+    """State at the moment at which the condition ``until`` became true; ``None`` if the motion arrived without this."""
 
     lost_states: int
-    """States that never arrived."""
+    """Number of states that never arrived."""
 
     skipped_states: int
-    """States that arrived, but after a newer one."""
+    """Number of states that arrived after a newer state."""
 
     success_rate_min: float
-    """The lowest success rate of commands that the robot reported, 0 to 1."""
+    """Lowest success rate of commands that the robot reported, 0 to 1."""
 
     success_rate_avg: float
-    """The mean of that rate."""
+    """Mean of the success rate, 0 to 1."""
 
     worst_turnaround: float
-    """The longest time from the receipt of a state to the departure of its command."""
+    """Longest time from the receipt of a state to the departure of its command."""
 
     slack_min: float | None
-    """The shortest time that was left until the next state was due; as below, ``None`` if no command left."""
+    """Shortest time between the departure of a command and the due time of the next state; ``None`` if no command left, as
+    for the fields below."""
 
     overruns: int
-    """Commands that left only after the next state was due."""
+    """Number of commands that left after the next state was due."""
 
     worst_cycle: CycleTimes | None
     """The cycle that took longest."""
 
     interval: Quantiles | None
-    """Times between two states in a row, by the clock of this computer."""
+    """Times between two consecutive states, by the clock of this computer."""
 
     turnaround: Quantiles | None
     """Times from the receipt of a state to the departure of its command."""
@@ -163,10 +166,10 @@ class Progress:
     """Progress of a motion."""
 
     elapsed: float
-    """Since it began, s, by the robot's clock."""
+    """Time since the motion began, s, by the robot's clock."""
 
     remaining: float
-    """Time until the reference is at the target, s, if nothing delays it; the arm settles after that."""
+    """Time until the reference reaches the target if nothing delays it, s. The arm settles afterwards."""
 
     @property
     def fraction(self) -> float:
@@ -196,12 +199,12 @@ Guard = Literal[
     "speed_cap",
     "unresponsive",
 ]
-"""Guards that may hold an arm back: see guards.md of the book."""
+"""Guards (checks of the driver) that may hold an arm back: see guards.md of the book."""
 
 
 @dataclass(frozen=True, eq=False)
 class Reference(Value):
-    """The reference of target control in a cycle."""
+    """The reference (the commanded motion) of target control in one cycle."""
 
     time_ms: int
     """The robot's clock, ms."""
@@ -216,7 +219,7 @@ class Reference(Value):
     """Joint accelerations, ``(7,)`` rad/s^2."""
 
     pose: NDArray[np.float64]
-    """The end effector at those positions, base frame, ``(4, 4)``."""
+    """Pose of the end effector at these positions, in the base frame, ``(4, 4)``."""
 
     guards: tuple[Guard, ...] = ()
-    """Guards that have held the arm back within the last 0.1 s, and at most 0.2 s."""
+    """Guards that have held the arm back recently: within the last 0.1 to 0.2 s."""

@@ -27,85 +27,87 @@ __all__ = [
 
 
 class TuneOptions(TypedDict, total=False):
-    """Options that a session keeps, and that can be changed while it runs."""
+    """Options of a session that can change while the session runs."""
 
     limits: Budget | None
-    """Limits of the motion; by default ``robot.budget()``."""
+    """Limits of the motion; the default is ``robot.budget()``."""
 
     gains: Gains | None
     """Stiffness and damping; the default depends on the kind of the goal."""
 
     force_cap: float | None
-    """Bounds the force with which springs press at the end effector, N, 5 to 200; ``None`` removes the cap. By default 30 N."""
+    """Largest force with which the springs press at the end effector, N, 5 to 200; ``None`` removes the limit. The default
+    is 30 N."""
 
     leash: Leash | None
-    """Largest distance of the reference ahead of the arm."""
+    """Largest distance by which the reference may be ahead of the arm."""
 
     deviation: Deviation | None
-    """Largest deviation of the arm from its path before the motion is given up."""
+    """Largest deviation of the arm from its path. A larger deviation ends the motion."""
 
     posture: ArrayLike | None
-    """Joint positions, 7 numbers, rad, that the arm approaches where the pose of its end effector leaves it free."""
+    """Preferred joint positions, 7 numbers, rad. The arm approaches them as far as the pose of its end effector allows."""
 
 
 class SessionOptions(TuneOptions, total=False):
-    """Options that hold for one goal or for all goals of a session."""
+    """Options that apply to one goal, or to all goals of a session."""
 
     speed: float | None
-    """Speed along the same paths, as a factor of the fastest motion that the limits allow."""
+    """Speed along the same path, as a factor of the fastest motion that the limits allow."""
 
 
 class GoalOptions(SessionOptions, total=False):
-    """Shared options of motions and followed targets."""
+    """Options that motions and followed targets share."""
 
     stiffness: ArrayLike | None
-    """Stiffness at the end effector, x y z N/m and about x y z N m/rad, base axes; dampings keep their ratio."""
+    """Stiffness at the end effector in base axes: along x y z, N/m, and about x y z, N m/rad. The damping ratio does not
+    change."""
 
     tolerance: Tolerance | None
-    """Distance to the target that counts as arrived."""
+    """Distance from the target within which the arm counts as arrived."""
 
     settling: Settling | None
     """Conditions under which the arm counts as settled."""
 
     until: Condition | Reaction | None
-    """Continues until this is true, and then stops, or moves to the target that it names."""
+    """Condition on which the motion ends early. The arm then stops, or moves to the target that the condition names."""
 
 
 class MotionOptions(GoalOptions, total=False):
     """Options of a motion."""
 
     start_with: StartTicket | None
-    """Begins together with the motions that have the other tickets of ``start_tickets``."""
+    """Ticket for a common start. The motions with the tickets of one call of ``start_tickets`` begin together."""
 
     joint_fallback: bool | None
-    """Moves the joints to the pose where the arm cannot follow the straight line of ``move_to``."""
+    """Moves the joints to the pose if the arm cannot follow the straight line of ``move_to``."""
 
 
 class FollowOptions(GoalOptions, total=False):
-    """Options of following targets."""
+    """Options for following targets."""
 
     lead: Lead | None
-    """Largest distance of a target ahead of the arm."""
+    """Largest distance by which a target may be ahead of the arm."""
 
     watchdog: tuple[float, Literal["brake", "hold"]] | None
-    """Seconds without a target after which the watchdog acts, and its action."""
+    """Watchdog on the targets: the number of seconds without a target after which it acts, and its action."""
 
 
 class TeamOptions(SessionOptions, total=False):
-    """Options of the session of several robots, for each of them."""
+    """Options of a session of several robots. They apply to each robot."""
 
     speed_cap: float | None
-    """Largest speed of any joint, the flange and the end effector, m/s."""
+    """Largest speed of every joint, the flange and the end effector, m/s."""
 
 
 class EngageOptions(TeamOptions, total=False):
     """Options of a session."""
 
     keep_out: Iterable[Plane | Box] | None
-    """Regions that the arm keeps out of."""
+    """Regions that the arm avoids."""
 
     deadman: Deadman | None
-    """The deadman. While it is silent, and once it is gone, the arm brakes and holds."""
+    """The deadman. While it is not kept alive, and after it has been deleted, the arm brakes and holds its position."""
 
     backend: Backend | None
     """The controller that turns setpoints into torques."""

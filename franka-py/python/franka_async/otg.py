@@ -9,8 +9,8 @@
     position, velocity, acceleration = trajectory.at(0.1)
     times, positions, velocities, accelerations = trajectory.sample(0.001)
 
-``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are the limits of the robots' joints. A robot needs none of this: it plans its
-motions on the control thread. It is for looking ahead, and for other machines.
+``AxisLimits.fr3()`` and ``AxisLimits.fer()`` are the limits of the robots' joints. Control of a robot does not need this
+module, because the driver plans motions on the control thread. Use it to compute a motion in advance, or for other machines.
 """
 
 from typing import Literal, TypeAlias
@@ -21,4 +21,5 @@ from ._native import plan_trajectory as plan
 __all__ = ["AxisLimits", "Synchronisation", "Trajectory", "plan"]
 
 Synchronisation: TypeAlias = Literal["straight", "time"]
-"""The way to synchronise axes: move on a straight line where they can, or only be at the target at the same time."""
+"""How to synchronise the axes: ``straight`` moves on a straight line if possible; with ``time`` all axes only arrive
+together."""

@@ -1,7 +1,8 @@
 """Recordings of robots in files.
 
-``Recorder`` writes MCAP files, which viewers open. They hold every cycle, goals and how they end, events, requests and
-grippers. ``RecordingFile`` reads them. ``robot.record([...])`` returns columns of a motion as arrays, without a file.
+``Recorder`` writes MCAP files, which viewers open. The files contain every cycle, goals and how they end, events, requests
+and states of grippers. ``RecordingFile`` reads the files. ``robot.record([...])`` returns columns of a motion as arrays,
+without a file.
 """
 
 from __future__ import annotations
@@ -17,19 +18,21 @@ __all__ = ["BlackBox", "Episode", "RecordStatus", "RecordedEvent", "RecordedRobo
 
 @dataclass(frozen=True)
 class BlackBox:
-    """The last seconds before an incident, written to a separate file: the keyword ``black_box`` of ``Recorder.to_file``."""
+    """Options of a black box, the keyword ``black_box`` of ``Recorder.to_file``. It writes the last seconds before an
+    incident to a separate file.
+    """
 
     directory: str | PathLike[str]
-    """Directory of the files; made if it is missing. The files are named by time (UTC), robot and cause."""
+    """Directory of the files; the recorder creates it if necessary. The name of a file contains time (UTC), robot and cause."""
 
     before: float = 30.0
-    """Time that is kept before the incident, 1 to 300 s. A robot takes about 0.7 MB per second."""
+    """Recorded time before the incident, 1 to 300 s. A robot needs about 0.7 MB per second."""
 
     after: float = 1.0
-    """Time that is added after it, s, at most 60. Another incident meanwhile gets no separate file."""
+    """Recorded time after the incident, s, at most 60. Another incident in this time gets no separate file."""
 
     keep: int = 20
-    """Number of files that are kept; the oldest are deleted."""
+    """Number of files to keep. The recorder deletes the oldest."""
 
 
 @dataclass(frozen=True)
@@ -37,31 +40,31 @@ class RecordStatus:
     """Progress and errors of a recording."""
 
     cycles: int
-    """Cycles taken, of all robots."""
+    """Number of recorded cycles, of all robots."""
 
     dropped: int
-    """Cycles for which there was no room, as this computer or its disk was busy. The file records where they are missing."""
+    """Number of cycles without space, because this computer or its disk was busy. The file records where cycles are missing."""
 
     events_dropped: int
-    """Events for which there was no room."""
+    """Number of events without space."""
 
     bytes: int
-    """Bytes in the files of the recording."""
+    """Number of bytes in the files of the recording."""
 
     waiting: int
-    """Bytes that wait for the disk."""
+    """Number of bytes that wait for the disk."""
 
     files: list[Path]
     """The files of the recording, oldest first."""
 
     black_boxes: list[Path]
-    """The files of the black box that were written."""
+    """The written files of the black box."""
 
     error: RecordError | None
     """The error that ended the recording early."""
 
     black_box_error: RecordError | None
-    """The error that prevented the newest black box."""
+    """The error that occurred when the newest black box was written."""
 
 
 @dataclass(frozen=True)
@@ -69,10 +72,10 @@ class RecordedRobot:
     """A robot of a recording."""
 
     name: str
-    """Its name; empty for a single robot without a name."""
+    """Name of the robot; empty for a single robot without a name."""
 
     kind: str | None
-    """``fr3`` or ``fer``; ``None`` if the file does not contain it."""
+    """``fr3`` or ``fer``; ``None`` if the file does not name the kind."""
 
     metadata: dict[str, str]
     """Other metadata of the robot."""
@@ -80,13 +83,13 @@ class RecordedRobot:
 
 @dataclass(frozen=True)
 class RecordedEvent:
-    """Something that happened while a robot was recorded."""
+    """An event in a recording."""
 
     host_time: int
-    """Time at which this computer was informed of it, ns since 1970."""
+    """Time at which this computer learned of the event, ns since 1970."""
 
     time_ms: int
-    """The robot's clock of the newest cycle before it; 0 if no cycle came before."""
+    """Robot clock of the newest cycle before the event, ms; 0 without such a cycle."""
 
     kind: str
     """Kind of the event: ``goal``, ``outcome``, ``mode``, ``errors``, ``diagnosis``, ``request``, ``note``,
@@ -102,10 +105,10 @@ class RecordedEvent:
     """Description in words."""
 
     goal: int | None
-    """The number of the goal that it is about, as in the column ``goal``."""
+    """Number of the goal to which the event belongs, as in the column ``goal``."""
 
     ending: str | None
-    """The way in which the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
+    """How the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
 
 
 @dataclass(frozen=True)
@@ -113,36 +116,36 @@ class Episode:
     """An attempt at a task, between two marks in a recording."""
 
     name: str
-    """Its name."""
+    """Name of the episode."""
 
     task: str
     """Task of the episode, in words."""
 
     success: bool | None
-    """True if the task was done; ``None`` if it was not judged."""
+    """True if the task succeeded; ``None`` if it was not judged."""
 
     begin: int
-    """Begin, ns since 1970."""
+    """Time of the beginning, ns since 1970."""
 
     end: int
-    """End, ns since 1970: ``recording.between(episode.begin, episode.end)`` is the episode."""
+    """Time of the end, ns since 1970. ``recording.between(episode.begin, episode.end)`` returns the episode."""
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """The recovered part of a damaged file."""
+    """Result of the recovery of a damaged file."""
 
     messages: int
-    """Messages in the new file."""
+    """Number of messages in the new file."""
 
     chunks: int
-    """Chunks that were intact."""
+    """Number of intact chunks."""
 
     lost: int
-    """Chunks that were damaged, and are left out."""
+    """Number of damaged chunks, which were omitted."""
 
     damage: str | None
-    """Damage of the file; ``None`` if it has none."""
+    """Description of the damage; ``None`` if the file was not damaged."""
 
 
 @dataclass(frozen=True)
@@ -167,10 +170,10 @@ class ReplayReport:
     """Time from the first target to the last, s."""
 
     joints: Spread
-    """Distances between the joints and their positions in the recording, rad. Each state counts with its furthest joint."""
+    """Distances of the joints from their recorded positions, rad. Each state counts with the joint that is furthest away."""
 
     position: Spread
-    """Distances between the end effector and its place in the recording, m."""
+    """Distances of the end effector from its recorded position, m."""
 
     states: int
     """Number of states that were compared."""

@@ -1,4 +1,4 @@
-"""Settings of a robot, as they are set and read."""
+"""Settings of a robot."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ __all__ = ["VirtualWall"]
 
 @dataclass(frozen=True, eq=False)
 class VirtualWall:
-    """A cuboid that the end effector stays inside of, as it is set up in Desk."""
+    """A virtual wall, as set up in Desk: a cuboid that the end effector cannot leave."""
 
     size: NDArray[np.float64]
-    """The corner opposite to the origin of its frame, ``(3,)`` m, in that frame."""
+    """Corner of the cuboid that is opposite to the origin of the cuboid's frame, in this frame, ``(3,)`` m."""
 
     pose: NDArray[np.float64]
-    """Pose of its frame in the base frame, ``(4, 4)``."""
+    """Pose of the cuboid's frame in the base frame, ``(4, 4)``."""
 
     is_active: bool
-    """True if it is active."""
+    """True if the wall is active."""

@@ -1,4 +1,4 @@
-"""The link between a simulated robot and its clients."""
+"""The network between a simulated robot and its clients."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["Network"]
 
 @dataclass(frozen=True, kw_only=True)
 class Network:
-    """A network with faults, for datagrams both ways. The command connection is not affected."""
+    """A network with faults, for datagrams in both directions. The command connection is not affected."""
 
     loss: float = 0.0
     """Probability that a datagram is lost, 0 to 1."""
@@ -19,17 +19,17 @@ class Network:
     """Delay of a packet, s."""
 
     jitter: float = 0.0
-    """Largest additional delay of a datagram, s; the order stays."""
+    """Largest additional delay of a datagram, s. Datagrams keep their order."""
 
     duplication: float = 0.0
     """Probability that a datagram arrives twice, 0 to 1."""
 
     stalls: bool = False
-    """True if states stall as in the network interface of a Franka Emika Robot: 2 to 7 ms, seven times a second."""
+    """True if states are held up as in the network interface of a Franka Emika Robot: for 2 to 7 ms, seven times a second."""
 
     cuts: Sequence[tuple[float, float]] = ()
-    """Periods in which nothing arrives: pairs of seconds, from and to, since the robot began. A ``state().time`` of 101.5 s
-    is 1.5 s then."""
+    """Periods in which nothing arrives: pairs (from, to) of seconds since the robot's start. For example, a ``state().time``
+    of 101.5 s is 1.5 s after the start."""
 
     seed: int = 1
     """Seed of the faults."""

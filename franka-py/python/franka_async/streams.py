@@ -12,10 +12,10 @@ T = TypeVar("T")
 
 
 class Stream(Generic[T]):
-    """Items as they come: ``async for`` in a coroutine, plain ``for`` on a thread without an event loop.
+    """Iterator over items as they arrive: ``async for`` in a coroutine, plain ``for`` on a thread without an event loop.
 
-    It ends when the connection does. No item is lost where the waiting for it is cancelled or times out: the next ``anext()``
-    returns it. Several tasks may share one; each item goes to one of them.
+    The stream ends with the connection. If a wait is cancelled or times out, no item is lost: the next ``anext()`` returns
+    it. Several tasks may share a stream; each item then goes to one of the tasks.
     """
 
     def __init__(self, source: Source) -> None:
@@ -30,7 +30,7 @@ class Stream(Generic[T]):
     async def __anext__(self) -> T:
         while True:
             await self._source.ready()
-            # Nothing else runs in this thread between the two.
+            # No other code runs in this thread between ``ready`` and ``take``.
             taken = self._source.take()
             if taken is not None:
                 item: T = taken[0]
@@ -43,9 +43,10 @@ class Stream(Generic[T]):
         return self.next()
 
     def next(self, timeout: float | None = None) -> T:
-        """Waits for the next item on this thread, with the interpreter released, and returns it.
+        """Waits for the next item on this thread, and returns it. The interpreter is released meanwhile.
 
-        Raises ``StopIteration`` at the end, and ``TimeoutError`` after ``timeout`` seconds. The next call then returns the item.
+        Raises ``StopIteration`` at the end, and ``TimeoutError`` after ``timeout`` seconds. The next call then returns the
+        item.
         """
         while True:
             self._source.ready().wait(timeout)
@@ -59,11 +60,11 @@ class Stream(Generic[T]):
 
 
 class Reading(NamedTuple):
-    """A state, with the number of missing states before it."""
+    """A state, and the number of missing states before it."""
 
     state: RobotState
     """The state."""
 
     missed: int
-    """Number of states that the robot sent between the previous state of the stream, or the beginning of the stream, and this
-    one."""
+    """Number of states that the robot sent before this state and that the stream does not contain. They are counted from the
+    previous state of the stream, or from its beginning."""

@@ -51,55 +51,57 @@ EventKind = Literal[
 
 @dataclass(frozen=True)
 class Backoff:
-    """Time between two attempts: ``first`` seconds after the first one, twice as long as before after each other one.
+    """Pauses between attempts: ``first`` seconds after the first attempt, and after each further attempt twice as long as
+    before.
 
-    The first attempt is made at once.
+    The first attempt is made immediately.
     """
 
     first: float = 0.1
-    """The first pause, s."""
+    """First pause, s."""
 
     most: float = 5.0
-    """The longest pause, s."""
+    """Longest pause, s."""
 
     jitter: float = 0.3
-    """Random share of each pause, 0 to 1: a pause is shorter by up to this share."""
+    """Random share of each pause, 0 to 1. A pause is shorter by up to this share."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Policy:
-    """Policy of the supervisor of a robot when the connection or the robot fails.
+    """What the supervisor of a robot does when the connection or the robot fails.
 
-    The default reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile. No policy
-    resumes a movement: motions and sessions end with the mishap.
+    The default reconnects for as long as necessary, never recovers from a reflex, and refuses motions meanwhile. No policy
+    resumes a motion: motions and sessions end with the failure.
 
     Raises ``ValueError`` for values that make no sense.
     """
 
     recover: tuple[int, float] | None = None
-    """Limit of automatic recoveries from reflexes: a count, and the window in seconds that it holds for. Attempts that fail
-    count."""
+    """Limit of automatic recoveries from reflexes: the number allowed within a window, and this window in seconds. Failed
+    attempts count."""
 
     only: Iterable[str] | None = None
-    """Limits recovery to reflexes whose errors are all among these, by the vendor's names. Needs ``recover``."""
+    """Permits recovery only from reflexes whose errors are all in this list, by the vendor's names. Needs ``recover``."""
 
     ask_first: bool = False
-    """Recovers only after someone has agreed: by ``robot.agree(reflex)``, or a function ``ask_before_recovery``."""
+    """Recovers only after a person has agreed, by ``robot.agree(reflex)`` or in a function ``ask_before_recovery``."""
 
     reconnect: Backoff | None = field(default_factory=Backoff)
-    """Pauses between two attempts to connect, and between two attempts to recover; ``None`` makes no new connection."""
+    """Pauses between two attempts to connect, and between two attempts to recover. With ``None`` the supervisor does not
+    reconnect."""
 
     give_up_after: float | None = None
-    """Seconds after which the supervisor gives up a lost connection; ``None``: never."""
+    """Seconds after which the supervisor gives up a lost connection; ``None`` means never."""
 
     silence: float = 3.0
-    """Seconds that the robot may be silent on an open connection, before the connection is closed and a new one made."""
+    """Seconds without a state on an open connection after which the supervisor closes the connection and makes a new one."""
 
     motions_wait: float | None = None
-    """Seconds that a motion waits while the supervisor reconnects or recovers; ``None`` refuses it."""
+    """Seconds for which a motion waits while the supervisor reconnects or recovers. With ``None`` the motion is refused."""
 
     seed: int | None = None
-    """Seed of the random part of pauses; ``None``: each robot draws its own."""
+    """Seed of the random part of pauses. With ``None`` each robot draws its own seed."""
 
     def __post_init__(self) -> None:
         if self.only is not None:
@@ -110,19 +112,19 @@ class Policy:
 
 @dataclass(frozen=True)
 class Reflex:
-    """The robot stopped itself."""
+    """A reflex: the robot stopped itself."""
 
     number: int
-    """Its number, counted from 1, as ``robot.agree(number)`` takes it."""
+    """Number of the reflex, counted from 1, as ``robot.agree(number)`` expects it."""
 
     errors: list[str]
     """The errors that hold the robot, by the vendor's names."""
 
     error: Exception | None
-    """The ``ControlError`` of the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
+    """The ``ControlError`` of the motion that ran, with log and diagnosis; ``None`` if no motion of this program ran."""
 
     differences: str | None = None
-    """Differences from the robot before the connection was lost, if it is not recognised. Someone has to agree then."""
+    """Differences from the robot before the connection was lost, if the robot is not recognised. A person must then agree."""
 
 
 @dataclass(frozen=True)
@@ -134,10 +136,10 @@ class CloseReason:
     or ``runtime_ended``."""
 
     text: str
-    """The reason in words."""
+    """The reason as text."""
 
     party: str
-    """Who can act on it: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
+    """Who can act on the reason: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +176,7 @@ class Event:
     """Time by the robot's clock, s; ``None`` without a connection."""
 
     lost: int
-    """Number of events that are missing before this one, because the listener lagged: it may lag 256 behind."""
+    """Number of events missing before this event, because the listener was too slow. It may be up to 256 events behind."""
 
     fields: Mapping[str, Any]
     """The fields of this kind."""
@@ -186,7 +188,7 @@ class Event:
         return self.text
 
     def __getattr__(self, name: str) -> Any:
-        # Only for names that are no attributes otherwise; `fields` itself is missing while an event is unpickled.
+        # Called only for names that are not attributes. `fields` itself is missing while an event is unpickled.
         fields = self.__dict__.get("fields", {})
         if name in fields:
             return fields[name]
@@ -199,7 +201,7 @@ class Health:
     """Condition of a robot."""
 
     condition: Condition
-    """``ready`` if the robot takes motions, or a motion runs; otherwise the reason why it does not."""
+    """``ready`` if the robot accepts motions, or if a motion runs; otherwise the reason why it does not."""
 
     since: float
     """Time since which the condition holds, in seconds after the robot was first connected to."""
@@ -208,21 +210,21 @@ class Health:
     """Number of the reflex that holds the robot, if any."""
 
     attempts: int
-    """Attempts to connect since the connection was lost; 0 while connected."""
+    """Number of attempts to connect since the connection was lost; 0 while connected."""
 
     reconnects: int
-    """Connections made after the first one."""
+    """Number of connections made after the first connection."""
 
     recoveries: int
-    """Recoveries by the supervisor."""
+    """Number of recoveries by the supervisor."""
 
     last_reconnect: float | None
-    """Duration of the newest reconnect, from the loss on, s."""
+    """Duration of the newest reconnection, from the loss of the connection, s."""
 
     last_recovery: float | None
-    """Duration of the newest recovery by the supervisor, from the notice of the reflex on, s."""
+    """Duration of the newest recovery by the supervisor, from the detection of the reflex, s."""
 
     @property
     def is_ready(self) -> bool:
-        """True if the robot takes motions, or one runs."""
+        """True if the robot accepts motions, or if a motion runs."""
         return self.condition == "ready"

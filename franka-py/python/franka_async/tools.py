@@ -6,8 +6,8 @@
     await tools.unload(robot)                     # the flange is bare again
 
 The file is ``franka_async/tools.json`` in the user's configuration directory, ``$XDG_CONFIG_HOME`` or ``~/.config``; the
-variable ``FRANKA_TOOLS`` names another one. It is written as a whole or not at all: a program that reads it meanwhile finds
-the old file.
+variable ``FRANKA_TOOLS`` names another one. The file is written completely or not at all. A program that reads it meanwhile
+finds the old file.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _VERSION = 1
 
 
 class ToolFileError(ValueError):
-    """The file of tools cannot be used as it is. Nothing in it was changed."""
+    """The file of tools cannot be used as it is. This package has not changed it."""
 
 
 def _matrix(name: str, value: ArrayLike, shape: tuple[int, ...]) -> tuple[Any, ...]:
@@ -49,7 +49,7 @@ _IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """A tool on the flange, in addition to the end effector that the robot is configured with.
+    """A tool on the flange, in addition to the end effector that is configured on the robot.
 
     Raises ``ValueError`` for values that no tool has.
     """
@@ -64,7 +64,7 @@ class Tool:
     """Inertia about the centre of mass, a matrix of 3 rows, kg m^2."""
 
     frame: ArrayLike = _IDENTITY
-    """``NE_T_EE``: the pose of the end effector in the nominal end effector's frame, 4 x 4."""
+    """``NE_T_EE``: the pose of the end effector in the frame of the nominal end effector, 4 x 4."""
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.mass) and 0.0 <= self.mass):
@@ -75,7 +75,7 @@ class Tool:
         if not np.array_equal(np.transpose(np.asarray(self.inertia)), np.asarray(self.inertia)):
             raise ValueError(f"inertia is {self.inertia}, expected a symmetric matrix")
         least, middle, greatest = np.linalg.eigvalsh(np.asarray(self.inertia)).tolist()
-        # The same tolerance as the driver's: states, whose loads become tools, have single precision.
+        # The same tolerance as the driver's, because states have single precision, and their loads become tools.
         rounding = 1e-9 + 1e-6 * float(np.abs(self.inertia).max())
         if least < -rounding or greatest > least + middle + rounding:
             moments = f"{round(least, 6):g}, {round(middle, 6):g} and {round(greatest, 6):g} kg m^2"
@@ -109,7 +109,7 @@ def names() -> list[str]:
 
 
 def get(name: str) -> Tool:
-    """Returns the tool of this name. Raises ``KeyError`` with the existing names."""
+    """Returns the tool with this name. Raises ``KeyError``, which lists the existing names."""
     tools = _read()
     if name not in tools:
         known = ", ".join(sorted(tools)) or "none"
@@ -118,7 +118,7 @@ def get(name: str) -> Tool:
 
 
 def save(name: str, tool: Tool) -> None:
-    """Saves a tool under this name and replaces the previous tool of that name."""
+    """Saves a tool under this name, in place of any previous tool with this name."""
     if not name or name != name.strip():
         raise ValueError(f"got the name {name!r}, expected text without blanks around it")
     tools = _read()
@@ -127,7 +127,7 @@ def save(name: str, tool: Tool) -> None:
 
 
 def delete(name: str) -> None:
-    """Deletes the tool of this name. Raises ``KeyError`` as ``get``."""
+    """Deletes the tool with this name. Raises ``KeyError`` as ``get`` does."""
     get(name)
     tools = _read()
     del tools[name]
@@ -135,11 +135,11 @@ def delete(name: str) -> None:
 
 
 async def load(robot: Robot, tool: str | Tool) -> Tool:
-    """Declares a tool to the robot, by its name or itself: its load, and the frame of the end effector. Returns it.
+    """Declares a tool to the robot: its load, and the frame of the end effector. ``tool`` is a name or a ``Tool``. Returns
+    the ``Tool``.
 
-    The robot refuses it while it moves (``CommandError``). If it takes the load and then refuses the frame, the load stays
-    declared.
-    Cancelled, the robot may have taken the load without the frame: load it again.
+    The robot refuses this during a motion (``CommandError``). If the robot accepts the load and then refuses the frame, the
+    load stays declared. If this call is cancelled, the robot may have accepted only the load; call it again.
     """
     chosen = get(tool) if isinstance(tool, str) else tool
     await robot.set_load(chosen.mass, chosen.center, chosen.inertia)
@@ -148,16 +148,17 @@ async def load(robot: Robot, tool: str | Tool) -> Tool:
 
 
 async def unload(robot: Robot) -> None:
-    """Removes the declared tool from the robot: no load, and the nominal end effector's frame. Raises as ``load``."""
+    """Removes the declared tool from the robot: no load, and the frame of the nominal end effector. Raises as ``load`` does."""
     await load(robot, Tool())
 
 
 async def identify(robot: Robot, *, frame: ArrayLike = _IDENTITY) -> Tool:
-    """Measures the load on the flange by a minute of small motions, as ``robot.identify()`` plans them. Returns it as a tool.
+    """Measures the load on the flange with a minute of small motions, as ``robot.identify()`` plans them. Returns the load
+    as a tool.
 
-    A load that is declared counts as a part of it. Nothing is declared or saved. The inertia is not measured: it is zero. Raises
-    ``IdentifyError``, ``MotionError``, and ``ValueError`` if the load is too light to be distinguished from none. Cancelling
-    brakes the arm.
+    A declared load is part of the result. This declares and saves nothing. The inertia is not measured, so it is zero.
+    Raises ``IdentifyError``, ``MotionError``, and ``ValueError`` if the load is too light to be detected. Cancelling brakes
+    the arm.
     """
     return _found(await robot.identify().run(), frame)
 
@@ -205,7 +206,7 @@ def _write(tools: dict[str, Tool]) -> None:
         },
     }
     file.parent.mkdir(parents=True, exist_ok=True)
-    # In the same directory, so that the file is replaced in one step.
+    # The temporary file is in the same directory, so that it replaces the file in one step.
     descriptor, draft = tempfile.mkstemp(dir=file.parent, prefix=".tools-", suffix=".json")
     try:
         with os.fdopen(descriptor, "w", encoding="utf-8") as out:

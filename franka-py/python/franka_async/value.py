@@ -8,7 +8,7 @@ __all__ = ["Value"]
 
 
 class Value:
-    """Base of frozen dataclasses that hold arrays: equal if all fields are."""
+    """Base of frozen dataclasses that contain arrays. Two values are equal if all fields are equal."""
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):

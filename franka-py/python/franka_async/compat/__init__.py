@@ -1,4 +1,4 @@
-"""Layers with the names of other packages over this one: a program changes one import line.
+"""Layers that offer the interfaces of other packages on top of this package: a program changes one import line.
 
 * :mod:`franka_async.compat.franka` for programs that were written for ``franka`` of the distribution ``franka-rs``;
 * :mod:`franka_async.compat.pylibfranka` for programs that were written for the vendor's ``pylibfranka``.

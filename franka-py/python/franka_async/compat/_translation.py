@@ -1,4 +1,4 @@
-"""Exceptions of the originals instead of the exceptions of this package."""
+"""Exceptions of the original packages instead of the exceptions of this package."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from .. import errors
 
 
 def text_of(error: errors.FrankaError) -> str:
-    """The text of an error, without the parts that the originals lack: the address and cause of a missing connection, the
-    argument that was out of range, and the advice.
+    """Returns the text of an error, without the parts that the original packages lack: the address and cause of a missing
+    connection, the argument that was out of range, and the advice.
     """
     text = str(error).removesuffix(" (`recover` first)")
     is_connecting = isinstance(error, errors.ConnectError)
@@ -21,8 +21,8 @@ def text_of(error: errors.FrankaError) -> str:
 
 
 def translation(exception: Callable[[errors.FrankaError], Exception]) -> Callable[[], AbstractContextManager[None]]:
-    """Returns a context that raises the exceptions that ``exception`` makes of the exceptions of this package. The latter are
-    the causes.
+    """Returns a context that translates exceptions of this package to the exceptions that ``exception`` makes of them. The
+    exception of this package is the cause.
     """
 
     @contextmanager

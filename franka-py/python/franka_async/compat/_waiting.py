@@ -1,4 +1,4 @@
-"""Waiting for operations and for the next item, on any thread, also on a thread that runs an event loop."""
+"""Functions that wait for operations and for the next item, on any thread, even on a thread that runs an event loop."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _PAUSE = 0.0002
 
 
 def wait(operation: Any) -> Any:
-    """Waits for an operation; returns its result. The interpreter is left to other threads.
+    """Waits for an operation, and returns its result. The interpreter is released for other threads.
 
-    A notebook runs its cells on a thread with an event loop. There the operation is waited for on another thread. The event
+    A notebook runs its cells on a thread with an event loop. In this case another thread waits for the operation. The event
     loop is blocked meanwhile, as in the original packages.
     """
     if not _in_event_loop():
@@ -64,7 +64,7 @@ def _in_event_loop() -> bool:
 
 
 def changed(read: Callable[[], T], when: Callable[[T], Any]) -> T | None:
-    """Returns the result of ``read()`` as soon as ``when`` of it has changed; ``None`` if it does not change within
+    """Returns the result of ``read()`` once ``when(result)`` has changed; ``None`` if it does not change within
     :data:`SILENCE`.
     """
     before = when(read())

@@ -10,9 +10,9 @@
             arm.move_by([0.0, 0.1, 0.0])
 
 Ctrl-C brakes the arm and raises ``KeyboardInterrupt``. Other threads run meanwhile, and may call ``robot.stop()``. Names,
-arguments and exceptions match ``franka_async``, which also has the classes that are not here. One method differs: ``Team.run``
-takes a function for each arm, ``team.run([lambda arm: arm.move_to(a), lambda arm: arm.move_by(b)])``, since a motion that was
-made would wait here.
+arguments and exceptions match ``franka_async``, which also has the classes that are not here. One method differs:
+``Team.run`` takes a function for each arm, ``team.run([lambda arm: arm.move_to(a), lambda arm: arm.move_by(b)])``, because
+here a call such as ``arm.move_to(a)`` waits for the end of the motion.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ __all__ = [
 ]
 
 _waiting: dict[type, type] = {}
-"""The class of this module for a class of the package."""
+"""For each class of the package, the class of this module."""
 
 
 class _Waiting:
@@ -53,17 +53,17 @@ class _Waiting:
 
 
 def _awaiting(argument: Any) -> Any:
-    """Returns the argument for ``franka_async`` of an argument for this module."""
+    """Converts an argument of this module to an argument for ``franka_async``."""
     return getattr(argument, "_awaiting", argument)
 
 
 def _unwrapped(arguments: Sequence[Any], keywords: dict[str, Any]) -> tuple[list[Any], dict[str, Any]]:
-    """Returns the arguments for ``franka_async`` of a call of this module."""
+    """Converts the arguments of a call of this module to arguments for ``franka_async``."""
     return [_awaiting(argument) for argument in arguments], {name: _awaiting(value) for name, value in keywords.items()}
 
 
 def _result(result: Any) -> Any:
-    """Waits for a result of ``franka_async`` and returns the result of this module."""
+    """Waits for a result of ``franka_async``, and converts it to a result of this module."""
     if isinstance(result, _native.Operation):
         result = result.wait()
     if type(result) is list:
@@ -76,7 +76,7 @@ def _result(result: Any) -> Any:
 
 
 def _class(of: type) -> Any:
-    """Returns a class with the methods of a class of the package, which wait."""
+    """Returns a class with the methods of a class of the package; its methods wait."""
 
     def method(name: str, there: Any) -> Any:
         @functools.wraps(there)
@@ -130,8 +130,8 @@ VacuumGripper = _class(_native.VacuumGripper)
 
 
 def _run(self: Any, motions: Sequence[Callable[[_native.Arm], _native.Motion | _native.Follow]]) -> Any:
-    """A motion of all arms, which begin together: a function for each, which gets its arm as the class of ``franka_async`` and
-    returns a motion of it that has not begun. Returns and raises as ``move_to``.
+    """Moves all arms, which begin together. Each function gets its arm as the class of ``franka_async``, and returns a
+    motion that has not begun. Returns and raises as ``move_to``.
     """
     arms = self._awaiting.arms
     if len(motions) != len(arms):

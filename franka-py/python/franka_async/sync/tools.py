@@ -1,4 +1,4 @@
-"""As ``franka_async.tools``, with functions that wait."""
+"""The functions of ``franka_async.tools``, which wait here."""
 
 from __future__ import annotations
 

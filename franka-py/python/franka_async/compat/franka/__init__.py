@@ -1,7 +1,7 @@
-"""``franka`` of the distribution ``franka-rs`` 0.4 over this package: ``import franka_async.compat.franka as franka``.
+"""``franka`` of the distribution ``franka-rs`` 0.4 on top of this package: ``import franka_async.compat.franka as franka``.
 
 Classes, keywords, defaults, exceptions and semantics match the original. States and models are the classes of this package,
-which have the same names. No thread of the program is raised to real-time priority.
+which have the same names. The layer raises no thread of the program to real-time priority.
 """
 
 import numpy as np
@@ -35,5 +35,7 @@ FLAT_LEN: int = RobotState.FLAT_LEN
 
 
 def rotated(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    """Returns ``quaternion`` (x y z w) turned by ``rotation_vector``, rad in the base frame, as ``move_by`` composes them."""
+    """Returns ``quaternion`` (x y z w) turned by ``rotation_vector``, rad, in the base frame. ``move_by`` turns targets in
+    this way.
+    """
     return rotated_by(quaternion, rotation_vector)

@@ -14,7 +14,8 @@ class FrankaError(Exception):
     def __init__(self, *text: object, kind: str = "invalid_operation") -> None:
         super().__init__(*text)
         self.kind = kind
-        """network, protocol, incompatible_version, command, control, realtime, invalid_operation, invalid_argument or model."""
+        """One of network, protocol, incompatible_version, command, control, realtime, invalid_operation, invalid_argument
+        and model."""
 
 
 class ControlException(FrankaError):
@@ -67,4 +68,4 @@ _OF_MOTION = {
 
 
 translated = translation(_exception)
-"""A context that raises the exceptions of the original instead of the exceptions of this package."""
+"""A context that raises the exceptions of the original package instead of the exceptions of this package."""

@@ -10,7 +10,7 @@ GripperState = _native.GripperState
 
 
 class Gripper(Fingers):
-    """A connected Hand. Calls that wait leave the interpreter to other threads, and ``stop`` may come from one."""
+    """A connected Hand. Calls that wait release the interpreter for other threads. Another thread may call ``stop``."""
 
     _translated = staticmethod(translated)
     _refused = staticmethod(lambda text: FrankaError(text, kind="command"))
@@ -24,7 +24,7 @@ class Gripper(Fingers):
         return VERSION
 
     def move(self, width: float, speed: float) -> bool:
-        """Moves the fingers to this width, m, at this speed, m/s; returns whether they arrived."""
+        """Moves the fingers to this width, m, at this speed, m/s. Returns True if they arrived."""
         return self._move(width, speed)
 
     def read_once(self) -> GripperState:

@@ -53,7 +53,7 @@ class Model:
         F_x_Ctotal: npt.ArrayLike | None = None,
         gravity_earth: npt.ArrayLike | None = None,
     ) -> Array:
-        """Returns the torques of Coriolis and centrifugal forces, (7,), which do not depend on ``gravity_earth``."""
+        """Returns the torques of Coriolis and centrifugal forces, (7,). They do not depend on ``gravity_earth``."""
         if gravity_earth is not None:
             vector("gravity_earth", gravity_earth, 3)
         return self._model.coriolis(q, dq, I_total, m_total, F_x_Ctotal)
@@ -63,7 +63,7 @@ class Model:
         return np.concatenate([np.eye(4)[np.newaxis], self._model.link_poses(q)[:7]])
 
     def hand_pose(self, q: npt.ArrayLike) -> Array:
-        """Returns the pose of the Hand, (4, 4): the flange turned by -45 degrees about its z."""
+        """Returns the pose of the Hand, (4, 4): the flange turned by -45 degrees about its z axis."""
         pose: Array = self._model.pose("flange", q) @ _HAND
         return pose
 
@@ -85,7 +85,7 @@ class Robot:
 
     @property
     def address(self) -> str:
-        """Address of the robot, as it was given."""
+        """Address of the robot, as the program gave it."""
         return self._address
 
     @property
@@ -95,14 +95,14 @@ class Robot:
 
     @property
     def server_version(self) -> int:
-        """The same version, as the robot reports it."""
+        """The protocol version, as the robot reports it."""
         return self._robot.fci_version
 
     def __repr__(self) -> str:
         return f'Robot("{self.address}", fci_version={self.fci_version}, server_version={self.server_version})'
 
     def read_once(self) -> _native.RobotState:
-        """Waits for the next state; also while a session runs."""
+        """Waits for the next state. This also works while a session runs."""
         with translated():
             state = changed(self._robot.state, lambda state: state.time_ms)
         if state is None:
@@ -120,7 +120,7 @@ class Robot:
         lower_force_thresholds_nominal: npt.ArrayLike,
         upper_force_thresholds_nominal: npt.ArrayLike,
     ) -> None:
-        """Sets the thresholds of contact (lower) and collision (upper) while the arm accelerates and otherwise."""
+        """Sets the thresholds of contact (lower) and collision (upper), for an accelerating arm and for other motions."""
         given = {name: value for name, value in locals().items() if name != "self"}
         thresholds = {name: vector(name, value, 7 if "torque" in name else 6) for name, value in given.items()}
         self._set("Set Collision Behavior", lambda: self._robot.set_collision_behavior(**thresholds))
@@ -132,7 +132,7 @@ class Robot:
         lower_force_thresholds: npt.ArrayLike,
         upper_force_thresholds: npt.ArrayLike,
     ) -> None:
-        """Sets the same thresholds for accelerating and other motions."""
+        """Sets the thresholds of contact and collision, with the same values for an accelerating arm and for other motions."""
         torque, force = (lower_torque_thresholds, upper_torque_thresholds), (lower_force_thresholds, upper_force_thresholds)
         self.set_collision_behavior(*torque, *torque, *force, *force)
 
@@ -150,7 +150,7 @@ class Robot:
         try:
             operation = setting()
         except ValueError as error:
-            # The original leaves the check to the robot.
+            # The original does not check this; the robot does.
             raise FrankaError(f"libfranka: {command} command rejected: invalid argument!", kind="command") from error
         with translated():
             wait(operation)
@@ -161,7 +161,7 @@ class Robot:
             wait(self._robot.recover())
 
     def stop(self) -> None:
-        """Stops every motion, from any thread; a session's ``stop`` then raises ControlException."""
+        """Stops every motion, from any thread. The ``stop`` of a session then raises ControlException."""
         with translated():
             wait(self._robot.stop())
 
@@ -171,7 +171,7 @@ class Robot:
             return Model(self._robot.model())
 
     def gripper(self) -> Gripper:
-        """Returns the Hand of this robot, connected."""
+        """Connects to the Hand of this robot and returns it."""
         gripper = Gripper.__new__(Gripper)
         gripper._connect(self._robot.gripper())
         return gripper
@@ -202,7 +202,8 @@ class Robot:
         limit_rate: bool = True,
         realtime_priority: int | None = None,
     ) -> CartesianTargets:
-        """Begins a session of targets of the end effector. Limits are m/s, m/s^2, m/s^3 and the same of angles in rad.
+        """Begins a session with targets of the end effector. Limits are in m/s, m/s^2 and m/s^3, and for angles in rad
+        instead of m.
 
         ``limit_rate`` and ``realtime_priority`` have no effect: commands are always limited, and the priority belongs to the
         connection.
@@ -257,7 +258,7 @@ class Robot:
         limit_rate: bool = True,
         realtime_priority: int | None = None,
     ) -> JointTargets:
-        """Begins a session of targets of the joints, at this fraction of the limits of this package. ``limit_rate`` and
+        """Begins a session with joint targets, at this fraction of the limits of this package. ``limit_rate`` and
         ``realtime_priority`` have no effect, as in ``cartesian_targets``.
         """
         gains = _given(
@@ -277,7 +278,7 @@ class Robot:
         if _by_robot(backend, controller_mode, project_joint_gains, **gains, leash=leash):
             options["backend"] = (controller_mode, "joint_positions")
         else:
-            # The law has no spring of the end effector in whose null space the springs of the joints could act.
+            # The law has no spring at the end effector, so it has no null space in which the joint springs could act.
             options["gains"] = _gains(Gains.joint(), gains, False)
             options |= _given(leash=None if leash is None else Leash(joints=leash))
         arm = self._engage(options)
@@ -344,7 +345,7 @@ def _given(**options: Any) -> dict[str, Any]:
 
 
 def _of_axes(values: npt.ArrayLike | None, defaults: Any) -> Any:
-    """Expands one number to the three translations."""
+    """Expands one number to all three translations."""
     if values is not None and np.ndim(values) == 0:
         return [float(np.float64(values))] * 3 + list(defaults[3:])  # type: ignore[arg-type]
     return values
@@ -381,7 +382,7 @@ def _of_length(name: str, values: npt.ArrayLike, length: int) -> list[float]:
 
 
 def _by_robot(backend: str, controller_mode: str, project_joint_gains: bool, **impedance: Any) -> bool:
-    """True if the robot's own controller follows. Raises ``ValueError``."""
+    """True if the robot's own controller follows the targets. Raises ``ValueError``."""
     _text("backend", backend), _text("controller_mode", controller_mode)
     if _truth("project_joint_gains", project_joint_gains):
         impedance = {**impedance, "project_joint_gains=True": True}

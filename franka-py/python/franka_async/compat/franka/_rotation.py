@@ -9,11 +9,11 @@ Array = npt.NDArray[np.float64]
 
 
 def rotated_by(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> Array:
-    """Returns the quaternion turned about axes of the base: ``exp(r) q``. It keeps its length."""
+    """Returns the quaternion turned about axes of the base: ``exp(r) q``. The length of the quaternion does not change."""
     q = vector("quaternion", quaternion, 4)
     r = vector("rotation_vector", rotation_vector, 3)
     angle = float(np.linalg.norm(r))
-    # sin(angle / 2) / angle, which is a half for no angle.
+    # sin(angle / 2) / angle, which is 1/2 at angle zero.
     turn = np.append(r * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(angle / 2.0))
     return product(turn, q)
 
@@ -33,8 +33,8 @@ def normalised(quaternion: Array) -> Array:
 
 
 def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
-    """Returns a vector of one of these lengths. Raises ``TypeError`` for anything but a vector, and ``ValueError`` for
-    another length and for numbers that are not finite.
+    """Returns a vector whose length is one of these. Raises ``TypeError`` for anything but a vector, and ``ValueError`` for
+    another length and for non-finite numbers.
     """
     array = vector(name, values, *counts)
     if not np.isfinite(array).all():
@@ -43,7 +43,7 @@ def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
 
 
 def vector(name: str, values: npt.ArrayLike, *counts: int) -> Array:
-    """Returns a vector of one of these lengths, or of any. Raises ``TypeError`` or ``ValueError``."""
+    """Returns a vector whose length is one of these, or any. Raises ``TypeError`` or ``ValueError``."""
     array = np.array(values, dtype=np.float64)
     if array.ndim != 1:
         raise TypeError(f"franka: {name} is a vector, got the shape {array.shape}")

@@ -1,4 +1,4 @@
-"""Target control: the robot goes to the newest target, which a program moves at its own rate."""
+"""Target control: the robot moves to the newest target, and the program moves the target at its own rate."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _COMES_FURTHER = 5e-3
 
 
 class _Targets:
-    """A session. It runs from the call that made it, with or without ``with``."""
+    """A session. It runs from the call that creates it, with or without ``with``."""
 
     def __init__(self, robot: _native.Robot, arm: _native.Arm, target: Array) -> None:
         self._robot = robot
@@ -39,7 +39,7 @@ class _Targets:
         self._lock = threading.Lock()
         self._target = target
         self._is_stopped = False
-        # Number of the newest `follow`: an older one ends.
+        # Number of the newest call of `follow`. Older calls end.
         self._following = 0
 
     def _locked(self) -> threading.Lock:
@@ -69,20 +69,20 @@ class _Targets:
         self._target = target
 
     def move_to(self, target: npt.ArrayLike) -> None:
-        """Moves the target to a new place; never waits."""
+        """Moves the target to a new place. This never waits."""
         with self._locked():
             self._following += 1
             self._set(self._absolute(target))
 
     def move_by(self, delta: npt.ArrayLike) -> None:
-        """Moves the target relative to its present place; never waits."""
+        """Moves the target relative to its current place. This never waits."""
         with self._locked():
             self._following += 1
             self._set(self._moved(delta))
 
     def follow(self, chunk: npt.ArrayLike, dt: float = 0.02) -> None:
         """Moves the target along the rows in the background: to the first row now, then to one row every ``dt`` seconds. A
-        newer call ends it, as does a row that cannot be reached.
+        newer call ends this, and so does a row that cannot be reached.
         """
         if not (dt > 0.0 and np.isfinite(dt)):
             raise ValueError(f"franka: dt must be positive, got {dt}")
@@ -132,8 +132,9 @@ class _Targets:
         return not self._is_stopped and self._arm.reference() is not None
 
     def stop(self) -> None:
-        """Waits until the arm rests at the last target, or has come no further for five seconds because something holds it, and ends
-        the session. Raises what had ended it before. Without effect once it was stopped.
+        """Waits until the arm rests at the last target, or until something has held the arm for five seconds without
+        progress; then ends the session. Raises the error if the session had already ended with one. After the first call,
+        this has no effect.
         """
         with self._locked():
             self._following += 1
@@ -173,7 +174,7 @@ class _Targets:
 
 
 class CartesianTargets(_Targets):
-    """Targets of the end effector: position, m, and quaternion x y z w, in the base frame."""
+    """A session with targets of the end effector: position, m, and quaternion x y z w, in the base frame."""
 
     def _goal(self, target: Array) -> Any:
         return target
@@ -201,7 +202,7 @@ class CartesianTargets(_Targets):
 
 
 class JointTargets(_Targets):
-    """Targets of the joints, (7,), rad."""
+    """A session with joint targets, (7,), rad."""
 
     def _goal(self, target: Array) -> Any:
         return Joints(target)

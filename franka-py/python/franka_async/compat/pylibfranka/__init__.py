@@ -1,4 +1,4 @@
-"""The vendor's ``pylibfranka`` 0.21 over this package: ``import franka_async.compat.pylibfranka as pylibfranka``.
+"""The vendor's ``pylibfranka`` 0.21 on top of this package: ``import franka_async.compat.pylibfranka as pylibfranka``.
 
 Names, arguments, lists (column-major), enumerations, exceptions and their texts match the original. Three points differ:
 

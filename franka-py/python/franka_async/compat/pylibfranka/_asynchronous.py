@@ -13,7 +13,7 @@ from ._robot import Robot
 from ._state import NoConstructor, RobotState, _Number, made
 
 _NEAREST, _FARTHEST = 1e-6, 20.0
-"""The least and the greatest tolerance that the driver takes, rad."""
+"""Least and greatest tolerance that the driver accepts, rad."""
 
 _ABORTED = "Control interface is in aborted state."
 
@@ -47,10 +47,10 @@ def _check(name: str, value: object, expected: type) -> None:
 
 
 class AsyncPositionControlHandler(metaclass=NoConstructor):
-    """A motion between sparse joint targets. Made by ``configure``."""
+    """A motion between sparse joint targets. ``configure`` creates it."""
 
     class Configuration:
-        """Bounds of the joint velocities, 7, rad/s, and the distance that counts as reached, rad."""
+        """Largest joint velocities, 7, rad/s, and the distance from the target that counts as reached, rad."""
 
         def __init__(self, maximum_joint_velocities: Sequence[float], goal_tolerance: float) -> None:
             self.maximum_joint_velocities: list[float] | None = _seven("joint_velocities", maximum_joint_velocities)
@@ -71,7 +71,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
 
     @dataclass
     class CommandResult:
-        """Answer to a target: accepted or not."""
+        """Answer to a target: whether the robot accepted it."""
 
         motion_uuid: str | None
         was_successful: bool
@@ -90,13 +90,13 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
 
     @staticmethod
     def configure(robot: Robot, configuration: Configuration, /) -> ConfigurationResult:
-        """Begins the motion; returns its handler."""
+        """Begins the motion, and returns its handler."""
         result = AsyncPositionControlHandler.ConfigurationResult
         _check("configuration", configuration, AsyncPositionControlHandler.Configuration)
         begin = robot._robot.asynchronous_joint_positions
         tolerance, distance = configuration.goal_tolerance, configuration.goal_tolerance
         if tolerance is not None:
-            # The original takes any number. At 0 and below, and with NaN, no target is ever reached.
+            # The original accepts any number. With 0, a negative number or NaN, no target ever counts as reached.
             distance = min(tolerance, _FARTHEST) if tolerance > _NEAREST else _NEAREST
         reaches = tolerance is None or tolerance > 0.0
         try:
@@ -106,7 +106,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         return result(made(AsyncPositionControlHandler, control, reaches), None)
 
     def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
-        """Sends the robot to a target, which replaces the previous target."""
+        """Sends the robot to a target. It replaces the previous target."""
         result = AsyncPositionControlHandler.CommandResult
         _check("target", target, AsyncPositionControlHandler.JointPositionTarget)
         if self._control is None:
@@ -120,7 +120,7 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         return result(str(uuid.uuid4()), True, None)
 
     def get_target_feedback(self, robot_state: RobotState | None = None) -> TargetFeedback:
-        """Returns the progress towards the newest target, from the newest state."""
+        """Returns the progress towards the newest target, according to the newest state."""
         result = AsyncPositionControlHandler.TargetFeedback
         if self._control is None:
             return result(TargetStatus.kAborted, _ABORTED)

@@ -1,4 +1,4 @@
-"""Commands: numbers, and a flag for the last command."""
+"""Commands: numbers, and a flag that marks the last command."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def numbers(what: str, values: Iterable[SupportsFloat], count: int) -> list[floa
 
 
 def number(what: str, value: SupportsFloat) -> float:
-    """Returns a number. Raises ``TypeError`` for anything else, texts included."""
+    """Returns a number. Raises ``TypeError`` for anything else, even for text."""
     if isinstance(value, str | bytes):
         raise TypeError(f"{what}: got {value!r}, expected a number")
     return float(value)
 
 
 class _Numbers:
-    """An attribute that is a list with a fixed count of numbers."""
+    """An attribute that is a list with a fixed number of numbers."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -64,7 +64,7 @@ class _Command:
 
     @motion_finished.setter
     def motion_finished(self, finished: Any) -> None:
-        # Accepts None and any value that defines its own truth, as the original does; refuses texts and lists.
+        # As in the original, accepts None and any value that defines its own truth, and refuses text and lists.
         if finished is not None and not hasattr(finished, "__bool__"):
             raise TypeError(f"motion_finished: got {finished!r}, expected a bool")
         self._is_last = bool(finished)

@@ -1,4 +1,4 @@
-"""Exceptions, which derive from ``RuntimeError`` as in the original; their common base does not."""
+"""Exceptions. As in the original, each derives from ``RuntimeError``, but their common base does not."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class CommandException(RuntimeError):
 
 
 class NetworkException(RuntimeError):
-    """There is no connection, or it was lost."""
+    """No connection is possible, or the connection was lost."""
 
 
 class ControlException(RuntimeError):
@@ -34,7 +34,7 @@ PREEMPTED = "libfranka: Move command preempted!"
 BUSY = "libfranka robot: Cannot perform this operation while another control or read operation is running."
 SILENT = "libfranka: UDP receive: Timeout"
 
-# Texts of errors that are the fault of an argument begin like these.
+# Texts of errors that an argument causes begin like these.
 _ARGUMENT = ("Commanding value is infinite or NaN", "libfranka: Attempt to set invalid", "Invalid ")
 
 
@@ -81,4 +81,4 @@ def _of_motion(kind: str, text: str) -> Exception:
 
 
 translated = translation(_exception)
-"""A context that raises the exceptions of the original instead of the exceptions of this package."""
+"""A context that raises the exceptions of the original package instead of the exceptions of this package."""

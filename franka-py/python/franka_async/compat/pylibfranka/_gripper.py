@@ -22,7 +22,7 @@ class GripperState(metaclass=NoConstructor):
 
 
 class Gripper(Fingers):
-    """A connected Hand. Every call that waits leaves the interpreter to other threads, and ``stop`` may come from one."""
+    """A connected Hand. Every call that waits releases the interpreter for other threads. Another thread may call ``stop``."""
 
     _translated = staticmethod(translated)
     _refused = CommandException
@@ -31,7 +31,7 @@ class Gripper(Fingers):
         self._connect(_native.Gripper(franka_address))
 
     def move(self, width: float, speed: float, /) -> bool:
-        """Moves the fingers to this width, m, at this speed, m/s; returns whether they arrived."""
+        """Moves the fingers to this width, m, at this speed, m/s. Returns True if they arrived."""
         return self._move(width, speed)
 
     def read_once(self) -> GripperState:

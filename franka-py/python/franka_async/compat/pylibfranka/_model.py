@@ -25,7 +25,7 @@ class Model(metaclass=NoConstructor):
         return _listed(self._model.coriolis(s.q, s.dq, *load))
 
     def gravity(self, robot_state: RobotState, /) -> list[float]:
-        """Returns the torques that hold the arm against the gravity that it measures, 7, N m."""
+        """Returns the torques that hold the arm against gravity as the robot measures it, 7, N m."""
         s = _checked("gravity", robot_state)
         return _listed(self._model.gravity(s.q, s.m_total, s.F_x_Ctotal, s.O_ddP_O))
 
@@ -35,7 +35,9 @@ class Model(metaclass=NoConstructor):
         return _listed(self._model.mass(s.q, _square(s.I_total, 3), s.m_total, s.F_x_Ctotal))
 
     def zero_jacobian(self, *arguments: Any) -> list[float]:
-        """Returns the zero Jacobian, 42, of the end effector, or of a frame that is given before the state: its number or name."""
+        """Returns the zero Jacobian, 42, of the end effector, or of the frame (number or name) that precedes the state in
+        the arguments.
+        """
         if len(arguments) not in (1, 2):
             raise TypeError("zero_jacobian() takes a RobotState, or a frame and a RobotState")
         *frame, s = arguments

@@ -48,7 +48,7 @@ class ActiveControlBase(metaclass=NoConstructor):
         self._is_preempted = False
 
     def readOnce(self) -> tuple[RobotState, Duration]:
-        """Waits for the next state; returns it with the time since the previous state."""
+        """Waits for the next state. Returns it and the time since the previous state."""
         if self._is_preempted:
             raise ControlException(PREEMPTED)
         try:
@@ -62,7 +62,7 @@ class ActiveControlBase(metaclass=NoConstructor):
         return made(RobotState, state), made(Duration, step)
 
     def writeOnce(self, command: Any, /) -> None:
-        """Sends the command that answers the newest state; with ``motion_finished`` it ends the motion."""
+        """Sends the command that answers the newest state. A command with ``motion_finished`` ends the motion."""
         if not isinstance(command, Torques | JointPositions | JointVelocities | CartesianPose | CartesianVelocities):
             raise TypeError(f"writeOnce(): got {type(command).__name__}, expected Torques or a command to a motion generator")
         if not isinstance(command, self._command):
@@ -78,7 +78,7 @@ class ActiveControlBase(metaclass=NoConstructor):
             with translated():
                 self._control.write_once(values, command.motion_finished)
         except Exception as error:
-            # The thread that stops the motion may hold it at this moment.
+            # Another thread may be stopping the motion at this moment.
             if self._is_preempted:
                 raise ControlException(PREEMPTED) from error
             raise
@@ -105,7 +105,7 @@ class Robot:
             try:
                 wait(self._robot.connect())
             except errors.ConnectError as error:
-                # The original first looks for the robot, and then checks this computer.
+                # Like the original, connects to the robot before it checks this computer.
                 if error.kind == "realtime":
                     robot = _native.Robot(robot_ip_address, realtime="ignore")
                     wait(robot.connect())
@@ -113,7 +113,7 @@ class Robot:
                 raise
 
     def read_once(self) -> RobotState:
-        """Waits for the next state; under active control, which reads them all, returns the newest."""
+        """Waits for the next state. Under active control, which reads every state, returns the newest state."""
         active = self._active and self._active()
         with translated():
             if active and not active._is_over:
@@ -200,7 +200,7 @@ class Robot:
         try:
             operation = setting()
         except ValueError as error:
-            # The original leaves the check to the robot.
+            # The original does not check this; the robot does.
             raise CommandException(f"libfranka: {command} command rejected: invalid argument!") from error
         with translated():
             wait(operation)
@@ -228,8 +228,8 @@ class Robot:
             return made(Model, self._robot.model())
 
     def stop(self) -> None:
-        """Stops every motion; its ``readOnce`` raises ControlException."""
-        # Under active control the robot stops without the thread that reads, which may be this thread.
+        """Stops every motion. ``readOnce`` of this motion then raises ControlException."""
+        # Under active control, the stop must not need the thread that reads, because it may be this thread.
         if active := self._active and self._active():
             active._preempt()
         with translated():

@@ -13,7 +13,7 @@ from ._commands import number, numbers
 
 
 class _Number(enum.Enum):
-    """An enumeration whose members have a number, as in the original."""
+    """An enumeration whose members have a number as value, as in the original."""
 
     def __int__(self) -> int:
         return int(self.value)
@@ -35,7 +35,7 @@ class ControllerMode(_Number):
 
 
 class RealtimeConfig(_Number):
-    """Policy for a computer without real-time scheduling: refuse it or not."""
+    """What to do on a computer without real-time scheduling: refuse to control the robot or not."""
 
     kEnforce = 0
     kIgnore = 1
@@ -54,7 +54,7 @@ class RobotMode(_Number):
 
 
 class NoConstructor(type):
-    """Classes whose objects come from the package only, as in the original."""
+    """Base of classes that only this package can instantiate, as in the original."""
 
     def __call__(cls, *_arguments: Any, **_keywords: Any) -> Any:
         raise TypeError(f"pylibfranka.{cls.__qualname__}: No constructor defined!")
@@ -64,13 +64,13 @@ _T = TypeVar("_T")
 
 
 def made(of: Callable[..., _T], *arguments: Any) -> _T:
-    """An object of a class without a constructor."""
+    """Creates an object of a class without a constructor."""
     instance: _T = type.__call__(of, *arguments)
     return instance
 
 
 class Duration(metaclass=NoConstructor):
-    """A time."""
+    """A duration."""
 
     __slots__ = ("_seconds",)
 
@@ -78,7 +78,7 @@ class Duration(metaclass=NoConstructor):
         self._seconds = seconds
 
     def to_sec(self) -> float:
-        """Returns it in seconds."""
+        """Returns the duration in seconds."""
         return self._seconds
 
 
@@ -107,7 +107,7 @@ class Errors:
 ERRORS = frozenset(name.lower() for name in _native.ERROR_NAMES)
 
 for _name in ERRORS:
-    # The vendor's library leaves the end out of one name.
+    # The vendor's library omits the end of one name.
     setattr(Errors, _name.removesuffix("_flag"), property(lambda errors, name=_name: name in errors._set))
 
 _MODES = {
@@ -127,7 +127,7 @@ def _listed(values: Any) -> list[float]:
 
 
 class _Field:
-    """An attribute of a state, made when it is read first. A list is a new one each time."""
+    """An attribute of a state, computed when it is first read. A list is a new list each time."""
 
     def __init__(self, name: str, make: Callable[[Any], Any], take: Callable[[Any], Any]) -> None:
         self.name = name
@@ -148,9 +148,9 @@ class _Field:
 
 
 class RobotState(metaclass=NoConstructor):
-    """State of the robot in one millisecond. Arrays are lists, poses 16 numbers column by column.
+    """State of the robot in one millisecond. Arrays are lists; a pose is a list of 16 numbers, column by column.
 
-    A program may set its attributes; the robot does not see that.
+    A program may set the attributes of a state. This has no effect on the robot.
     """
 
     __slots__ = ("__weakref__", "_state", "_values")
