@@ -20,13 +20,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     if !is_wanted || !is_linux || env::var_os(STATIC).is_some() {
         return Ok(());
     }
-    // Without a directory, `mujoco-rs` asks pkg-config, whose libraries the loader knows.
+    // Without a directory, `mujoco-rs` asks pkg-config. The loader finds libraries of pkg-config
+    // by itself.
     let Some(directory) = env::var_os(DYNAMIC).map(PathBuf::from) else {
         return Ok(());
     };
     let library = directory.join("libmujoco.so");
     println!("cargo::rerun-if-changed={}", library.display());
-    // `mujoco-rs` reports this, too, with another text.
+    // `mujoco-rs` also reports this error, with another text.
     let library = fs::canonicalize(&library).map_err(|error| {
         format!(
             "no library of MuJoCo: {}: {error}; run `cargo xtask mujoco`, or set {DYNAMIC} to the absolute path of a \

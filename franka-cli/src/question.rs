@@ -34,7 +34,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
         "Clear the path of the arm, and keep the user stop within reach. {BOLD}Continue? [y/N]{BOLD:#} "
     )?;
     terminal.flush()?;
-    // On a separate thread, which is abandoned after Ctrl-C.
+    // Reads on a separate thread, which is abandoned after Ctrl-C.
     let (answer, answered) = oneshot::channel();
     std::thread::spawn(move || {
         let mut line = String::new();

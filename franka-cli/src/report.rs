@@ -12,7 +12,7 @@ use crate::output::json_line;
 /// Prints why a command failed, if `json` is true also as JSON. Returns how the program ends.
 pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     let ending = Ending::of(error);
-    // The reader has closed the pipe: an error text would reach no one.
+    // The reader has closed the pipe, so nobody would see an error text.
     if is_broken_pipe(error) {
         return Ending::Done;
     }

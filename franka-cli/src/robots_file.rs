@@ -90,7 +90,7 @@ impl RobotsFile {
             let mut new = Value::from(new);
             match fields.get_mut(key).and_then(Item::as_value_mut) {
                 Some(old) => {
-                    // Keeps the comment after it.
+                    // Keeps the comment behind the old value.
                     *new.decor_mut() = old.decor().clone();
                     *old = new;
                 }

@@ -39,7 +39,7 @@ impl Watch {
             .message_id
             .saturating_sub(last.unwrap_or(state.message_id));
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
-        // The robot estimates the torque that it exerts itself.
+        // The robot estimates the torque that it exerts; the contact needs the opposite sign.
         let read = -JointVector::from(state.tau_ext_hat_filtered);
         let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
         if !self.tare.is_touched() || self.tare.learned() < LEARNED {

@@ -86,7 +86,7 @@ impl Fingers {
                 () = end.cancelled() => return (false, "Gripper: stopped".to_owned()),
                 outcome = act(&fingers.gripper, action) => outcome,
             };
-            // Unless another action has replaced it.
+            // Clears the action, unless another action has replaced it.
             fingers.lock().take_if(|_| !end.is_cancelled());
             let text = match &outcome {
                 Ok(done) => word(action, *done),

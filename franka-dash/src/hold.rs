@@ -80,7 +80,7 @@ pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> E
     let end = task.end.clone();
     match attempt(robot, task, show).await {
         Ok(()) => Ended::AsAsked,
-        // The consequence of the hold's end, or of a stop by a viewer.
+        // The error follows from the end of the hold, or from a viewer's stop.
         Err(Fault::Motion(
             MotionError::Stopped | MotionError::Held(_) | MotionError::Disengaged,
         )) if end.is_cancelled() => Ended::AsAsked,
@@ -164,7 +164,7 @@ async fn go(
 ) -> Result<(), MotionError> {
     match way {
         Way::Joints { target, .. } => return arm.move_joints(target).await.map(drop),
-        // As planned: straight, or refused.
+        // As in the preview, the path is straight, or the motion is refused.
         Way::Pose(pose) => return arm.move_through([pose]).await.map(drop),
         Way::EndEffector => {}
     }

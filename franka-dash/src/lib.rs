@@ -160,7 +160,7 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     // same address.
     #[cfg(unix)]
     socket.set_reuseaddr(true)?;
-    // Accepted connections inherit it.
+    // Accepted connections inherit this option.
     socket.set_nodelay(true)?;
     socket.bind(address)?;
     socket.listen(WAITING)

@@ -91,7 +91,8 @@ mod tests {
                     }
                     for end in [capsule.start, capsule.end] {
                         let off = (end - origin).cross(&axis).norm();
-                        // The axis of the capsule, because links are thinner than the capsules.
+                        // Uses the axis of the capsule, because links are thinner than their
+                        // capsules.
                         assert!(off <= *reach, "{body:?} {joint} {off}");
                     }
                 }

@@ -156,7 +156,7 @@ impl Writing {
 
     /// Waits until the count is zero.
     pub(crate) async fn none(self) {
-        // The sender lives as long as this value.
+        // The sender lives as long as `self`.
         let _ = self.0.subscribe().wait_for(|count| *count == 0).await;
     }
 }

@@ -89,7 +89,7 @@ pub fn several<N: Into<String>>(
 
 fn is_part_of_an_address(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_alphanumeric() || "-_.:~".contains(c);
-    // Names of dots only are steps between folders.
+    // Names that consist of dots are relative folders, for example `..`.
     (1..=40).contains(&name.len()) && name.chars().all(fits) && name.contains(|c| c != '.')
 }
 

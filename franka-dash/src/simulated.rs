@@ -135,7 +135,7 @@ impl Simulated {
                     match width {
                         Some(width) => fingers.place_object(width),
                         None => {
-                            // There may be no object.
+                            // There may be no object to remove.
                             let _ = fingers.take_object();
                             true
                         }
@@ -210,7 +210,7 @@ fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<Touch
             inertia: Matrix3::zeros(),
         }),
         Disturbance::Arm { arm } => robot.fit(simulate(arm, robot.config().kind)),
-        // Not disturbances of the robot itself.
+        // These disturbances do not act on the robot itself.
         Disturbance::Network { .. }
         | Disturbance::Cut { .. }
         | Disturbance::Object { .. }
@@ -248,7 +248,7 @@ fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
         jitter: milliseconds(jitter_ms),
         ..network::Conditions::default()
     };
-    // The robot's interface causes the pauses.
+    // The robot's network interface causes the pauses.
     let stalls = (stalls_per_second > 0.0 && stall_ms > 0.0).then(|| Stalls {
         per_second: stalls_per_second,
         shortest: milliseconds(stall_ms),

@@ -69,7 +69,7 @@ fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
 fn spread(before: &mut Buckets, now: Buckets) -> Option<[f64; 3]> {
     let before = std::mem::replace(before, now.clone());
     let more = now.into_iter().filter_map(|(duration, count)| {
-        // The counts of another connection begin at zero.
+        // For another connection, the counts begin at zero.
         let count = count.saturating_sub(before.get(&duration).copied().unwrap_or(0));
         (count > 0).then_some((duration, count))
     });
@@ -148,7 +148,7 @@ mod tests {
         let now = buckets(&[(5, 10), (7, 3), (20, 1), (900, 1)]);
         assert_eq!(spread(&mut before, now.clone()), Some([5.0, 7.0, 20.0]));
         assert_eq!(spread(&mut before, now), None, "nothing has come");
-        // Another connection: its counts begin at zero.
+        // For another connection, the counts begin at zero.
         assert_eq!(spread(&mut before, buckets(&[(6, 2)])), Some([6.0; 3]));
     }
 }

@@ -109,7 +109,7 @@ async fn read(
         if window.0.elapsed() > Duration::from_secs(1) {
             window = (Instant::now(), 0);
         } else if window.1 > MESSAGES_PER_SECOND {
-            // Further messages wait in the viewer's own connection.
+            // Meanwhile, further messages wait in the viewer's own connection.
             sleep(Duration::from_secs(1).saturating_sub(window.0.elapsed())).await;
         }
         let why = match message {
@@ -123,7 +123,7 @@ async fn read(
                     let begins = matches!(request, Request::Begin { .. });
                     let is_stop = matches!(request, Request::Stop {});
                     let handled = hub.handle(viewer, round_trip, request);
-                    // No message is sent in between, because this task also writes.
+                    // This task also writes, so no message is sent in between.
                     link.begun.fetch_add(u64::from(begins), Ordering::Relaxed);
                     if is_stop && replies.try_send(Reply::Stopping {}).is_err() {
                         return;

@@ -62,7 +62,7 @@ impl Way {
         match self {
             Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
             Self::Pose(_) => pace::end_effector_at(robot.model(), speed),
-            // A moving target needs a reserve of a tenth for catching up.
+            // A moving target needs a reserve of a tenth, so that the arm can catch up.
             Self::EndEffector => pace::end_effector_at(robot.model(), (speed / 0.9).min(SPEED_MAX)),
         }
     }

@@ -35,8 +35,8 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
             let from = transform::isometry_from_array(before.commanded_pose())?;
             let shift = target.translation.vector - from.translation.vector;
             let turn = rotation::error(&target.rotation, &from.rotation);
-            // A radian counts as half a metre: the vendor does not publish which of the two the
-            // robot checks.
+            // A radian counts as half a metre, because the vendor does not publish which of the
+            // two the robot checks.
             Some(if shift.norm() > 0.5 * turn.norm() {
                 (Subject::component(shift.iamax()), shift.norm())
             } else {
@@ -146,7 +146,7 @@ fn cartesian_leap(
         translation
     };
     let (axis, norms, limits, change, _) = further;
-    // Norms have no direction: the acceleration before is this acceleration minus the change.
+    // Norms have no direction, so the previous acceleration is this acceleration minus the change.
     let (quantity, size) = leap_of(sample, &norms, norms.acceleration[0] - change, limits)?;
     Some((axis, quantity, size))
 }
@@ -184,7 +184,8 @@ fn leap_of(
 pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let leap = leap(evidence, finding);
     match finished_moving(evidence, finding) {
-        // A wrong start has priority, and so has a jump of at least half of the velocity.
+        // A wrong start has priority over a finish in motion, and so has a jump of at least half
+        // of the velocity.
         Some((finish, of_leap)) => {
             let is_start = matches!(leap, Some(Cause::WrongStart { .. }));
             leap.filter(|_| is_start || of_leap).or(Some(finish))
@@ -276,7 +277,7 @@ pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let is_limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
-    // Each cycle has a reading of every joint.
+    // Each cycle has one reading for every joint.
     let beside = |i: usize| [i.checked_sub(7), i.checked_add(7)].into_iter().flatten();
     let is_ramp = |i: usize| {
         let goes_on = |other: &Reading| other.value / readings[i].value > RAMP;

@@ -119,8 +119,8 @@ pub(super) fn resulting(
     let ee = end_effector(before);
     let from = JointVector::from(before.q_d);
     let mut q = from;
-    // The commanded displacement, applied to the model's pose, which may differ from the robot's
-    // pose.
+    // Applies the commanded displacement to the model's pose, because the model's pose may differ
+    // from the robot's.
     let robots = transform::isometry_from_array(before.commanded_pose())?;
     let models = transform::isometry(&model.pose(Frame::EndEffector, &q, &ee))?;
     let way = pose.translation.vector - robots.translation.vector;
@@ -299,7 +299,7 @@ fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> 
         Generator::CartesianVelocity => order - 1,
         _ => order,
     };
-    // The factor for three axes.
+    // Factor for the norm over three axes.
     3.0_f64.sqrt() * half_digit(POSE) * (2.0 / CYCLE).powi(order)
 }
 

@@ -79,8 +79,8 @@ pub(super) fn collision(
         quantity: Quantity::ExternalLoad,
         origin: Origin::Estimated,
         value,
-        // The load before the flag was below the threshold, unless the threshold changed with the
-        // acceleration.
+        // The load before the flag was set was below the threshold, unless the threshold changed
+        // with the acceleration.
         bound: match passed {
             Some(passed) if since == last.message_id && passed < value.abs() => {
                 Bound::Between(passed, value.abs())

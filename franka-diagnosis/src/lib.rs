@@ -246,7 +246,7 @@ impl fmt::Display for Diagnosis {
             (Some(finding), Some(before)) => {
                 write!(f, "{finding}, since cycle {} ms", finding.since)?;
                 match before {
-                    // The thread may have detected the stop much later.
+                    // The control thread may have detected the stop much later.
                     _ if finding.quantity == Quantity::LostCycles => {}
                     0 => write!(f, ", the last cycle")?,
                     1 => write!(f, ", the cycle before the stop")?,

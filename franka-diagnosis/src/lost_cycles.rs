@@ -37,8 +37,8 @@ impl Losses {
                 .last_running()
                 .map_or(0.0, |state| state.control_command_success_rate),
         };
-        // A state that is not in the log has not arrived, unless the counts of the motion show
-        // otherwise.
+        // A state that is not in the log did not arrive, unless the counts of the motion show
+        // skipped states.
         let skips = evidence
             .statistics
             .is_some_and(|counts| counts.lost_states == 0 && counts.skipped_states > 0);
@@ -51,10 +51,10 @@ impl Losses {
             }
             let missing = next - id - 1;
             let ends = !after.motion_running();
-            // A thread that is delayed during its answer skips the states that arrive meanwhile.
+            // A thread that is delayed during an answer skips the states that arrive meanwhile.
             let skipped = if skips { missing } else { 0 };
             if command.message_id == 0 {
-                // The robot waits for the first command.
+                // Before the first command, the robot waits.
             } else if command.message_id != id {
                 // While the robot plans between two targets, no commands are needed.
                 if evidence.commander.commands_every_cycle() {

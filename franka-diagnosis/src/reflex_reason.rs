@@ -246,9 +246,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence);
-            // A command that left too late did not reach the robot in time either. A thread that
-            // does not read states loses them. States that all arrived, but late, may have been
-            // delayed by the network.
+            // A command that left too late did not reach the robot in time either. If the thread
+            // does not read states, it loses them. If all states arrived, but late, the network
+            // may have delayed them.
             let turnaround = evidence.statistics.map(|counts| counts.worst_turnaround);
             let turnaround = turnaround.unwrap_or_default();
             let by_host = match lost {

@@ -86,7 +86,7 @@ mod tests {
                 Verdict::Warning,
                 "rx_errors 1, rx_crc_errors 1",
             ),
-            // The card was set up again in between.
+            // The card was set up again between the two readings.
             (CardErrors([0; 5]), Verdict::Good, "none"),
         ] {
             let finding = meanwhile(Ok(old), Ok(after), Purpose::Move);

@@ -138,7 +138,7 @@ fn session(
     version: Version,
     timeout: Duration,
 ) -> io::Result<Answer> {
-    // The robot sends its states to this socket; they are not read.
+    // The robot sends its states to this socket. Nothing reads them.
     let states = match address {
         SocketAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
         SocketAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),
@@ -158,7 +158,7 @@ fn session(
                     Err(violation) => return Ok(Answer::Missing(violation.to_string())),
                     Ok(Event::Connected { version }) => return Ok(Answer::Accepted(version)),
                     Ok(Event::Incompatible(refusal)) => return Ok(Answer::Incompatible(refusal)),
-                    // A message for another request; the answer may still come.
+                    // The message answers another request. The expected answer may still come.
                     Ok(_) => {}
                 }
                 received.drain(..size);
@@ -292,7 +292,7 @@ mod tests {
             let mut handshake = [0; 16];
             stream.read_exact(&mut handshake).expect("a handshake");
             stream.write_all(&bytes).expect("sent");
-            // Waits until the client has closed its end.
+            // Waits until the client has closed its end of the connection.
             if !closes {
                 let _ = stream.read_to_end(&mut Vec::new());
             }
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(asked(vec![0; 8], true, PATIENCE), Answer::Closed);
         let silent = asked(Vec::new(), false, Duration::from_millis(20));
         assert_eq!(silent, no_answer(Duration::from_millis(20)));
-        // A message of another protocol: its header's size is far out of range.
+        // A message of another protocol. The size in its header is far out of range.
         let text = b"HTTP/1.1 400 Bad Request\r\n".to_vec();
         let Answer::Missing(why) = asked(text, false, PATIENCE) else {
             panic!("no robot answers with HTTP")

@@ -15,7 +15,7 @@ pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     socket.set_read_timeout(Some(Duration::from_secs(1)))?;
     socket.send(&request())?;
     let mut part = vec![0; PART_MAX];
-    // Bounded, in case the kernel never reports the end.
+    // The loop is bounded, in case the kernel never reports the end.
     for _ in 0..PARTS_MAX {
         let length = (&socket).read(&mut part)?;
         match found(&part[..length], address) {
@@ -77,7 +77,7 @@ fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
 /// Returns true if the address is permanent; `None` if this message is about another address. A
 /// message is a `struct ifaddrmsg` and attributes.
 fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
-    // The header contains eight bits of the flags; an attribute contains all of them.
+    // The header contains eight bits of the flags. An attribute contains all bits.
     let mut flags = u32::from(*message.get(2)?);
     let mut own = None;
     let mut rest = message.get(MESSAGE..)?;
@@ -143,7 +143,7 @@ mod tests {
         let body = [
             vec![2, 24, 0, 0, 3, 0, 0, 0],
             attribute(libc::IFA_LOCAL, own.octets()),
-            // A name that is not a multiple of four bytes long.
+            // The length of this name is not a multiple of four bytes.
             [&7_u16.to_ne_bytes()[..], &3_u16.to_ne_bytes(), b"lo\0\0"].concat(),
             attribute(IFA_FLAGS, flags.to_ne_bytes()),
         ];
@@ -171,7 +171,7 @@ mod tests {
             let answer = found(&whole[..end], OWN);
             assert_eq!(answer, Answer::More, "{end}");
         }
-        // A length of zero, which would never advance.
+        // The length is zero, with which the search would never advance.
         assert_eq!(found(&[0; 64], OWN), Answer::More);
     }
 

@@ -22,7 +22,7 @@ pub(crate) fn measure(
     let [here, there] = sockets()?;
     let over = AtomicBool::new(false);
     thread::scope(|scope| {
-        // It inherits the scheduling.
+        // The thread inherits the scheduling of the calling thread.
         let echoing = thread::Builder::new().spawn_scoped(scope, || echo(&there, &over))?;
         let measured = exchange(&here, priority, count, done);
         over.store(true, Ordering::Relaxed);
@@ -38,7 +38,7 @@ fn sockets() -> io::Result<[UdpSocket; 2]> {
     here.connect(there.local_addr()?)?;
     there.connect(here.local_addr()?)?;
     here.set_read_timeout(Some(PATIENCE))?;
-    // The interval at which it checks for the end.
+    // The thread checks for the end at this interval.
     there.set_read_timeout(Some(Duration::from_millis(100)))?;
     Ok([here, there])
 }

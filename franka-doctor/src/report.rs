@@ -93,7 +93,7 @@ impl Report {
                         Some((_, id)) => {
                             let _ = writeln!(text, "        fix{then}: as for {id}");
                         }
-                        // On one line, for copying.
+                        // The command stays on one line, so that the user can copy it.
                         None => {
                             named.push((&fix.command, finding.id));
                             let _ = writeln!(text, "        fix{then}: {}", fix.command);

@@ -3,7 +3,7 @@
 
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod linux;
-// Its test also runs on Linux.
+// The test of this module also runs on Linux.
 #[cfg(any(test, not(target_os = "linux"), franka_portable))]
 #[cfg_attr(all(target_os = "linux", not(franka_portable)), allow(dead_code))]
 mod portable;

@@ -217,7 +217,7 @@ impl DriverStack {
     #[inline(never)]
     pub fn prepare(&mut self) {
         self.driver.prepare();
-        // Keeps a return to this function: a tail call would not be counted.
+        // Keeps a return to this function. A tail call would not be counted.
         core::hint::black_box(&self.step);
     }
 

@@ -50,8 +50,8 @@ impl CommandGuard {
                 tau.is_finite() && tau.abs() <= limits.torque[i],
                 "{at}: joint {joint} gets {tau} N m"
             );
-            // The robot compares a command with the last received one, which an FR3 echoes as
-            // `f32`.
+            // The robot compares a command with the last command that it received, which an FR3
+            // reports as `f32`.
             let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
             assert!(
                 rate <= limits.torque_rate[i] + 0.01,
@@ -75,7 +75,7 @@ impl CommandGuard {
         {
             for i in 0..7 {
                 let joint = i + 1;
-                // Compared with the unrounded command if no command was lost in between.
+                // Compares with the unrounded command if no command was lost in between.
                 let sent = last.tau[i];
                 if [sent, f64::from(sent as f32)].contains(&state.tau_J_d[i]) {
                     let rate = (command.tau_J_d[i] - sent).abs() / CYCLE;
@@ -93,7 +93,8 @@ impl CommandGuard {
                     step <= most,
                     "{at}: reference of joint {joint} steps by {step} rad/s^2"
                 );
-                // The leash moves the reference with the arm, and the arm may be pushed.
+                // The leash (the limit on the distance between reference and arm) moves the
+                // reference with the arm, and a push may move the arm.
                 let step = record.q_ref[i] - last.q_ref[i];
                 let with_arm = step - (state.q[i] - last.q[i]);
                 let step = if leashed || last.leashed {

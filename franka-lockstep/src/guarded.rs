@@ -348,8 +348,8 @@ impl Guarded {
         if self.random.random_bool(0.25) {
             chunk = chunk.replace();
         }
-        // Two at once: the second supersedes the first. Unused chunks return in the next cycle, so
-        // the queue has room.
+        // Sends two chunks at once. The second supersedes the first. Unused chunks return in the
+        // next cycle, so the queue has space.
         let times = if self.random.random_bool(0.1) { 2 } else { 1 };
         for chunk in std::iter::repeat_n(chunk, times) {
             let sent = self.chunks.send(self.goal.id, chunk);

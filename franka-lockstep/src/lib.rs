@@ -200,7 +200,7 @@ impl Lockstep {
                 .receive(self.client.free, end, self.client.state.message_id)
         {
             if heard {
-                // The effects of the previous state.
+                // Carries out the effects of the previous state.
                 self.client.settle();
             }
             heard = true;

@@ -179,7 +179,7 @@ impl Supervised {
                 if state.message_id != self.seen {
                     self.seen = state.message_id;
                     self.supervision.on_state(&state, now);
-                    // Before the outcomes: nothing may depend on them.
+                    // This runs before the outcomes are read, because nothing may depend on them.
                     self.carry_out();
                 } else if silence == LINK_TIMEOUT {
                     self.supervision.on_silence(silence, now);
@@ -289,7 +289,7 @@ impl Supervised {
         self.lockstep.client = client;
         self.lockstep.guard = Some(CommandGuard::new(*model.joint_limits()));
         self.lockstep.heard = self.lockstep.now();
-        // A computer that does not run refuses at once.
+        // A computer that is not running refuses immediately.
         let most = if self.is_up { CONNECTING } else { 1 };
         let until = self.lockstep.now() + most;
         self.connection = Connection::Connecting { until };

@@ -107,8 +107,8 @@ pub(crate) fn minimise(
         }
     };
     Minimum {
-        // A held variable is on its bound, and a free variable of an optimum is within its bounds,
-        // up to the last digit.
+        // A held variable is on its bound. A free variable of an optimum is within its bounds,
+        // except for rounding.
         x: bounds.clamp(&search.x),
         active: search.active,
         outcome,

@@ -38,7 +38,8 @@ pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     let squared = dot(w, w);
     let turned = e.x * w.y - e.y * w.x;
     let up = (e.z * squared - dot(e, w) * w.z) / sqrt(squared);
-    // Both are the horizontal distance of the wrist times the distance of the elbow from the line.
+    // Both terms contain the horizontal distance of the wrist times the distance of the elbow from
+    // the line.
     let size = sqrt(turned * turned + up * up);
     (size > UNDEFINED).then(|| atan2(turned, up))
 }

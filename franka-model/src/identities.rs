@@ -239,7 +239,7 @@ fn coriolis_torques_follow_from_the_mass_matrix() {
 
 #[test]
 fn coriolis_torques_do_no_work_but_what_changes_the_inertia() {
-    // dM/dt − 2 C does no work: control laws rely on this passivity.
+    // dM/dt − 2 C does no work. Control laws rely on this passivity.
     for_each_case(44, |model, case| {
         let h = 1e-5;
         let mass = |step: f64| model.mass(&(case.q + case.dq * step), &case.load);
@@ -422,7 +422,7 @@ fn the_physically_consistent_fer_is_near_the_one_of_the_clients() {
         let none = &Load::NONE;
         // 0.018, 0.013 and 0.083 at the reference states, whose velocities are about this large.
         assert!((model.mass(q, none) - other.mass(q, none)).amax() < 0.03);
-        // The weight of link 1 loads joint 1 only in a tilted base.
+        // The weight of link 1 loads joint 1 only if the base is tilted.
         let gravity = |model: &Model| model.gravity(q, none, &GRAVITY_EARTH);
         let torque = gravity(model) - gravity(other);
         assert!(torque.amax() < 0.03, "{torque}");

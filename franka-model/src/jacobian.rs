@@ -169,7 +169,7 @@ mod tests {
         for case in 0..100 {
             let (q, mut dq) = (random.posture(model), random.posture(model));
             if case % 2 == 0 {
-                // The elbow is the fastest.
+                // The elbow is the fastest point.
                 dq = JointVector::from([dq[0], dq[1], dq[2], 0.0, 0.0, 0.0, 0.0]);
             }
             let speed = |frame: &Frame| {

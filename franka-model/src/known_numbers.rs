@@ -208,7 +208,7 @@ fn dynamics_of_the_fer() {
             ],
         ],
     );
-    // The rigid composition, which the vendor's library of the FER does not use.
+    // The rigid composition. The vendor's library for the FER does not use it.
     let rigid = Model {
         merge: Merge::Rigid,
         ..Model::fer().clone()

@@ -139,7 +139,7 @@ mod tests {
             space.translational_inertia().expect("regular").diagonal(),
             space.inertia().expect("regular").diagonal(),
         );
-        // The expected values have six digits.
+        // The expected values have only six digits.
         for i in 0..3 {
             assert!((space.effective_mass(&axes[i]) - along[i]).abs() < 6e-7);
             assert!((space.effective_moment(&axes[i]) - along[3 + i]).abs() < 6e-7);

@@ -32,7 +32,8 @@ pub fn log(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let v = rotation.imag();
     let w = rotation.w;
     let sine = v.norm();
-    // Below this the square of the norm underflows; sin(a/2) = a/2 holds far above it.
+    // Below this bound, the square of the norm underflows. The approximation sin(a/2) = a/2 is
+    // exact far above it.
     let scale = if sine < 1e-150 {
         2.0
     } else {

@@ -65,8 +65,8 @@ pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
         let change = (next - x).amax();
         x = next;
         if change < 1e-9 {
-            // Quadratic convergence: another step would change less than one unit in the last
-            // place.
+            // Convergence is quadratic, so another step would change less than one unit in the
+            // last place.
             return Some(Rotation3::from_matrix_unchecked(x));
         }
     }

@@ -58,7 +58,8 @@ impl Axis {
         } else {
             let v = target.velocity / (limits.acceleration * unit);
             let a = target.acceleration / limits.acceleration;
-            // The target must be reached from inside the limits, and must be left inside them.
+            // The axis must reach the target from inside the limits, and must leave it inside the
+            // limits.
             let fastest = v.abs() + 0.5 * a * a;
             if a.abs() > 1.0 + AT_LIMIT || fastest > task.top * (1.0 + AT_LIMIT) {
                 return Err(Refusal::TargetMotion);

@@ -62,7 +62,8 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     } else if too_low {
         task = slow_down(&mut pieces, task, -1.0);
     }
-    // If it exceeds the limit by rounding, this plan uses it as the limit.
+    // If the velocity exceeds the limit only by rounding, this plan uses the velocity as the
+    // limit.
     let coasting = task.coasting_velocity().abs();
     if coasting <= task.top * (1.0 + 4.0 * TOLERANCE) {
         task.top = task.top.max(coasting);
@@ -76,7 +77,7 @@ fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     let Task { v, a, top, .. } = task.mirrored(sign);
     let to_acceleration_limit = a + 1.0;
     let to_top = a + sqrt((a * a + 2.0 * (v - top)).max(0.0));
-    // Reducing the deceleration any later would undershoot the lower limit.
+    // If the deceleration were reduced later, the velocity would undershoot the lower limit.
     let to_undershoot = a + sqrt((0.5 * a * a + v + top).max(0.0));
     let ramp = to_top.min(to_undershoot);
     if to_acceleration_limit >= ramp {
@@ -137,7 +138,8 @@ mod tests {
 
     #[test]
     fn braking_ends_as_soon_as_the_velocity_is_back() {
-        // Ramp only, ramp and hold, and a hold shortened because undoing it would undershoot.
+        // The cases: ramp only; ramp and hold; and a hold that is shortened, because undoing it
+        // would undershoot.
         for (v, top, expected) in [(10.2, 10.0, 10.0), (12.0, 10.0, 10.0), (3.0, 0.1, 0.4)] {
             let (_, after) = into_limits(task(v, 0.0, top));
             assert!((after.v - expected).abs() < 1e-14, "{v} {top}: {after:?}");

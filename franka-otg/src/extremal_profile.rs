@@ -82,14 +82,14 @@ impl ExtremalProblem {
         let e = cf - c0;
         let q = 0.5 * whole;
         let difference = if q > 0.0 { e / q } else { 0.0 };
-        // Rounding may give slightly less than the accelerations of the ends; the sum is the time
-        // and is kept.
+        // Rounding may give slightly less than the accelerations at the ends. The sum of both is
+        // the time, which must not change.
         let x = (0.5 * (q + difference)).max(a0).min(q + af);
         let y = q - x;
         let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
             (x, 0.0, y, 0.0)
         } else {
-            // Each hold takes the time that remains after the ramps.
+            // The holds take the time that remains after the ramps.
             let w = 0.5 * (whole - 2.0 + c0 + cf);
             let (first, second) = (w - c0 - 1.0, w - cf - 1.0);
             if first >= 0.0 && second >= 0.0 {

@@ -71,9 +71,9 @@ impl FeasibleDurations {
         let mut breaks = Times::<BREAKS>::NONE;
         for (t, rounding) in self.change.crossings().into_iter().flatten() {
             breaks.insert(t);
-            // On the last part of a plan, both sides end at the target within rounding, and
-            // removing the rounding could cost a detour. The rounding of the velocity is larger, so
-            // the time is chosen so that the position is met.
+            // On the last part of a plan, both sides end at the target within rounding. Removing
+            // this rounding could cost a detour. The rounding of the velocity is larger, so the
+            // time is chosen to meet the position.
             let up = self.up.profile(t);
             let later = -up.beyond / up.rate();
             if later.abs() <= rounding && t + later >= 0.0 {
@@ -96,7 +96,7 @@ impl FeasibleDurations {
         let mut left: Option<(f64, [ExtremalProfile; 2])> = None;
         for right in breaks.iter() {
             let reaches = [self.up.profile(right), self.down.profile(right)];
-            // The target may be at a turning point, within rounding.
+            // The target may be at a turning point, except for rounding.
             if reaches
                 .iter()
                 .any(|reach| reach.beyond.abs() <= TIGHT * self.size.at(right, reach.w))
@@ -117,7 +117,8 @@ impl FeasibleDurations {
             }
             left = Some((right, reaches));
         }
-        // After the last break both sides cruise, and reach the target if they have not passed it.
+        // After the last break, both sides cruise. They reach the target if they have not passed
+        // it.
         let mut latest = 0.0_f64;
         if let Some((last, reaches)) = left {
             latest = last;

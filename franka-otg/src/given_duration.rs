@@ -186,7 +186,7 @@ mod tests {
         for (i, (jerk, t)) in before.iter().chain(segments).enumerate() {
             assert!(t >= 0.0);
             if i == cruise && t > 0.0 {
-                // As in profiles: a remaining rounding error would grow with the square of the
+                // As in profiles, a remaining rounding error would grow with the square of the
                 // cruise.
                 left.v = sign * shape.cruise;
                 left.a = 0.0;

@@ -172,8 +172,8 @@ impl ExtendedStart {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Upper bounds: the tangent at the left end, because F is convex; and F' >= 6 x^2 for c >=
-        // 0, F' >= x^2 otherwise.
+        // Upper bounds: the tangent at the left end, because F is convex; and from F' >= 6 x^2 for
+        // c >= 0, F' >= x^2 otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;
@@ -192,7 +192,7 @@ impl ExtendedStart {
         for _ in 0..MAX_NEWTON {
             let (value, slope) = self.end(x);
             let step = (value - d) / slope;
-            // From the right all steps lead down until rounding reverses a step.
+            // From the right, all steps lead down, until rounding reverses a step.
             if step > 2.0 * f64::EPSILON * x.abs() {
                 x = (x - step).max(least);
             } else {

@@ -83,7 +83,8 @@ impl MovingTarget {
         if self.can_take(t) {
             return t;
         }
-        // After the last candidate all durations are feasible; rounding may suggest otherwise.
+        // After the last candidate, all durations are feasible, even if rounding suggests
+        // otherwise.
         self.candidates.iter().find(|&next| next > t).unwrap_or(t)
     }
 
@@ -168,8 +169,8 @@ mod tests {
 
     #[test]
     fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
-        // At the target's velocity, slightly short of its position: to arrive later, the axis must
-        // first move back.
+        // The axis has the target's velocity, slightly short of the target. To arrive later, it
+        // must first move back.
         let task = Task {
             d: 1e-3,
             v: 0.5,

@@ -63,7 +63,7 @@ impl Plateau {
     fn at(&self, w: f64) -> Transfers {
         let Task { d, v, a, .. } = self.task;
         let (vf, af) = (self.vf, self.af);
-        // Velocities after ramping the acceleration to zero, forwards and backwards in time.
+        // Velocities after the acceleration is ramped to zero, forwards and backwards in time.
         let s = 1_f64.copysign(w - (v + 0.5 * a * a.abs()));
         let u = 1_f64.copysign((vf - 0.5 * af * af.abs()) - w);
         let (c0, cf) = (v - s * 0.5 * a * a, vf + u * 0.5 * af * af);

@@ -30,7 +30,7 @@ pub(crate) fn root(
         let best = nearer(a, b);
         let width = (b.at - a.at).abs();
         let resolution = 2.0 * f64::EPSILON * best.at.abs() / width;
-        // If the width is zero the resolution is infinite, or NaN if the root is zero too.
+        // If the width is zero, the resolution is infinite, or NaN if the root is zero, too.
         if best.value.abs() <= close || resolution >= 0.5 || resolution.is_nan() {
             return best.at;
         }

@@ -30,7 +30,8 @@ impl Shape {
         to_rest: (f64, f64),
     ) -> Self {
         let ((x, first_hold), (y, second_hold)) = (to_cruise, to_rest);
-        // A negative x is an acceleration that never reaches zero: one negative jerk from x to -y.
+        // A negative x means that the acceleration never reaches zero: there is one negative jerk
+        // from x to -y.
         let (t3, t5) = if x < 0.0 {
             (0.0, (x + y).max(0.0))
         } else {

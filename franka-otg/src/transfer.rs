@@ -60,8 +60,8 @@ pub(crate) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };
     let (b, d) = (sign * a, -sign * v);
-    // Peak of the acceleration without a hold; at least |b|, because the missing velocity has this
-    // sign.
+    // Peak of the acceleration without a hold. It is at least |b|, because the missing velocity
+    // has this sign.
     let square = (d + 0.5 * b * b).max(0.0);
     if square <= 1.0 {
         let peak = sqrt(square);

@@ -89,7 +89,7 @@ impl fmt::Display for HostTime {
 
 /// Returns year, month and day in the Gregorian calendar, `days` after 1970-01-01.
 fn date(days: u64) -> (u64, u64, u64) {
-    // Counted from 1 March of year 0, so that a leap day is the last of its year.
+    // Counts from 1 March of year 0, so that a leap day is the last day of its year.
     let days = days + 719_468;
     let (era, day_of_era) = (days / 146_097, days % 146_097);
     let year_of_era =

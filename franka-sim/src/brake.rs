@@ -62,8 +62,9 @@ struct AxisStop {
 
 impl AxisStop {
     fn plan(position: f64, velocity: f64, acceleration: f64, limit: f64, jerk: f64) -> Self {
-        // The sign of the velocity that remains if the acceleration ended now decides the direction
-        // of the peak. Mirrored so that this velocity is positive and the peak therefore negative.
+        // The sign of the velocity that remains if the acceleration ended now decides the
+        // direction of the peak. The problem is mirrored so that this velocity is positive, and
+        // therefore the peak negative.
         let left = velocity + acceleration * acceleration.abs() / (2.0 * jerk);
         let side = if left < 0.0 { -1.0 } else { 1.0 };
         let (v, a) = (side * velocity, side * acceleration);
@@ -132,7 +133,8 @@ mod tests {
                     assert!((now.0 - last.0).abs() <= 2.7e-3, "{v} {a}");
                     last = now;
                 }
-                // The analytic end of the last phase is at rest, not only the snap to it.
+                // Checks that the analytic end of the last phase is at rest, not only the final
+                // snap to rest.
                 let (_, v_end, a_end) = stop.at(duration - 1e-9);
                 assert!(
                     v_end.abs() < 1e-6 && a_end.abs() < 1e-4,

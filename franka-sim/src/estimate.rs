@@ -141,7 +141,7 @@ fn latch<const N: usize>(flags: &mut [bool; N], set: &[bool; N]) {
 /// smallest singular value of `J` is at most `singular`.
 fn wrench(jacobian: &Jacobian, torque: &JointVector, singular: f64) -> Wrench {
     let gram = jacobian * jacobian.transpose();
-    // Positive definite exactly if all singular values are greater.
+    // The matrix is positive definite exactly if all singular values are greater.
     let excess = gram - Matrix6::from_diagonal_element(singular * singular);
     match (Cholesky::new(excess), Cholesky::new(gram)) {
         (Some(_), Some(factor)) => factor.solve(&(jacobian * torque)),

@@ -100,7 +100,7 @@ mod tests {
             controller_filter_frequency: 999.0,
         };
         let out = filtered(&command, &before, &JointVector::zeros(), &filters);
-        // libfranka's gain at 100 Hz.
+        // Expected: libfranka's gain at 100 Hz.
         assert!((out.dq_c[3] - 0.385_869_545_095_037_5).abs() < 1e-15);
         let seen = [
             out.q_c[0] - READY[0],

@@ -67,7 +67,7 @@ static FR3: Description = Description {
     version: Version::V10,
     urdf_name: Some("fr3"),
     precision: Precision::Single,
-    // One name for every kind of command (FCI documentation, since system 5.7.2).
+    // This robot has one error for every kind of command (FCI documentation, since system 5.7.2).
     range: RangeErrors {
         joint_position: RobotError::JointPositionLimitsViolation,
         joint_velocity: RobotError::JointPositionLimitsViolation,
@@ -91,7 +91,8 @@ static FER: Description = Description {
         joint_velocity: RobotError::JointPositionLimitsViolation,
         cartesian: RobotError::CartesianMotionGeneratorJointPositionLimitsViolation,
     },
-    // Its protocol has no statuses for them: they act like the user stop.
+    // The protocol of this robot has no statuses for safety functions; they act like the user
+    // stop.
     safety: SafetyStatuses {
         preempted: MoveStatus::EmergencyAborted,
         rejected: MoveStatus::CommandNotPossibleRejected,

@@ -93,7 +93,7 @@ mod tests {
             let ddq = model
                 .forward_dynamics(&q, &dq, &(motor + push), &load, &earth, &rotors)
                 .expect("positive definite");
-            // Exact for the constant acceleration of the millisecond.
+            // This is exact, because the acceleration is constant within the millisecond.
             q += (dq + ddq * (CYCLE / 2.0)) * CYCLE;
             dq += ddq * CYCLE;
             let after = instant(&q, &dq);

@@ -120,7 +120,8 @@ impl CartesianSignal {
         let (angular, turning) = match orientation {
             Extrapolation::BaseAxes => (angular + turning * CYCLE, turning),
             Extrapolation::BodyAxes => {
-                // The axes turn about the velocity, so the velocity is the same in both.
+                // The axes turn about the velocity vector, so the velocity is the same in both
+                // frames.
                 let turning = rotation::exp(&(angular * CYCLE)) * turning;
                 (angular + turning * CYCLE, turning)
             }
@@ -139,8 +140,8 @@ impl CartesianSignal {
         let read = |value| precision.round(value);
         let rounded = transform::array(&self.pose).map(read);
         Self {
-            // Single precision moves a rotation matrix by 1e-7, far below the failure of this
-            // conversion.
+            // Single precision changes a rotation matrix by 1e-7, far too little for this
+            // conversion to fail.
             pose: transform::isometry_from_array(&rounded).unwrap_or(self.pose),
             twist: self.twist.map(read),
             acceleration: self.acceleration.map(read),

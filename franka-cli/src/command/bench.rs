@@ -86,7 +86,7 @@ impl Wake {
 
 impl Loop {
     async fn run(self) -> anyhow::Result<Ending> {
-        // It waits for late commands of a busy computer instead of stopping.
+        // The simulated robot waits for late commands of a busy computer, instead of stopping.
         let sim = Sim::fr3().wait_for_commands(PATIENCE);
         let DryRun {
             outcome,

@@ -169,7 +169,7 @@ impl Dash {
             let (place, robot) = (place.to_string(), robot.clone());
             closed.spawn(async move { (place, robot.closed().await) });
         }
-        // If one robot is lost, the other robots keep their page and its Stop button.
+        // If one robot is lost, the pages of the other robots continue, with their Stop buttons.
         let all_closed = async {
             let mut last = String::new();
             while let Some(Ok((place, reason))) = closed.join_next().await {

@@ -222,7 +222,8 @@ impl Doctor {
     ) -> anyhow::Result<(Vec<Finding>, bool)> {
         let mut found = Vec::new();
         let purpose = self.purpose.purpose();
-        // Before connecting, because Desk knows the reason of a refusal.
+        // Desk is asked before the connection is made, because Desk knows the reason for a
+        // refusal.
         #[cfg(feature = "desk")]
         found.extend(self.desk(address).await?);
         let connected = place
@@ -284,7 +285,8 @@ impl Doctor {
 /// Returns a simulated robot that sends its states as punctually as this computer can, and that
 /// ends a motion if too many commands are late. It records in `sent` when it has sent each state.
 fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
-    // Runs on the thread of the robot. If it is refused, the thread keeps its scheduling.
+    // This runs on the thread of the robot. If the request is refused, the thread keeps its
+    // scheduling.
     let mut scheduling = Some(Scheduling {
         realtime: franka_async::Realtime::Ignore,
         prefault_stack: 0,

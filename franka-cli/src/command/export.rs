@@ -219,7 +219,7 @@ impl Stop {
         let by = Arc::<OnceLock<Interruption>>::default();
         let (interrupt, to) = (interrupted()?, by.clone());
         tokio::spawn(async move {
-            // The first signal counts.
+            // Only the first signal counts.
             let _ = to.set(interrupt.await);
         });
         Ok(Self(by))

@@ -218,7 +218,7 @@ async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError
         loop {
             tokio::time::sleep(LOOK).await;
             let now = hand.state();
-            // Uses the Hand's clock: a Hand that does not report its state may be moving.
+            // Uses the Hand's clock. A Hand that does not report its state may be moving.
             if (now.width - before.width).abs() >= STILL {
                 before = now;
             } else if now.message_id.wrapping_sub(before.message_id) >= STUCK_MS {

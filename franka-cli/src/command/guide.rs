@@ -96,7 +96,8 @@ impl Guide {
             self.free.text()
         );
         moving.ask("guide", &what).await?;
-        // Installed before the session begins, so that Ctrl-C always ends it.
+        // The handler is installed before the session begins, so that Ctrl-C always ends the
+        // session.
         let interrupt = interrupted()?;
         let guided = async {
             let arm = robot.engage(Engage::default()).await?;
@@ -119,7 +120,7 @@ impl Guide {
                 arm.at_rest().await?;
                 arm.disengage().await
             };
-            // A hand that continues to push prevents the arm from being at rest.
+            // If a person continues to push, the arm does not come to rest.
             tokio::select! {
                 held = timeout(PATIENCE, held) => match held {
                     Ok(held) => Ok(held.map(drop)?),

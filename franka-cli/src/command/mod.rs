@@ -127,7 +127,7 @@ impl Command {
                 Self::Man(man) => man.run(),
             }
         });
-        // Remaining tasks no longer concern the robot: its connection is closed.
+        // The connection to the robot is closed, so remaining tasks no longer concern it.
         runtime.shutdown_background();
         outcome
     }

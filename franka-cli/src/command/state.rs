@@ -48,7 +48,7 @@ impl State {
         let outcome = if self.watch {
             self.watch(&robot, &place).await
         } else {
-            // Long enough for statistics of the link.
+            // Waits long enough for statistics of the link.
             tokio::time::sleep(LOOK).await;
             let value = view::value(&robot, &place);
             self.output.print(&value, || view::text(&robot, &place))
@@ -108,7 +108,7 @@ impl Screen {
 
     /// Replaces the displayed page, without a blank screen in between.
     fn draw(&self, page: &str) -> io::Result<()> {
-        // Another line would scroll.
+        // Another line would make the terminal scroll.
         let (rows, _) = Term::stdout().size();
         let lines = page.lines().chain(["", "Ctrl-C ends."]);
         let page: Vec<&str> = lines.take(usize::from(rows)).collect();

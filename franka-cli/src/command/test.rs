@@ -116,7 +116,7 @@ impl Communication {
             one.drive(nothing(one, self.seconds), length),
             other.drive(nothing(other, self.seconds), None)
         );
-        // If one fails, or is interrupted, the other one ends too.
+        // If one test fails or is interrupted, the other test ends, too.
         if both.is_err() {
             let stopped = tokio::join!(one.robot.stop(), other.robot.stop());
             if let (Err(error), _) | (_, Err(error)) = stopped {

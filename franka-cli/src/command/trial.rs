@@ -53,7 +53,7 @@ impl Trial {
             metadata: BTreeMap::from([("host".to_owned(), String::new())]),
             ..RecordOptions::default()
         };
-        // A signal in the meantime is handled afterwards, so that a report exists in addition to
+        // A signal during this call is handled afterwards, so that a report exists in addition to
         // the recording.
         let moving = self.mover.how.begin_with(&self.mover.which, options);
         let moving = moving.await?;

@@ -340,7 +340,7 @@ impl Authority {
                 hold.heard = now;
                 effect(Effect::KeepAlive)
             }
-            // Without effect if the motion has already ended.
+            // This has no effect if the motion has already ended.
             Request::End {} => ended(commander.hold.take(), Lost::LetGo),
             Request::Speed { .. } if commander.hold.is_none() => return Err(Refusal::NoHold),
             Request::Speed { speed } => effect(Effect::Speed(speed)),

@@ -140,7 +140,7 @@ impl Hub {
             text,
             detail,
         };
-        // An error means that there is no viewer.
+        // An error means that no viewer is connected.
         let _ = self.news.send(news);
     }
 

@@ -107,7 +107,7 @@ impl Disturbance {
             | Self::Brakes { .. }
             | Self::Reflex {}
             | Self::Object { width: None }
-            // The simulator checks the speed.
+            // The simulator itself checks the speed.
             | Self::Speed { .. }
             | Self::Arm { .. } => Ok(()),
         }

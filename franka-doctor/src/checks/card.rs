@@ -104,7 +104,7 @@ fn link(readings: &Readings<'_>) -> Result<Judged, Unread> {
         return Ok(Judged::failure(format!("{card} is {state}"))
             .fix(Needs::Nothing, format!("sudo ip link set {card} up")));
     }
-    // Reading these fails with EINVAL if the driver does not know the value.
+    // Reading these files fails with EINVAL if the driver does not know the value.
     let (speed, duplex) = (readings.card("speed"), readings.card("duplex"));
     let (Ok(speed), Ok(duplex)) = (speed, duplex) else {
         return Ok(Judged::unknown(format!(
@@ -128,7 +128,7 @@ fn coalesce(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let (us, frames, adaptive) = (answer.word(4), answer.word(8), answer.word(44) != 0);
     let with = if adaptive { "adaptive, " } else { "" };
     let read = format!("{with}{us} us, {frames} frames");
-    // These drivers use small numbers as modes: 3 adapts to the load.
+    // These drivers use small numbers as modes. Mode 3 adapts to the load.
     let driver = readings
         .ethtool(Ethtool::Driver)
         .map(|answer| answer.text(4..36));

@@ -227,7 +227,7 @@ fn numa(readings: &Readings<'_>) -> Result<Judged, Unread> {
         Ok(value) if value == "0" => Judged::good("0"),
         Ok(value) => Judged::info(value).fix(Needs::Nothing, "sudo sysctl kernel.numa_balancing=0"),
         Err(Unread::Absent(_)) => {
-            // If this directory is missing, its absence is not evidence.
+            // If this directory is missing, the missing file proves nothing.
             readings.host.list("/proc/sys/kernel")?;
             Judged::good("the kernel has no balancing")
         }
@@ -302,7 +302,7 @@ fn secureboot(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let names = readings.host.list(directory)?;
     let name = names.iter().find(|name| name.starts_with("SecureBoot-"));
     let name = name.ok_or_else(|| Unread::Absent(format!("SecureBoot in {directory}")))?;
-    // Four bytes of attributes, then the value.
+    // The file contains four bytes of attributes, then the value.
     let value = readings.host.read(&format!("{directory}/{name}"))?;
     let on = match value.as_bytes() {
         [_, _, _, _, on] => *on == 1,

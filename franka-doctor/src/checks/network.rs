@@ -82,7 +82,7 @@ fn route(readings: &Readings<'_>) -> Result<Judged, Unread> {
     };
     let route = match readings.route() {
         Ok(route) => route,
-        // The system reports an error if it has no route.
+        // The system reports an error if it has no route to the robot.
         Err(Unread::Failed(_, why)) => return Ok(Judged::failure(format!("no route: {why}"))),
         Err(unread) => return Err(unread),
     };

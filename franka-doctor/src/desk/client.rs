@@ -23,7 +23,7 @@ pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
         if plain.port() == 443 {
             plain.set_port(80);
         }
-        // The first error is reported: HTTPS is the usual way to reach Desk.
+        // Reports the first error, because HTTPS is the usual way to reach Desk.
         ask(&agent, "http", plain).map_err(|_| why)
     })
 }

@@ -55,7 +55,7 @@ pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unr
 pub(super) fn pin_to(cpu: usize) -> io::Result<()> {
     let mut only = CpuSet::new();
     only.set(cpu)?;
-    // 0: this thread.
+    // The process id 0 means the calling thread.
     sched_setaffinity(Pid::from_raw(0), &only)?;
     Ok(())
 }
@@ -81,7 +81,7 @@ pub(super) fn wake_ups(
             .map_err(|error| error.to_string())?;
         let woken = now()?;
         wake_ups.note(woken.saturating_sub(due));
-        // A wake-up later than the next period is counted once.
+        // A wake-up that is later than the next period counts only once.
         while due + Duration::from_millis(1) <= woken {
             due += Duration::from_millis(1);
         }

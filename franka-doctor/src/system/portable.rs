@@ -39,7 +39,7 @@ pub(super) fn wake_ups(
         thread::sleep(due.saturating_duration_since(Instant::now()));
         let woken = Instant::now();
         wake_ups.note(woken.saturating_duration_since(due));
-        // A wake-up later than the next period is counted once.
+        // A wake-up that is later than the next period counts only once.
         while due + Duration::from_millis(1) <= woken {
             due += Duration::from_millis(1);
         }

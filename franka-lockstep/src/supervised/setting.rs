@@ -130,7 +130,7 @@ impl Supervised {
             None => return false,
         };
         self.sender.is_due &= next.is_some();
-        // The supervision may request it again.
+        // The supervision may request the setting again.
         self.carry_out();
         let Some((id, request)) = next else {
             return self.sender.is_due;

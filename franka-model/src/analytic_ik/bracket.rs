@@ -51,7 +51,7 @@ pub(super) fn dip(
     let mut settled = 0;
     for step in 0..STEPS_MAX {
         let (vertex, expected) = vertex(a, b, c);
-        // Golden section if the parabola gives no new point.
+        // Golden section, if the parabola gives no new point.
         let wide = if (b.0 - a.0).abs() > (c.0 - b.0).abs() {
             a
         } else {
@@ -64,7 +64,7 @@ pub(super) fn dip(
         let x = if usable { vertex } else { golden };
         let point = (x, f(x));
         if point.1 * sign <= 0.0 {
-            // The extremum is beyond zero: one root on either side.
+            // The function crosses zero before its extremum, so one root is on either side.
             visit(root(&f, a, point));
             visit(root(&f, point, c));
             return;

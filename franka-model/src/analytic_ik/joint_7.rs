@@ -113,7 +113,7 @@ impl Elbow {
     /// Returns both solutions for the squared distance between shoulder and wrist, or none.
     fn both(lengths: &Lengths, squared_distance: f64) -> [Option<Self>; 2] {
         match cosine(Self::from_flip(lengths, squared_distance)) {
-            // With the shoulder on the axis of joint 5, far outside the limits, f vanishes.
+            // If the shoulder is on the axis of joint 5, far outside the limits, f vanishes.
             Some(cos) => [false, true].map(|above| {
                 let elbow = Self::turned(lengths, above, cos);
                 (elbow.f != 0.0).then_some(elbow)

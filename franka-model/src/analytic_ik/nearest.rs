@@ -28,7 +28,7 @@ pub fn nearest(
         return Err(IkError::NotFinite);
     }
     let limits = model.joint_limits();
-    // The least per branch: along joint 7, the postures of one branch are continuous.
+    // The least distance per branch. Along joint 7, the postures of one branch are continuous.
     let mut least = [None; 8];
     let near = inverse_kinematics::from_seed(model, &flange, q).unwrap_or(*q)[6];
     let places = [q[6], near].into_iter();
@@ -38,7 +38,7 @@ pub fn nearest(
         let place: &mut Option<Solution> = &mut least[solution.branch.index()];
         *place = best([*place, Some(solution)].into_iter().flatten(), q);
     }
-    // Refines between samples with steps that halve, downhill.
+    // Refines between samples by descending steps whose size is halved.
     for found in least.iter_mut().flatten() {
         let mut step = (limits.upper[6] - limits.lower[6]) / f64::from(STEPS);
         while step > RESOLUTION {

@@ -147,7 +147,7 @@ fn margin(
             if reaches(&(outward * (direction * far))) == inside {
                 continue;
             }
-            // The change is between the last place with the target's answer and this place.
+            // The answer changes between the last point with the target's answer and this point.
             let (mut same, mut other) = (far - STRIDE, far);
             while other - same > PRECISION {
                 let middle = 0.5 * (same + other);
@@ -193,9 +193,9 @@ mod tests {
 
     #[test]
     fn the_margin_of_a_pose_ends_at_the_stretched_arm() {
-        // The hand points forward, with axis 7 on the line from the shoulder through a wrist at the
-        // same height. The wrist's distance is then a side of a right triangle with the offset of
-        // the wrist.
+        // The hand points forward, with axis 7 on the line from the shoulder through a wrist at
+        // the same height. The distance of the wrist is then a side of a right triangle with the
+        // offset of the wrist as another side.
         let forward = nalgebra::UnitQuaternion::from_axis_angle(
             &Vector3::y_axis(),
             core::f64::consts::FRAC_PI_2,
@@ -258,7 +258,8 @@ mod tests {
             assert!((found.fixed_view::<3, 1>(0, 3) - point).norm() < 2e-9);
             assert!(reach.margin >= 0.0);
         }
-        // Beyond everything: both ends of the negative margin meet at the boundary.
+        // A point out of reach: from both directions, the negative margin leads to the same
+        // boundary.
         let near = position(model, &Vector3::new(1.1, 0.0, 0.4), &ee).expect("finite");
         let far = position(model, &Vector3::new(1.3, 0.0, 0.4), &ee).expect("finite");
         assert!(!near.within() && !far.within());

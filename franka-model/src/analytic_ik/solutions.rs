@@ -100,7 +100,7 @@ impl Solution {
         }
         let step = 0_f64.clamp(back, on);
         let mut slid = *moved;
-        // Two rounded sums must not exceed a limit.
+        // The sum of two rounded numbers must not exceed a limit.
         slid.q[0] = (q1 + step).clamp(lower[0], upper[0]);
         slid.q[2] = (q3 - step).clamp(lower[2], upper[2]);
         slid.slide = Some([back - step, on - step]);

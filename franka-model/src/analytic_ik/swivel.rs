@@ -83,8 +83,8 @@ impl Side<'_> {
         let squared = dot(&w, &w);
         let elbow = Elbow::on_side(self.lengths, self.above, squared);
         let (length, offset) = (sqrt(squared), sqrt(w.x * w.x + w.y * w.y));
-        // The unit vector at right angles to w, towards the elbow: its parts up, and turned about
-        // w.
+        // The unit vector at right angles to w, towards the elbow, as two parts: upwards, and
+        // turned about w.
         let (up, turned) = (self.cos / (length * offset), self.sin / offset);
         let towards = Vector3::new(
             -w.x * w.z * up + w.y * turned,
@@ -215,7 +215,7 @@ impl Arc {
         let mut before: Option<Sample> = None;
         let mut left = sample(0.0);
         for step in 1..=STEPS {
-            // The samples to visit, the next one last.
+            // Stack of samples to visit. The next sample is the last.
             let mut pending = [sample(PI * f64::from(step) / f64::from(STEPS)); HALVINGS + 1];
             let mut count = 1;
             while count > 0 {

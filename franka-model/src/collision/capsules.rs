@@ -72,7 +72,8 @@ pub(super) static COVERING_PAIRS: [(u8, u8); 42] = pairs(
     ],
 );
 
-// One list of pairs serves both robots: their capsules are on the same links, in the same order.
+// One list of pairs is valid for both robots, because their capsules are on the same links, in the
+// same order.
 const _: () = {
     assert!(FR3.len() == FER.len());
     let mut i = 0;

@@ -49,7 +49,7 @@ impl Obstacle {
 
 #[inline(always)]
 fn nearest_to_plane(normal: &UnitVector3<f64>, offset: f64, segment: &Segment) -> Nearest {
-    // The segment is relative to the shoulder.
+    // The segment is relative to the shoulder, so the offset must be, too.
     let offset = offset - normal.z * SHOULDER;
     let rise = normal.dot(&segment.along);
     let t = if rise > 0.0 {
@@ -205,7 +205,7 @@ impl Axis {
         for i in 0..3 {
             for (k, face) in [self.half[i], -self.half[i]].into_iter().enumerate() {
                 let t = (face - self.start[i]) / self.along[i];
-                // Non-finite if the axis runs along the face.
+                // The value is non-finite if the axis is parallel to the face.
                 if t > 0.0 && t < 1.0 {
                     bends[1 + 2 * i + k] = t;
                 }
@@ -227,7 +227,7 @@ impl Axis {
         for i in 0..3 {
             let face = unit(i);
             for normal in [face, -face] {
-                // The end that leaves last; the middle if both leave together.
+                // The end of the axis that leaves last; the middle if both ends leave together.
                 let t = 0.5 - 0.5 * sign(normal.dot(&self.along));
                 self.consider(&mut best, t, normal);
             }
@@ -245,7 +245,7 @@ impl Axis {
     /// Replaces `best` if leaving along `normal` is shorter; the point at `t` then leaves last.
     fn consider(&self, best: &mut (f64, Vector3<f64>, f64), t: f64, normal: Vector3<f64>) {
         let reach = normal.abs().dot(&self.half);
-        // Uses the lower end: also correct for a direction turned by rounding.
+        // Uses the lower end, which is also correct if rounding turned the direction.
         let height = normal.dot(&self.start) + normal.dot(&self.along).min(0.0) - reach;
         if height > best.2 || height.is_nan() {
             *best = (t, normal, height);
@@ -256,10 +256,10 @@ impl Axis {
     /// edge is outermost along `normal`, a direction perpendicular to axis and edge.
     fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
         let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
-        // Seen along the edge, the axis passes a point.
+        // Seen along the edge, the edge is a point, which the axis passes.
         let (mut gap, mut along) = (edge - self.start, self.along);
         (gap[i], along[i]) = (0.0, 0.0);
-        // On the way out it is between the ends, up to rounding.
+        // On the way out, the point is between the ends, except for rounding.
         (gap.dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
     }
 }

@@ -134,7 +134,7 @@ impl Segment {
         let mut best = (middle, square(middle));
         for end in [from, to] {
             let candidate = square(end);
-            // Ignores differences in the last digits.
+            // A difference in the last digits does not count.
             if candidate < best.1 * (1.0 - 1e-14) {
                 best = (end, candidate);
             }

@@ -171,7 +171,7 @@ pub enum Unknown {
 ///
 /// # Errors
 /// [`Unknown`] if the torques do not determine the contact.
-// The crate has no heap to box the contact.
+// The crate has no heap, so it cannot box the contact.
 #[allow(clippy::result_large_err)]
 pub fn locate(
     arm: &Placed<'_>,

@@ -38,8 +38,7 @@ pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)
     for band in 0..bands {
         // Position of the middle of the band along the capsule's profile.
         let way = (band as f64 + 0.5) * width;
-        // Height above the start, the radius of the band, and the normal's component along the
-        // axis.
+        // Height above the start, radius of the band, and component of the normal along the axis.
         let (height, around, lean) = if way < quarter {
             let (sin, cos) = sin_cos(way / radius);
             (-radius * cos, radius * sin, -cos)

@@ -22,7 +22,7 @@ pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
     for attached in tree.links.iter().filter(|link| link.place.is_fixed) {
         let whole = &mut bodies[attached.place.moved_by];
         match read(attached, Weight::Optional)? {
-            // Joining a body without mass could change the last digits.
+            // A body without mass is not joined, because joining it could change the last digits.
             Some(part) if part.mass == 0.0 => {}
             Some(part) if whole.mass == 0.0 => *whole = part,
             Some(part) => *whole = whole.joined(&part),
@@ -72,7 +72,7 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
         &inertia,
         "moments of 0 or more",
         |least, largest| {
-            // The least moment of a rod is zero up to rounding.
+            // The least moment of a rod is zero, except for rounding.
             least >= -1e-12 * largest
         },
     )?;

@@ -105,7 +105,7 @@ impl Model {
         let joints = joint_limits(&tree)?;
         let [base, links @ ..] = body::bodies(&tree)?;
         Ok(Self {
-            // The only kind of arm that provides a description.
+            // Only this kind of arm provides a description.
             kind: RobotKind::Fr3,
             base,
             links,

@@ -97,7 +97,7 @@ impl<'a, 'n> Joint<'a, 'n> {
         })?;
         let link = |role: &'static str| -> Result<usize, UrdfError> {
             let element = Element::child(node, role, &owner)?;
-            // The owner lives shorter than the text.
+            // The owner does not live as long as the text.
             let got = element.text("link")?;
             links
                 .iter()

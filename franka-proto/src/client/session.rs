@@ -195,7 +195,7 @@ impl<P: Protocol> Session<P> {
                     library_version: self.version,
                 }))
             }
-            // libfranka does not check the version here and fails at the first datagram.
+            // libfranka does not check the version here, and fails only at the first datagram.
             ConnectStatus::Success if reported != announced => Err(Violation::ForeignVersion {
                 announced,
                 reported,

@@ -12,7 +12,7 @@ use crate::wire::{self, from_wire, to_wire};
 /// A request with its parameters.
 ///
 /// This crate does not check ranges. The robot checks them and answers.
-// A box would require an allocator, and few requests exist at a time.
+// A box would require an allocator, and only few requests exist at a time.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

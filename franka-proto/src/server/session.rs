@@ -28,7 +28,7 @@ enum ConnectionPhase {
 }
 
 /// The event that a message of a client causes.
-// The variants are moved once, from the session to the driver; a box would require an allocator.
+// The session moves each variant once to the driver, and a box would require an allocator.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -189,7 +189,8 @@ impl<P: Protocol> Session<P> {
         match rejection.filter(|_| unknown_value && self.phase == ConnectionPhase::Open) {
             Some((command, reply)) => {
                 self.remember(id, command)?;
-                // Every version with this command has this status, and the request is recorded.
+                // Every version with this command has this status, and the session has recorded
+                // the request.
                 let reply = self.reply(id, reply);
                 let reply = reply.expect("a pending request can be rejected");
                 Ok(Event::Rejected { id, error, reply })

@@ -106,7 +106,7 @@ impl Script {
                         match next(device, &mut from_robot) {
                             Ok(Some(message)) => step(Step::Reply(message)),
                             Ok(None) => break,
-                            // Invalid data of a robot is played unchanged.
+                            // The player sends invalid data of the robot unchanged.
                             Err(_) => {
                                 step(Step::Reply(std::mem::take(&mut from_robot)));
                                 break;

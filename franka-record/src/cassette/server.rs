@@ -325,7 +325,7 @@ fn drive(
     loop {
         while let Some(output) = player.poll(start.elapsed())? {
             if send(output, player.udp_port()).is_err() {
-                // The client is gone: missing steps are detected at the end of its stream.
+                // The client has disconnected. The end of its stream shows missing steps.
                 break;
             }
         }

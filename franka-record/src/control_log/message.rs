@@ -81,7 +81,7 @@ impl Reader<'_> {
             return Ok(errors);
         }
         loop {
-            // JSON logs escape the quotes.
+            // In logs in JSON format, the quotes are escaped.
             self.takes("\\");
             self.expect("\"", "a name in quotes")?;
             let name = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -124,7 +124,7 @@ impl Reader<'_> {
         let rest = self.rest();
         let number = |c: char| c.is_ascii_alphanumeric() || ['.', '+', '-'].contains(&c);
         let length = rest.find(|c| !number(c)).unwrap_or(rest.len());
-        // The number may be followed by the end of a sentence.
+        // The end of a sentence may follow the number.
         let Ok(value) = rest[..length].trim_end_matches('.').parse() else {
             return self.fail(expected);
         };

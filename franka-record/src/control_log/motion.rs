@@ -110,8 +110,8 @@ fn echo(entries: &mut [LogEntry]) {
     if is_whole {
         return;
     }
-    // The cycles before the log are unknown: its first states are assumed to continue like the next
-    // ones.
+    // The cycles before the log are unknown. The first states are assumed to continue like the
+    // next states.
     if let [first, second, ..] = entries {
         first.state.ddq_d = second.state.ddq_d;
         if start.is_some() {

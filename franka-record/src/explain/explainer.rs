@@ -157,12 +157,12 @@ impl Run {
             });
         }
         self.timeline.event(event, self.first.unwrap_or_default());
-        // One loss ends several goals, including later requests: the first end counts.
+        // One loss of the link ends several goals, later requests included. The first end counts.
         let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
             EventKind::Goal(goal) if goal.number > 0 => {
                 let is_chunk = goal.kind == "chunk";
-                // The goal of the first chunk ends for all later chunks.
+                // The goal of the first chunk stands for all later chunks.
                 if !(is_chunk && self.open.iter().any(|(_, is_chunk)| *is_chunk)) {
                     self.open.retain(|(open, _)| *open != goal.number);
                     self.open.push((goal.number, is_chunk));
@@ -235,7 +235,7 @@ impl Run {
             self.window.pop_front();
         }
         let errors = state.reflex_reason;
-        // An error in the first cycle ended an earlier motion.
+        // If the first cycle already shows an error, this error ended an earlier motion.
         let before = self.reflex_reason.replace(errors).unwrap_or(errors);
         let ended = errors != before && !errors.is_empty();
         if ended {

@@ -44,7 +44,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
     for (i, view) in VIEWS.iter().enumerate() {
         let top = top + i as f64 * (size + 28.0);
         group.append(text(left, top - 5.0, view.name));
-        // Fits everything into the picture, at one scale.
+        // Fits everything into the picture with one scale.
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for (_, capsule) in placed.capsules() {
@@ -70,7 +70,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
                 top + 0.5 * size - ((view.up)(p) - middle[1]) * scale,
             )
         };
-        // One colour with one opacity, also for overlapping parts.
+        // One group with one opacity, so that overlapping parts have the same colour.
         let mut arm = Group::new().set("opacity", 0.35);
         let mut hit = Group::new().set("opacity", 0.55);
         for (body, capsule) in placed.capsules() {
@@ -125,7 +125,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
 }
 
 fn stroke(from: (f64, f64), until: (f64, f64), width: f64) -> Line {
-    // A line without length has no caps in some viewers.
+    // Some viewers draw no caps on a line without length.
     line(from.0, from.1, until.0 + 0.01, until.1)
         .set("stroke-width", (width * 10.0).round() / 10.0)
         .set("stroke-linecap", "round")

@@ -166,7 +166,7 @@ impl Timeline {
         let kind = match &event.kind {
             EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
             EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
-            // Detected in the cycles, or reported separately.
+            // The cycles show this, or another event reports it.
             EventKind::Mode { .. } | EventKind::Errors { .. } | EventKind::Diagnosis(_) => return,
             _ => MomentKind::Note,
         };
@@ -193,7 +193,7 @@ impl Timeline {
             self.until_end = Some(self.moments.clone());
         }
         self.count += 1;
-        // An event may belong to an earlier cycle than moments already recorded: there is space for
+        // An event may be older than moments that are already recorded, so there is space for
         // sorting.
         if self.moments.len() >= 2 * MOMENTS_MAX {
             self.moments.remove(0);

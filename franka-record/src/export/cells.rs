@@ -154,7 +154,7 @@ mod tests {
             column.append(&after.state, &after.record, &mut got);
             let name = column.name;
             let is_recorded = Columns::named([name]).is_ok();
-            // Compares text, because NaN represents missing values in both.
+            // Compares text, because NaN stands for missing values in both.
             let same = format!("{put:?}") == format!("{got:?}");
             assert_eq!(same, is_recorded, "{name}: {put:?}, {got:?}");
         }

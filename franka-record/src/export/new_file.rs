@@ -41,8 +41,8 @@ impl NewFile {
         }
         let folder = folder_of(&path);
         let file = builder.tempfile_in(folder).map_err(|error| {
-            // The error's text contains the name of the partial file, but the user knows the other
-            // name.
+            // The text of the error contains the name of the partial file, but the user knows only
+            // the final name.
             let of_folder = fs::metadata(folder).err();
             ExportError::at(&path)(of_folder.unwrap_or(error.kind().into()))
         })?;

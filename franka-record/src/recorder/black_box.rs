@@ -46,7 +46,7 @@ impl LastSeconds {
         let now = message.time;
         self.messages.push_back(message);
         let past = now - self.options.before - self.options.after;
-        // A robot's clock may be behind the others: older data is removed anyway.
+        // One robot's clock may be behind the others. Its older data is removed in any case.
         while self
             .messages
             .front()
@@ -88,7 +88,7 @@ fn write(session: &Session, messages: &VecDeque<Message>) -> Result<Vec<u8>, Rec
     let mut bytes = Vec::new();
     let mut flushed = HostTime::default();
     for message in messages {
-        // Short chunks, as in any recording: a part can be read separately.
+        // Chunks are short, as in any recording, so that a reader can read a part of the file.
         if message.time.since(flushed) >= super::options::FLUSH_MAX {
             flushed = message.time;
             bytes.append(&mut file.flush()?);

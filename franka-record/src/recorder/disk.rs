@@ -340,7 +340,8 @@ impl Open {
                 Ok(())
             }
             Err(source) => {
-                // Readers ignore a partial chunk at the end; without it, none reports an error.
+                // Readers ignore a partial chunk at the end. Without the partial chunk, no reader
+                // reports an error.
                 let _ = self.file.set_len(self.length);
                 Err(self.error(source))
             }
@@ -403,7 +404,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
             None => {}
         }
     }
-    // A younger file may belong to another process that is writing it.
+    // Another process may still write a younger file.
     let is_left = |entry: &fs::DirEntry| {
         let modified = entry.metadata().and_then(|it| it.modified());
         modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > PART_AGE))

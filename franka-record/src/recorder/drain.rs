@@ -180,7 +180,7 @@ impl Drain {
         for index in 0..self.sources.len() {
             self.sources[index].waiting.sort_by_key(Waiting::time);
             self.take_waiting_cycles(index);
-            // After the last cycle of a control thread, continue with the next one.
+            // After the last cycle of a control thread, continue with the next control thread.
             while self.sources[index].cycles.waiting() == 0
                 && let Some(next) = self.sources[index].next.pop_front()
             {
@@ -190,7 +190,7 @@ impl Drain {
                 lock(&self.status).dropped += lost;
                 self.take_waiting_cycles(index);
             }
-            // Data newer than a cycle in transit is close to it.
+            // Data that is newer than a cycle in transit comes only slightly later than the cycle.
             self.sources[index].pass(self.clock.now(), &mut self.files);
         }
     }
@@ -268,7 +268,7 @@ impl Drain {
             lock(&self.status).dropped += missing + lost;
         }
         self.files.finish();
-        // Counts the cycles held back by thinning until now.
+        // Counts the cycles that thinning has held back so far.
         for index in 0..self.sources.len() {
             lock(&self.status).dropped += self.files.take_missing_at_end(index);
         }

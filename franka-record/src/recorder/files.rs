@@ -194,7 +194,7 @@ impl Files {
                 }
             }
             Topic::Event => self.missing_events += 1,
-            // Derived from cycles and events, which are counted.
+            // This data is derived from cycles and events, which are counted.
             _ => {}
         }
     }
@@ -202,7 +202,7 @@ impl Files {
     /// Returns the number of a robot's cycles that were not written since the last call.
     pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
         let open = self.open.as_ref();
-        // Recorded in the file once there is more space.
+        // The number is recorded in the file once there is more space.
         if open.is_some_and(|open| open.room != Room::All) {
             return 0;
         }
@@ -291,7 +291,7 @@ impl Files {
         self.chunk += 1;
         self.check(flushed);
         let rotation = self.options.rotation;
-        // An empty file has no successor.
+        // A new file follows only if the current file is not empty.
         if let Some(open) = self.open.take_if(|open| {
             let span = open.began.map(|began| newest.since(began));
             let is_due = rotation.bytes.is_some_and(|bytes| open.bytes >= bytes)

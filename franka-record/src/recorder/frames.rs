@@ -120,8 +120,8 @@ impl Frames {
         let tip = (end_effector * stiffness).translation.vector;
         let length = newtons.min(FORCE_MAX) * METRES_PER_NEWTON;
         let start = tip - force / newtons * length;
-        // An arrow points along x of its pose. For the direction opposite to x, any half turn about
-        // z works.
+        // An arrow points along the x axis of its pose. For the direction opposite to x, any half
+        // turn about z works.
         let turn = UnitQuaternion::rotation_between(&Vector3::x(), &force).unwrap_or_else(|| {
             UnitQuaternion::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI)
         });

@@ -70,7 +70,7 @@ impl Server {
             .context(&context)
             .message_backlog_size(BACKLOG)
             .bind(host, address.port());
-        // Runs on a separate thread, because this thread may belong to a runtime.
+        // Runs on a separate thread, because the current thread may belong to a runtime.
         let started = thread::scope(|scope| {
             let start = scope.spawn(|| {
                 let runtime = Builder::new_multi_thread()

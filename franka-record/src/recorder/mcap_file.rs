@@ -37,7 +37,7 @@ impl McapFile {
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK_MAX))
-            // Chunks then enter the buffer whole.
+            // With this option, whole chunks enter the buffer.
             .disable_seeking(true)
             .library(concat!("franka-record ", env!("CARGO_PKG_VERSION")));
         let mut file = Self {

@@ -114,7 +114,7 @@ impl Recorder {
 
     fn start(path: Option<&Path>, options: RecordOptions) -> Result<Self, RecordError> {
         options.check()?;
-        // Created here, so that the caller receives the error.
+        // The file is created here, so that the caller receives the error.
         let file = path.map(disk::create).transpose()?;
         Self::start_with(path, file, options, HostTime::now)
     }
@@ -239,7 +239,7 @@ impl Recorder {
     /// error if the file could not be completed. The written data is readable.
     pub fn finish_within(self, limit: Duration) -> Result<RecordStatus, RecordError> {
         lock(&self.drained).finish = true;
-        // Wakes the thread; with a full queue it is already awake.
+        // Wakes the thread. If the queue is full, the thread is already awake.
         let _ = self.orders.try_send(Order::Finish);
         match lock(&self.done).recv_timeout(limit) {
             Ok(()) | Err(RecvTimeoutError::Disconnected) => {}

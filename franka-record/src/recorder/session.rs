@@ -61,7 +61,7 @@ impl Session {
             ("kernel", "/proc/sys/kernel/osrelease"),
             ("kernel_build", "/proc/sys/kernel/version"),
         ] {
-            // Exists on Linux only.
+            // This file exists only on Linux.
             if let Ok(text) = std::fs::read_to_string(path) {
                 metadata.insert(name.to_owned(), text.trim().to_owned());
             }

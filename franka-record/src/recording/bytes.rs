@@ -45,7 +45,7 @@ impl Bytes {
         }
         match &self.store {
             Store::Memory(bytes) => {
-                // At most the number of bytes in memory.
+                // The numbers do not exceed the number of bytes in memory, so the casts are exact.
                 let (start, length) = (offset as usize, length as usize);
                 Ok(Some(bytes[start..start + length].to_vec()))
             }
@@ -53,7 +53,8 @@ impl Bytes {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
                 file.seek(SeekFrom::Start(offset))?;
                 let mut bytes = Vec::new();
-                // A file that is truncated meanwhile has less: the buffer grows with the data.
+                // If the file is truncated in the meantime, it has fewer bytes. The buffer grows
+                // with the data.
                 (&mut *file).take(length).read_to_end(&mut bytes)?;
                 Ok((bytes.len() as u64 == length).then_some(bytes))
             }

@@ -51,7 +51,7 @@ impl Chunk {
                     got: ZSTD.to_owned(),
                 });
             }
-            // The format has no other compression.
+            // The format defines no other compression.
             other => return damaged(&format!("its compression is called {other:?}")),
         };
         if records.len() as u64 != header.size {

@@ -87,7 +87,7 @@ impl Index {
             return missing("no summary");
         };
         if crc != 0 {
-            // Includes the part of the footer before the checksum itself.
+            // The checksum includes the part of the footer before the checksum itself.
             let mut hasher = crc32fast::Hasher::new();
             hasher.update(&summary);
             hasher.update(&footer[..HEADER as usize + 16]);
@@ -122,7 +122,7 @@ impl Index {
                 _ => {}
             }
         }
-        // An entry outside of the file does not belong to its index.
+        // An entry that points outside of the file does not belong to this index.
         let inside = |offset: u64, length| {
             offset
                 .checked_add(length)

@@ -107,7 +107,8 @@ pub struct Cycles {
 impl Cycles {
     pub(super) fn of(robot: &RobotRecording<'_>) -> Self {
         Self {
-            // Each chunk contains the tool once, up to half a second late if cycles are thinned.
+            // Each chunk contains the tool once, or up to half a second later if cycles are
+            // thinned.
             walk: Walk::of(robot, 2),
             cycles: channel(robot, Topic::Cycle),
             tools: channel(robot, Topic::Tool),

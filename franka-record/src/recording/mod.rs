@@ -208,7 +208,7 @@ impl Recording {
     fn knows_channels(&self) -> bool {
         let schema = Topic::Gripper.schema();
         self.robots.iter().all(|robot| {
-            // This channel is the last to be described.
+            // The channel of the gripper is the last that a file describes.
             let name = Topic::Gripper.channel(&robot.name);
             self.channels.find(&name, &schema).is_some()
         })

@@ -58,7 +58,7 @@ impl Recording {
             .map_err(|error| of_file(whole, error))?;
         let written = write(&bytes, &index, file);
         if written.is_err() {
-            // The partial file is useless, and its error was reported.
+            // The partial file is of no use, and its error has been reported.
             let _ = fs::remove_file(whole);
         }
         written.map_err(|failure| match failure {

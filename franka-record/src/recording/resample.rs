@@ -21,7 +21,7 @@ pub struct Resampled {
 
 impl Resampled {
     pub(super) fn of(cycles: Cycles, rate: f64) -> Self {
-        // An invalid rate returns every cycle.
+        // With an invalid rate, every cycle is returned.
         let period = if rate > 0.0 { 1e3 / rate } else { 1.0 };
         Self {
             cycles,

@@ -290,7 +290,7 @@ fn resampled(samples: &[Sample], q: &[[f64; 7]], speed: f64) -> Vec<[f64; 7]> {
     let begin = samples[0].time;
     let step = PERIOD.as_secs_f64() * 1e3 * speed;
     let last = (samples[samples.len() - 1].time - begin) as f64;
-    // The last target is at the last sample or less than a step before it.
+    // The last target is at the last sample, or less than a step before it.
     let count = (last / step + 1e-9).floor() as usize + 1;
     let mut next = 1;
     let at = |k: usize| {

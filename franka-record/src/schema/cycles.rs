@@ -130,7 +130,7 @@ impl franka::Cycle {
         state.message_id = self.robot_time;
         state.robot_mode = robot_mode(self.robot_mode);
         state.motion_generator_mode = generator(self.motion_generator_mode);
-        // Our files contain no larger number.
+        // Files of this crate contain no larger number.
         let controller = u8::try_from(self.controller_mode).unwrap_or(u8::MAX);
         state.controller_mode = ControllerMode::from_byte(controller);
         state.errors = Errors::from_bits(self.errors);
@@ -161,7 +161,7 @@ fn derive(state: &mut RobotState) {
     let stiffness = pose(&state.O_T_EE) * pose(&state.EE_T_K);
     let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
     let (force, torque) = (Vector3::new(x, y, z), Vector3::new(a, b, c));
-    // In the axes of the base, its torque is about the origin of the base.
+    // In base axes, the torque of the wrench refers to the origin of the base.
     let torque = torque - stiffness.translation.vector.cross(&force);
     let force: [f64; 3] = stiffness.inverse_transform_vector(&force).into();
     let torque: [f64; 3] = stiffness.inverse_transform_vector(&torque).into();

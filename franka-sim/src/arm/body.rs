@@ -41,7 +41,8 @@ pub struct Body {
 impl Body {
     /// An upright arm without errors against its model.
     pub fn exact(kind: RobotKind) -> Self {
-        // The metal is the same under every system: the stops are outside the widest limits.
+        // The mechanics are the same with every system version, so the stops are outside the
+        // widest limits.
         let limits = SystemLimits::default().joints(kind);
         Self {
             mass_error: [0.0; 7],

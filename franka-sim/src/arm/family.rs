@@ -67,7 +67,7 @@ pub struct Family {
     /// Delay of commands in whole cycles, at least 1, drawn once per arm.
     pub command_delay: Distribution,
     /// Elasticity of the joints; `null` in JSON for rigid joints.
-    // `Option::deserialize`, since a plain `Option` may be missing.
+    // `Option::deserialize` is required here, because a plain `Option` may be missing.
     #[cfg_attr(
         feature = "serde",
         serde(deserialize_with = "serde::Deserialize::deserialize")

@@ -263,8 +263,8 @@ mod tests {
     #[test]
     fn what_makes_no_robot_is_refused() {
         let patience = |arguments| parse(arguments).ok().and_then(|parsed| parsed.virtual_time);
-        // libfranka drops a connection when no state comes for a second; a client that skips an
-        // answer must not run into that.
+        // libfranka drops a connection when no state comes for a second. A client that skips an
+        // answer must not lose its connection for this reason.
         let default = patience(&["--virtual-time"]);
         assert_eq!(default, Some(Duration::from_millis(500)));
         let short = patience(&["--virtual-time=0.1"]);

@@ -53,7 +53,7 @@ impl Arguments {
             _ = terminate.recv() => {}
             () = sim.ended() => return Err(io::Error::other("the simulation has ended")),
         }
-        // Otherwise, the last owner stops it by dropping it.
+        // Otherwise, the last owner stops the simulation by dropping it.
         if let Some(sim) = Arc::into_inner(sim) {
             sim.stop().await;
         }

@@ -123,7 +123,8 @@ impl Arguments {
             ),
             None => (Fingers::new(), Suction::new()),
         };
-        // Port 0 takes a free one; beyond the last port only free ones remain.
+        // Port 0 takes a free port. If the number would exceed the last port, also take a free
+        // port.
         let beside = |n| match self.port {
             0 => 0,
             port => port.checked_add(n).unwrap_or(0),

@@ -107,7 +107,7 @@ impl FingerMotion {
     /// Releases the held object; the fingers stay in their position.
     pub(super) fn rest(&mut self) {
         if let Means::Driven { drive, .. } = &mut self.means {
-            // Fingers at the target hold their width exactly.
+            // Fingers at their target keep exactly this width.
             let is_there = (self.width - drive.width).abs() < NEAR;
             *drive = resting(if is_there { drive.width } else { self.width });
         }

@@ -226,7 +226,7 @@ impl<M: Mechanism> EndEffector<M> {
             return;
         };
         self.ended = true;
-        // The session refuses a reply without a request; none is made up here.
+        // The session refuses a reply without a request, so this sends none.
         if let Ok(message) = client.session.reply(id, Reply::Done(status)) {
             let message = Bytes::copy_from_slice(message.as_bytes());
             self.replies.push_back(message);

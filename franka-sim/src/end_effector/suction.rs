@@ -188,7 +188,7 @@ impl Mechanism for Suction {
             part_present: self.object && self.vacuum >= Self::PART_PRESENT,
             device_status: DeviceStatus::Green,
             actual_power,
-            // At most 750.
+            // The value is at most 750, so the cast is exact.
             vacuum: self.vacuum.round() as i32,
         }
     }

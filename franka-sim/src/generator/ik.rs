@@ -135,7 +135,7 @@ mod tests {
         (m.m11, m.m12, m.m21, m.m22, m.m34) = (r, r, -r, r, 0.1034);
         let config = Config::default();
         let arm = arm(&frames, &config);
-        // No motion at all: the joints must not creep.
+        // The target is the current pose, so the joints must not creep.
         let q = solve(&arm, &arm.pose(&READY), None, &READY);
         assert!((q - READY).amax() < 1e-12);
     }

@@ -95,7 +95,7 @@ impl<'a> ArmModel<'a> {
     /// Pose of the end effector at `q`.
     pub(crate) fn pose(&self, q: &JointVector) -> nalgebra::Isometry3<f64> {
         let matrix = self.model.pose(Frame::EndEffector, q, self.frames);
-        // Frames are rigid transforms: setters refuse all others.
+        // Frames are rigid transforms, because setters refuse all others.
         transform::isometry(&matrix).unwrap_or_else(nalgebra::Isometry3::identity)
     }
 }
@@ -311,7 +311,7 @@ fn complete(
             }
             Some(elbow)
         }
-        // Also an elbow at rest: lost commands leave it as commanded.
+        // This includes an elbow at rest: lost commands do not change a commanded elbow.
         None if matches!(input, Input::Lost) && before.elbow.commanded => {
             Some(before.elbow.extrapolated())
         }

@@ -69,7 +69,7 @@ fn stiffness_frame_error(
 ) -> Twist {
     let actual = transform::isometry(&model.pose(Frame::Stiffness, q, frames));
     let offset = transform::isometry(&frames.ee_t_k);
-    // Frames are rigid transforms: setters refuse all others.
+    // Frames are rigid transforms, because setters refuse all others.
     let (Some(actual), Some(offset)) = (actual, offset) else {
         return Twist::zeros();
     };

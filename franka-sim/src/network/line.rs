@@ -103,7 +103,7 @@ impl Schedule {
         loop {
             grid += period;
             if self.random.uniform() < share {
-                // Never later than the stall of the next multiple.
+                // Not later than the stall near the next multiple.
                 let most = 0.25 * period.as_secs_f64();
                 let off = (SPREAD.as_secs_f64() * self.random.normal()).clamp(-most, most);
                 let near = grid.as_secs_f64() + off;
@@ -113,10 +113,10 @@ impl Schedule {
     }
 
     fn elsewhere_after(&mut self, end: Duration) -> Duration {
-        // Exponentially distributed; the argument is in (0, 1].
+        // The value is exponentially distributed. The argument of the logarithm is in (0, 1].
         let share = -(1.0 - self.random.uniform()).ln();
         let pause = self.stalls.pause().as_secs_f64() * share;
-        // Without any pause, the line would never be free again.
+        // Without any pause between stalls, the line would never be free again.
         let pause = Duration::try_from_secs_f64(pause).unwrap_or(FAR).min(FAR);
         end + pause.max(Duration::from_nanos(1))
     }
@@ -183,7 +183,7 @@ mod tests {
         };
         let found = stalls(partly_single, 300);
         let rate = found.len() as f64 / 300.0;
-        // Of 2100 independent events, the deviation is 2 %.
+        // The deviation for 2100 independent events is 2 %.
         assert!((rate - 7.0).abs() < 0.45, "{rate} /s");
         let step = Duration::from_micros(20);
         let (bursts, single): (Vec<_>, Vec<_>) = found

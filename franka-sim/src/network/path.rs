@@ -55,7 +55,7 @@ pub struct Tally {
 impl Path {
     /// Returns a path under these conditions. `seed` determines all randomness.
     pub fn new(conditions: Conditions, seed: u64) -> Self {
-        // Separate streams: loss must not move the stalls.
+        // Separate random numbers, because loss must not change the stalls.
         let mut seeds = Random::new(seed);
         Self {
             line: Line::new(&conditions, seeds.bits()),
@@ -98,7 +98,7 @@ impl Path {
         };
         let packets = packets(datagram.len());
         let left = self.line.carry(ready, on_the_wire(datagram.len()));
-        // Draws for every packet, even if one is lost already: bursts continue.
+        // Draws a number for every packet, even if one is already lost, because bursts continue.
         let lost = (0..packets).filter(|_| self.losses.lose()).count();
         self.cuts.retain(|cut| left < cut.end);
         let cut = self.cuts.iter().any(|cut| cut.contains(&left));

@@ -156,10 +156,10 @@ fn what_is_missing_or_left_over_is_the_steps_and_goes_with_them() {
         });
         let turnover = book.turnover;
         println!("{name}: {errors:?} J of {turnover} J");
-        // In the five seconds the motors supply and absorb several times this energy.
+        // In the five seconds, the motors supply and absorb several times this energy.
         assert!(turnover > 0.3, "{name}: {turnover} J");
         assert!(errors[0] < 0.03 * turnover, "{name}: {errors:?} J");
-        // The rule is of first order.
+        // The integration rule is of first order.
         let ratio = errors[0] / errors[1];
         assert!((1.5..2.5).contains(&ratio), "{name}: {errors:?} J");
     });
@@ -178,7 +178,7 @@ fn friction_takes_energy_and_gives_none() {
             let weight = book.weight();
             book.step(&weight, STEP);
             let surplus = book.surplus();
-            // Except for the error of a step.
+            // Except for the integration error of one step.
             assert!(
                 surplus < least + 1e-4 * book.turnover,
                 "{name}: {surplus} J after {least} J"

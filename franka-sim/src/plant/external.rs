@@ -26,7 +26,7 @@ impl External {
         let Some(slope) = self.slope else {
             return JointVector::zeros();
         };
-        // The added matrix makes the difference diagonally dominant.
+        // Adding this matrix makes the difference diagonally dominant.
         JointVector::from_fn(|i, _| slope.row(i).iter().map(|s| s.abs()).sum())
     }
 

@@ -103,7 +103,7 @@ impl Robot {
             true => self.interface.delayed(law.feedforward),
             false => law.feedforward,
         };
-        // The robot's own controllers close their loops around the motors. Brakes measure nothing.
+        // The robot's own controllers close their loops around the motors. Brakes close no loop.
         let deflection = self.train.deflection(&self.dynamics.gravity);
         let (q_error, dq_error) = match self.are_brakes_holding() {
             true => (JointVector::zeros(), JointVector::zeros()),
@@ -137,7 +137,7 @@ impl Robot {
             _ => false,
         };
         if is_led {
-            // No generator runs: the desired motion is the measured one.
+            // No generator runs, so the desired motion is the measured motion.
             self.desired.joints = self.measured_signal();
             let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
@@ -195,8 +195,8 @@ impl Robot {
             Activity::Moving(motion) => motion,
             Activity::Guided(guidance) => return self.guiding_law(guidance),
             _ if self.are_brakes_holding() => return joint(&BRAKE_STIFFNESS),
-            // Holding and braking do not use the client's settings: a soft setting must not weaken
-            // them.
+            // Holding and braking do not use the client's settings, because soft settings must not
+            // weaken them.
             _ => return joint(&self.config.unpublished.joint_stiffness),
         };
         match motion.request().controller {
@@ -221,7 +221,7 @@ impl Robot {
     /// Returns gravity compensation with a light damper, and springs in the locked directions.
     fn guiding_law(&self, guidance: &Guidance) -> Law {
         let guiding = &self.settings.guiding;
-        // The axes are the end effector's, not the stiffness frame's.
+        // The axes are those of the end effector, not of the stiffness frame.
         let frames = EndEffector {
             ee_t_k: Matrix4::identity(),
             ..self.settings.frames

@@ -115,7 +115,7 @@ impl Robot {
         let pose = self
             .as_built
             .pose(Frame::EndEffector, self.plant.q(), frames);
-        // Frames are rigid transforms: setters refuse all others.
+        // Frames are rigid transforms, because setters refuse all others.
         transform::isometry(&pose).unwrap_or_else(Isometry3::identity)
     }
 

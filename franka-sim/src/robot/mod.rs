@@ -236,7 +236,8 @@ impl Robot {
         self.settle();
         self.publish(&torque);
         let port = self.client.as_ref()?.udp_port()?;
-        // The buffer fits every version, and no state uses fields that its version lacks.
+        // The buffer is large enough for every version, and no state uses fields that its version
+        // lacks.
         let version = self.version();
         let length = self.state.encode(version, &mut self.datagram).ok()?;
         Some(Datagram {

@@ -178,7 +178,7 @@ impl ActiveMotion {
         }
         let mut errors = Errors::NONE;
         self.paused = false;
-        // The first command is compared with the start unfiltered.
+        // The first command is compared with the start without a filter.
         let filters = rules.filters.filter(|_| self.is_begun);
         let smooth = command
             .zip(filters)
@@ -186,7 +186,7 @@ impl ActiveMotion {
         let command = smooth.as_ref().or(command);
         let input = match command {
             Some(command) => {
-                // Without limits no start is wrong either.
+                // Without limits, every start is valid.
                 let first = !self.is_begun && rules.limits;
                 (self.is_answered, self.is_begun) = (true, true);
                 self.success_rate.hit();
@@ -250,7 +250,7 @@ impl ActiveMotion {
         };
         if let Some(command) = command {
             if command.motion_generation_finished {
-                // libfranka's last command holds zeros instead of a position.
+                // libfranka's last command contains zeros instead of a position.
                 return Verdict::Finished;
             }
             let target = JointVector::from(command.q_c);

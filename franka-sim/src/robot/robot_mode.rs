@@ -203,7 +203,7 @@ impl Robot {
         };
         let dq = &self.measurement.dq;
         if takes_none {
-            // The command counts as received, and changes nothing.
+            // The command counts as received, but has no effect.
             let mut desired = self.desired;
             let verdict = motion.cycle(command.as_ref(), &mut desired, dq, &arm, rules);
             self.desired = Desired::resting(&arm, self.desired.joints.q);
@@ -227,7 +227,7 @@ impl Robot {
     pub(super) fn supervise(&mut self) {
         let moving = self.is_moving();
         let ddq = match &self.activity {
-            // Accelerations by external forces are not phases of the motion.
+            // Accelerations that external forces cause are not phases of the motion.
             Activity::Moving(motion) if !motion.is_external() => self.desired.joints.ddq,
             _ => self.measurement.ddq,
         };
@@ -324,13 +324,14 @@ impl Robot {
             self.reply(id, Reply::StopMove(StopStatus::Success));
         }
         self.end_recovery();
-        // The state of this millisecond has not been published yet, and shows the motion already.
+        // The state of this millisecond has not been published yet, so it already shows the
+        // motion.
         self.start_waiting(self.clock);
     }
 }
 
-// None of these figures is published for the robot. Unless noted otherwise, they are choices of
-// this simulator.
+// These values are not published for the robot. Unless noted otherwise, they are choices of this
+// simulator.
 
 /// Tolerance of measured velocities outside their envelope, `[rad/s]`.
 const VELOCITY_MARGIN: f64 = 0.1;

@@ -124,7 +124,7 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // The session refuses a reply without a request; none is made up here.
+        // The session refuses a reply without a request, so this sends none.
         if let Ok(message) = client.session.reply(id, reply) {
             self.replies
                 .push_back(Bytes::copy_from_slice(message.as_bytes()));
@@ -144,7 +144,7 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // A version without the request never reaches this.
+        // A version without this request never gets here.
         let text = self.description.clone().unwrap_or_default();
         if let Ok(header) = client.session.model_header(id, text.len()) {
             let header = Bytes::copy_from_slice(header.as_bytes());

@@ -88,7 +88,8 @@ impl Watch {
     }
 
     fn closes_in_on_itself(&mut self, q: &JointVector, config: &Config) -> bool {
-        // Nearly always the arm has moved too little since it was clear to have lost its clearance.
+        // In nearly all cases, the arm has moved too little since the last clear position to lose
+        // its clearance.
         if let Some((seen, spare)) = &self.clear
             && LEVER * (q - seen).abs().sum() < *spare
         {

@@ -251,8 +251,8 @@ impl Spring {
     }
 }
 
-// Stiffnesses and masses, choices of this simulator. The steps of the plants are stable with
-// stiffer ones, too (`tests/robot/firm.rs` goes up to 1e8 N/m).
+// Stiffnesses and masses, choices of this simulator. The plants are also stable with higher
+// stiffness (`tests/robot/firm.rs` goes up to 1e8 N/m).
 
 /// Stiffness of a table or a firm grip, `[N/m]`.
 const FIRM: f64 = 20_000.0;

@@ -214,7 +214,7 @@ mod tests {
             let states = clock.begin(host.compute());
             for _ in 0..states {
                 late += u64::from(answer > host.wall);
-                // The state leaves, and then the host may delay the thread.
+                // The state leaves. Then the host may delay the thread.
                 answer = host.compute() + turnaround;
                 clock.published(host.compute());
             }

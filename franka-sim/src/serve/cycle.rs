@@ -56,7 +56,7 @@ impl Cycle {
             if !patience.is_zero() {
                 let now = clock.at(Instant::now());
                 match self.await_answer(now, patience, &mut attempts, clock.pace()) {
-                    // If this thread was late, the client was not.
+                    // If this thread was late, the delay is not the client's.
                     Answer::NotAwaited => {}
                     Answer::Awaited => clock.waited(Instant::now()),
                     Answer::End => return clock.pace().log(),
@@ -80,11 +80,11 @@ impl Cycle {
     /// Runs in virtual timeuntil no client or task remains. Each state waits for the client's
     /// answer; see [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration, speed: Speed) {
-        // Nothing is late in virtual time, so nothing slips.
+        // In virtual time no state is late, so the clock does not slip.
         let mut clock = Clock::new(Instant::now(), true);
         let mut attempts = 0;
         let mut pacer = Pacer::new(speed);
-        // The time of the robot and of its network.
+        // Time of the robot and of its network.
         let mut now = Instant::now();
         loop {
             if !self.cycle(now, clock.pace()) {
@@ -175,7 +175,7 @@ impl Cycle {
         if let Some(Hook(job)) = &mut self.every_millisecond {
             job(self.robot.device_mut());
         }
-        // The end of the robot's service ends the thread, and with it the other devices.
+        // When the robot's service ends, this thread ends, and with it the other devices.
         let goes_on = self.robot.cycle(now, pace);
         if let Some(Hook(job)) = &mut self.after_each_state {
             job(self.robot.device_mut());

@@ -138,7 +138,7 @@ impl<D: Device> DeviceServer<D> {
         }
         self.send_replies();
         if let (Some(datagram), Some((peer, _))) = (self.device.tick(), &self.client) {
-            // The address includes the interface of a link-local peer.
+            // The address must include the interface of a link-local peer.
             let mut listener = *peer;
             listener.set_port(datagram.port);
             match &mut self.relay {
@@ -216,7 +216,7 @@ impl<D: Device> DeviceServer<D> {
             socket.set_read_timeout(Some(longest))?;
             socket.peek_from(&mut [0])
         };
-        // Reading the socket later reports the result, including errors.
+        // A later read from the socket reports the result, errors included.
         let _ = wait();
         let _ = socket.set_nonblocking(true);
     }
@@ -246,7 +246,8 @@ impl<D: Device> DeviceServer<D> {
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut buffer) {
                 Ok((length, source)) => {
-                    // Other sockets of the client's host are not the client.
+                    // Datagrams from other sockets of the client's host do not belong to the
+                    // client.
                     let ip = self.client.as_ref().map(|(peer, _)| peer.ip());
                     let client = ip.zip(self.device.udp_port());
                     if client == Some((source.ip(), source.port())) {
@@ -328,7 +329,7 @@ impl<D: Device> DeviceServer<D> {
                 None => false,
             };
             if gone {
-                // The queue is closed: without the sender the connection closes.
+                // The queue is closed. Once the sender is dropped, the connection closes.
                 self.disconnect();
             }
         }

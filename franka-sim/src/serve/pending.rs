@@ -89,8 +89,8 @@ impl PendingConnections {
             );
             oldest.abort();
         }
-        // Without these options replies are slower, and a client that has lost its network stays
-        // longer.
+        // Without these options, replies are slower, and a client that has lost its network is
+        // detected later.
         let (silence, count) = KEEPALIVE;
         let keepalive = TcpKeepalive::new()
             .with_time(silence)

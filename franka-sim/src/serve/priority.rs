@@ -10,9 +10,8 @@ pub(super) fn raise() -> std::io::Result<()> {
     // has further fields than the priority, so a literal would not build everywhere.
     let mut parameters: libc::sched_param = unsafe { std::mem::zeroed() };
     parameters.sched_priority = PRIORITY;
-    // musl refuses `sched_setscheduler` always.
-    // SAFETY: `pthread_self` is the valid id of the calling thread, and the pointer is to a live
-    // value, which is only read.
+    // musl always refuses `sched_setscheduler`. SAFETY: `pthread_self` is the valid id of the
+    // calling thread, and the pointer is to a live value, which is only read.
     match unsafe {
         libc::pthread_setschedparam(
             libc::pthread_self(),

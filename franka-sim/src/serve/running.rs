@@ -131,7 +131,7 @@ impl Running {
     /// # Cancel safety
     /// Dropping the future has no effect.
     pub async fn ended(&self) {
-        // Nothing is ever sent: an error signals the end.
+        // Nothing is ever sent; the error signals the end.
         let _ = self.finished.clone().changed().await;
     }
 
@@ -154,7 +154,7 @@ impl Running {
         if let Some(gripper) = vacuum_gripper {
             gripper.close().await;
         }
-        // The thread ends when the robot can receive no more orders, or has already died.
+        // The thread ends when the robot can receive no more orders, unless it has already ended.
         robot.close().await;
         let _ = finished.changed().await;
     }

@@ -104,7 +104,7 @@ impl<D: 'static> Service<D> {
     /// Closes the sockets of the stream, and returns when no more orders can come.
     pub(super) async fn close(mut self) {
         self.server.abort();
-        // An aborted task ends with an error, the intended one.
+        // An aborted task ends with an error, which is intended here.
         let _ = (&mut self.server).await;
     }
 }

@@ -87,7 +87,7 @@ impl Default for Speed {
 }
 
 impl Speed {
-    // Relaxed: it orders no other memory.
+    // Relaxed ordering is enough, because the value orders no other memory.
     fn set(&self, speed: Option<f64>) {
         let bits = speed.unwrap_or(f64::INFINITY).to_bits();
         self.0.store(bits, Ordering::Relaxed);
@@ -164,7 +164,7 @@ mod tests {
                 let first = sim.state().await.expect("running").message_id;
                 tokio::time::sleep(Duration::from_millis(300)).await;
                 let passed = sim.state().await.expect("running").message_id - first;
-                // On a busy machine less time passes; some is caught up.
+                // On a busy machine less time passes. The simulator makes up for part of it.
                 let most = begun.elapsed().as_millis() / period + 5;
                 assert!(u128::from(passed) <= most, "{speed}: {passed} > {most}");
             }

@@ -122,7 +122,7 @@ impl Look {
         for (zero, field) in self.zero.iter_mut().zip(sparse) {
             *zero &= field.iter().all(|value| *value == 0.0);
         }
-        // Sufficient for a median, and cheap to compute.
+        // Every tenth state is enough for a median, and cheap to compute.
         if self.states % 10 == 1 {
             self.gaps
                 .push(std::array::from_fn(|i| gap(&sets[i], state)));

@@ -63,7 +63,7 @@ impl Verdict {
         match value {
             value if value <= good => Self::Good,
             value if value <= bad => Self::Look,
-            // Also for NaN.
+            // This includes NaN.
             _ => Self::Bad,
         }
     }

@@ -285,7 +285,8 @@ impl Steps<'_> {
         let arm = self.begin("a stream", &what).await?;
         let (robot, here) = (&self.moving.robot, self.moving.robot.pose());
         let (targets, followed) = watch::channel((here, Twist::zeros()));
-        // By the robot's clock, because a simulator may run faster than the wall clock.
+        // Measures time by the robot's clock, because a simulator may run faster than the wall
+        // clock.
         let streaming = async move {
             let (mut first, mut sent, mut behind) = (None, 0, Vec::new());
             let read = robot.read(|state| {

@@ -32,7 +32,7 @@ impl MotionBound {
         turns: &JointVector,
     ) -> CandidateMask {
         let groups = &spacing.groups;
-        // Padded to full SIMD rows: groups beyond the count have no levers.
+        // The array is padded to full SIMD rows. Groups beyond the count have no levers.
         let mut moved = [0.0; GROUPS_MAX];
         for (i, levers) in groups.levers.iter().enumerate() {
             let turn = (q[i] - self.q[i]).abs() + turns[i];

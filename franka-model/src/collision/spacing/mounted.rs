@@ -119,7 +119,8 @@ fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> 
     let (away, axis) = match (link, joint) {
         _ if link == joint => return aside,
         (3, _) => (length(aside, point.z + upper_arm), 3),
-        // Each of these axes is at right angles to the previous one, and to the line between them.
+        // Each of these axes is at right angles to the previous axis, and to the line between the
+        // two.
         (4, 3) => return length(ELBOW + aside, point.z),
         (4, _) => (length(length(upper_arm, ELBOW) + aside, point.z), 3),
         (5, _) => (length(ELBOW + aside, forearm + point.z), 4),

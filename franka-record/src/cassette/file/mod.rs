@@ -106,7 +106,7 @@ mod tests {
             .unwrap();
         writer.write(0, Device::Robot, first).unwrap();
         writer.write(0, Device::Robot, second).unwrap();
-        // No events follow on these channels, one of which has no events at all.
+        // No events follow on these channels. One of them has no events at all.
         for (from, stream) in [(Side::Robot, true), (Side::Client, false)] {
             writer
                 .note_dropped(0, Device::Robot, from, stream, 1)

@@ -156,7 +156,7 @@ impl Reading {
         let mut connections: Vec<_> = self.connections.into_values().collect();
         connections.sort_by_key(|(order, _)| *order);
         let connections = connections.into_iter().map(|(_, mut connection)| {
-            // The threads of a tap record events in any order; the stamps contain the true order.
+            // The threads of a tap record events in any order. Their times give the true order.
             connection.events.sort_by_key(|event| event.at);
             connection
         });

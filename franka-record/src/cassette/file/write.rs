@@ -201,7 +201,7 @@ impl Cassette {
         let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), self.started)?;
         let mut order: Vec<_> = Vec::new();
         for (number, connection) in self.connections.iter().enumerate() {
-            // A connection without events is in the file too.
+            // The file also contains a connection without events.
             writer.channel((number, true, true), connection.device)?;
             order.extend(connection.events.iter().map(|event| (number, event)));
         }

@@ -199,7 +199,7 @@ mod tests {
         let error = from_capture(&with_a_snap_length(&capture, 30)).unwrap_err();
         assert!(error.to_string().contains("captured in part"), "{error}");
         for snapped in 0..200 {
-            // An error is fine; a panic is not.
+            // An error is a valid result; a panic is not.
             let _ = from_capture(&with_a_snap_length(&capture, snapped));
         }
     }
@@ -230,7 +230,7 @@ mod tests {
                 let position = (seed >> 33) as usize % damaged.len();
                 damaged[position] = (seed >> 24) as u8;
             }
-            // An error is fine; a panic is not.
+            // An error is a valid result; a panic is not.
             let _ = from_capture(&damaged);
         }
     }

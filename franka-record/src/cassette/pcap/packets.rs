@@ -164,7 +164,7 @@ fn on_block(
             let ticks = u64::from(block.ts_high) << 32 | u64::from(block.ts_low);
             (interface, ticks, block.packet_data(), block.truncated())
         }
-        // A simple packet has no time; network captures do not contain it.
+        // A simple packet has no time. Network captures do not contain such packets.
         PcapBlockOwned::NG(_) => return None,
     };
     let nanoseconds = i128::from(ticks) * 1_000_000_000 / i128::from(interface.resolution)

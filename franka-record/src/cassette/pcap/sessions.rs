@@ -85,7 +85,7 @@ impl Sessions {
         };
         let new = from == Side::Client && segment.opens;
         let known = self.open.get(&(client, robot)).copied();
-        // A client's port is opened again; a repeated opening has the same number.
+        // A client opens the same port again. A repeated packet would have the same number.
         let reopened = new
             && known.is_some_and(|index| {
                 let stream = &self.sessions[index].from_client;
@@ -160,7 +160,8 @@ impl Stream {
             self.next.get_or_insert(segment.sequence.wrapping_add(1));
             return events;
         }
-        // A capture that began later begins with its first segment.
+        // If the capture began after the connection, the stream begins with the first captured
+        // segment.
         let next = self.next.get_or_insert(segment.sequence);
         if !segment.payload.is_empty() {
             let longest = self.early.get(&segment.sequence).map_or(0, Vec::len);

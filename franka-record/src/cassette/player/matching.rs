@@ -41,7 +41,8 @@ impl Player {
         if recorded[..command] != got[..command] {
             return Some(name);
         }
-        // The version in a handshake determines everything that follows; the port comes after it.
+        // The version in a handshake determines everything that follows. The port comes after the
+        // version.
         let (start, end) = match (connect, self.options.matching) {
             (true, _) => (payload, payload + 2),
             (false, Matching::Strict) => (payload, recorded.len().max(got.len())),

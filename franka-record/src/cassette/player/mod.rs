@@ -177,7 +177,7 @@ impl Player {
         let got = counter(self.script.device, datagram);
         let sent = got.and_then(|id| self.sent.iter().rev().find(|(sent, _)| *sent == id));
         let recorded = match sent {
-            // The recording has no command for a state that it does not contain.
+            // The recording contains no command for a state that it does not contain.
             Some((_, None)) if !self.script.finishes(datagram) => return Ok(()),
             Some((_, None)) => None,
             Some((_, recorded)) => *recorded,

@@ -13,7 +13,8 @@ impl Player {
         if self.is_unfinished_motion(self.position) {
             return Ok(Gate::Hold);
         }
-        // A client that is ahead with its next request must not command until it is answered.
+        // A client that has already sent its next request must not send commands until the request
+        // is answered.
         let ahead = self.requested > self.position;
         if self.options.pace == Pace::Recorded || self.silent || ahead {
             return Ok(Gate::Open);

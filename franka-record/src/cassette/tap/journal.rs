@@ -114,7 +114,8 @@ impl Lane {
 impl Drop for Lane {
     fn drop(&mut self) {
         if self.missing > 0 {
-            // The lane has stopped forwarding, so this call may wait. The journal may have ended.
+            // The lane has stopped forwarding, so this call may wait. The journal may already have
+            // ended.
             let _ = self.recorder.notes.send(Note {
                 source: self.source,
                 missing: self.missing,

@@ -74,13 +74,14 @@ fn forward(
     stop: &AtomicBool,
 ) -> io::Result<()> {
     let robot = TcpStream::connect_timeout(&route.robot, CONNECT_TIME_MAX)?;
-    // Some systems inherit this from the listener.
+    // On some systems a connection inherits this option from the listener.
     client.set_nonblocking(false)?;
     for stream in [client, &robot] {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(TICK))?;
     }
-    // A client accepts states only from the robot's address, which for the client is the tap's.
+    // A client accepts states only from the robot's address. For the client, this is the address
+    // of the tap.
     let to_client = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
     let to_robot = UdpSocket::bind((robot.local_addr()?.ip(), 0))?;
     for socket in [&to_client, &to_robot] {
@@ -141,7 +142,7 @@ fn copy(
                 let sent = to.write_all(&passed(received));
                 lane.note(at, Payload::Stream(received.to_vec()));
                 if sent.is_err() {
-                    // The receiver is gone, so the sender's stream is ended too.
+                    // The receiver has disconnected, so end the sender's stream, too.
                     let _ = from.shutdown(Shutdown::Both);
                     break;
                 }
@@ -205,7 +206,7 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
     match socket.recv_from(buffer) {
         Ok(received) => Some(received),
         Err(error) => {
-            // Other errors are returned at once, such as from one of our datagrams that reached a
+            // Other errors return immediately, for example if one of our datagrams reached a
             // closed port.
             if !is_timeout(&error) && error.kind() != io::ErrorKind::ConnectionRefused {
                 std::thread::sleep(TICK);
@@ -253,7 +254,7 @@ impl Handshake {
                 }
                 waiting
             }
-            // Not a client: the robot's answer decides.
+            // This is not a client's handshake. The robot's answer decides what happens.
             Ok(Some(_)) | Err(_) => waiting,
         }
     }

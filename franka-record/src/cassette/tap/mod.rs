@@ -125,7 +125,7 @@ impl Tap {
         // Relaxed: the threads are joined below, and the flag guards no data.
         self.stop.store(true, Ordering::Relaxed);
         for listener in self.listeners.drain(..) {
-            // A panic in that thread has been printed; the recording up to it is kept.
+            // The panic of this thread has been printed. The recording so far is kept.
             let _ = listener.join();
         }
         let Some(journal) = self.journal.take() else {
@@ -158,7 +158,7 @@ fn accept(
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         let Ok((client, _)) = listener.accept() else {
-            // No client, or a client that is already gone.
+            // No client connected, or the client has already disconnected.
             std::thread::sleep(TICK);
             continue;
         };

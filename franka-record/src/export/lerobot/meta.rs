@@ -186,7 +186,7 @@ fn difference(got: &Value, gripper: bool) -> Option<String> {
             differences.push(format!("the names of {name} are {}", got["names"]));
         }
     }
-    // The remainder may contain other keys, as in the features of videos.
+    // The rest may contain other keys, as the features of videos do.
     if differences.is_empty() {
         differences.push("the features have other properties".into());
     }

@@ -250,7 +250,7 @@ mod tests {
             body.step(torque);
         }
         assert!((torque - 1.0).abs() < 0.01, "{torque} N m");
-        // Steady speeds, held by a velocity loop.
+        // Steady speeds, which a velocity loop maintains.
         let mut resistance = |speed: f64| {
             let mut torque = 0.0;
             for _ in 0..8000 {

@@ -21,8 +21,8 @@ pub(super) fn write_hand(text: &mut String) {
     let turn = quaternion(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn));
     add(text, format_args!("<body name='hand' quat='{turn}'>"));
     write_capsule(text, &geom(Body::Tool, 0), &HAND);
-    // The right finger is the left one turned about the axis of the Hand, so that both open in the
-    // positive direction.
+    // The right finger is the left finger, turned about the axis of the Hand. Both thus open in
+    // the positive direction.
     for (name, turn) in JOINTS.into_iter().zip(["1 0 0 0", "0 0 0 1"]) {
         let stroke = FingerDrive::STROKE / 2.0;
         add(

@@ -183,7 +183,7 @@ fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<
         axes.column_mut(2).neg_mut();
     }
     let turn = UnitQuaternion::from_matrix_eps(&axes, 1e-16, 100, UnitQuaternion::identity());
-    // Semidefinite up to rounding.
+    // The matrix is semidefinite, except for rounding.
     let moments = principal.eigenvalues.map(|moment| moment.max(0.0));
     let (position, turn, moments) = (numbers(com), quaternion(&turn), numbers(&moments));
     add(

@@ -241,7 +241,8 @@ fn apply(
 ) {
     let (q, dq) = read(data, places);
     let (stop, stop_slope) = arm.body.stops.resistance(&q, &dq, dt);
-    // The model has the drives' least inertia. The rest acts like a damper over one step.
+    // The model contains the drives' least inertia. The remaining inertia acts like a damper over
+    // one step.
     let rest = (drive.inertia - armature).map(|inertia| inertia.max(0.0));
     let rest = (rest + external.diagonal()) / dt;
     // The dampers subtract slope · dq at the start of the step; the remainder is a force.

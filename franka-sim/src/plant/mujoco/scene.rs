@@ -144,13 +144,14 @@ impl Scene {
             .map_err(|error| SceneError::Impossible(error.to_string()))?;
         let options = model.opt_mut();
         options.gravity = gravity_earth;
-        // Treats the dampers of the joints implicitly.
+        // With this integrator, MuJoCo treats the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
-        // Without these two a grasp creeps: friction is as soft as contact, and weaker along
-        // diagonals.
+        // Without these two options a grasp creeps: friction is as soft as contact, and weaker
+        // along diagonals.
         options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
         options.impratio = 10.0;
-        // An unstable simulation must not look like a fresh one.
+        // Without this option, MuJoCo resets an unstable simulation, which then looks like a new
+        // one.
         options.disableflags |= mjtDisableBit::mjDSBL_AUTORESET as i32;
         Ok(model)
     }

@@ -97,7 +97,7 @@ impl SharedArm {
     }
 
     fn world(&self) -> MutexGuard<'_, World> {
-        // A panic of MuJoCo ends the process; nothing else can be left incomplete.
+        // A panic in MuJoCo ends the process. Nothing else can leave the world incomplete.
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -77,7 +77,7 @@ impl Touches {
         });
         for present in &mut self.touches {
             (present.felt, present.steps) = (Wrench::zeros(), 0);
-            // At the beginning of the millisecond.
+            // Time since the touch began, at the beginning of the millisecond.
             let elapsed = now.saturating_sub(present.since + 1) as f64 * CYCLE;
             match &mut present.touch.effort {
                 Effort::OverTime(wrench) => present.wrench = wrench(elapsed),
@@ -198,10 +198,10 @@ impl Present {
                 let across = *normal * normal.transpose();
                 let depth = across * (*point - position);
                 let push = spring.pull(depth, &(across * velocity), dt);
-                // Nothing sticks to a wall: it does not act on a place outside, or on a place that
-                // leaves faster than the wall follows. The arm's acceleration is not known yet. A
-                // place that is pulled off the wall is therefore pulled for one step, with the
-                // slope times the acceleration.
+                // Nothing sticks to a wall. The wall does not act on a point outside, or on a
+                // point that leaves faster than the wall follows. The arm's acceleration is not
+                // known yet. Therefore the wall pulls a leaving point for one step, with the slope
+                // times the acceleration.
                 let is_behind = (depth - across * velocity * dt).dot(normal) > 0.0;
                 if !is_behind || push.dot(normal) <= 0.0 {
                     (none, none, None)
@@ -282,7 +282,7 @@ mod tests {
             let mut touches = Touches::default();
             let id = touches.add(touch.offset(offset), 0);
             let mut most = 0.0_f64;
-            // Releases the joint before the end stops act, too.
+            // Releases the joint before the end stops also act.
             for step in 1..=100 {
                 // Each step counts as a millisecond, so that the felt wrench belongs to the step.
                 touches.advance(step);
