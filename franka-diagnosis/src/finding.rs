@@ -11,8 +11,8 @@ use franka_proto::RobotError;
 pub enum Subject {
     /// A joint, 1 to 7 from the base.
     Joint(u8),
-    /// The translation of the end effector. Limits apply to the norm of the vector; the axis is
-    /// that of its largest component.
+    /// The translation of the end effector. Limits apply to the norm of the vector; the axis is the
+    /// axis of the largest component.
     Translation(Axis),
     /// The rotation of the end effector, with the axis of the largest component.
     Rotation(Axis),

@@ -141,8 +141,8 @@ fn category(error: E) -> Category {
     known.map_or(Category::Desk, |&(_, category)| category)
 }
 
-/// Returns the error that explains the others, and its evidence in the log: the first error with
-/// evidence, or otherwise the first error.
+/// Returns the error that explains the other errors, and its evidence in the log: the first error
+/// with evidence, or otherwise the first error.
 pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
     let named = || {
         ORDER

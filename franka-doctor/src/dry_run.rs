@@ -116,8 +116,8 @@ const ANSWER_GOOD: Duration = Duration::from_micros(800);
 /// millisecond.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Number of answers below which the result is not conclusive: those of ten seconds, minus a few at
-/// the beginning and the end.
+/// Number of answers below which the result is not conclusive: the answers of ten seconds, minus a
+/// few at the beginning and the end.
 const ANSWERS_MIN: usize = 9_900;
 
 #[cfg(test)]

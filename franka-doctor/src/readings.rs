@@ -125,7 +125,7 @@ impl<'a> Readings<'a> {
         Ok(values)
     }
 
-    /// Returns those of `names` that are names of running programs, as in `/proc`.
+    /// Returns the entries of `names` that are names of running programs, as in `/proc`.
     pub(crate) fn running(&self, names: &[&'static str]) -> Result<Vec<&'static str>, Unread> {
         let mut found = Vec::new();
         let entries = self.host.list("/proc")?;

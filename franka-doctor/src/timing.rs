@@ -177,11 +177,11 @@ pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
     sorted[wanted - 1]
 }
 
-/// Number of latencies below which the result is not conclusive: those of ten seconds.
+/// Number of latencies below which the result is not conclusive: the latencies of ten seconds.
 const LATENCIES_MIN: u64 = 10_000;
 
-/// Number of consecutive states below which the result is not conclusive: those of ten seconds,
-/// minus a few lost states.
+/// Number of consecutive states below which the result is not conclusive: the states of ten
+/// seconds, minus a few lost states.
 const STATES_MIN: usize = 9_900;
 
 #[cfg(test)]

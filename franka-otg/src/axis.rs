@@ -136,8 +136,8 @@ impl Axis {
         }
     }
 
-    /// Lays out the profile of `duration` seconds, or the least-time profile if the latter takes
-    /// longer.
+    /// Lays out the profile of `duration` seconds. If the least-time profile takes longer, lays out
+    /// the least-time profile.
     ///
     /// Behind a target in motion, the axis continues for a cycle and then stops in the least time.
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {

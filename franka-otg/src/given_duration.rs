@@ -31,8 +31,8 @@ use crate::stop_then_go::stop_then_go;
 use crate::task::{SAME, Task};
 use crate::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
 
-/// Stretches a least-time solution to `duration`, in units of the axis. Its own duration is kept if
-/// it is longer.
+/// Stretches a least-time solution to `duration`, in units of the axis. A solution that already
+/// takes longer does not change.
 pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     if duration - least.duration <= SAME * duration {
         return Stretched::of(least.shape);

@@ -49,8 +49,8 @@ pub(crate) enum Solution {
     Mean {
         /// The extremal motion upwards, and the distance of its end beyond the target.
         up: (Shape, f64),
-        /// The extremal motion downwards, in the frame in which it is upwards, and the distance of
-        /// its end beyond the target.
+        /// The extremal motion downwards, in the frame in which this motion is upwards, and the
+        /// distance of its end beyond the target.
         down: (Shape, f64),
         /// Weight of the motion upwards.
         weight: f64,

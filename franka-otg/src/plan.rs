@@ -36,7 +36,7 @@ pub(crate) struct Plan<const N: usize> {
 
 #[derive(Debug, Clone)]
 enum Path<const N: usize> {
-    /// Each axis separately.
+    /// The axes move separately.
     PerAxis,
     /// On a straight line.
     Straight(StraightLine<N>),

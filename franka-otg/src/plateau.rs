@@ -13,8 +13,8 @@
 //! with `M` the displacement of a transfer. The extremal motions up and down are the two ends of
 //! this family. As long as the cruise is not negative, the excess grows with `w`, so exactly one
 //! `w` between the velocities of the extremal motions is right. The cruise is negative only if the
-//! duration is so close to that of the velocity change that no plateau fits. The mean of the two
-//! extremal motions is then used.
+//! duration is so close to the duration of the velocity change that no plateau fits. The mean of
+//! the two extremal motions is then used.
 //!
 //! The mean would be valid for every duration, without a search. But a new plan from a state on a
 //! plateau motion continues with the same velocity, whereas the mean of the extremal motions

@@ -10,8 +10,8 @@ pub(crate) struct Shape {
     pub(crate) first: f64,
     /// The seven durations, none negative.
     pub(crate) t: [f64; 7],
-    /// Velocity between the two halves, which is that of the fourth piece if this piece has a
-    /// duration.
+    /// Velocity between the two halves. If the fourth piece has a duration, this is the velocity of
+    /// the fourth piece.
     pub(crate) cruise: f64,
 }
 

@@ -2,8 +2,9 @@
 //!
 //! The motion is a straight line if the displacement to the target, and all velocities and
 //! accelerations now and at the target, are multiples of one vector. One scalar problem along this
-//! line then moves the axes in phase. From rest, this is always possible. The duration equals that
-//! of time-synchronised axes if the same axis determines all three limits. Otherwise it is longer.
+//! line then moves the axes in phase. From rest, this is always possible. The duration equals the
+//! duration of time-synchronised axes if the same axis determines all three limits. Otherwise it is
+//! longer.
 //!
 //! Rounding makes the axes of a moving line slightly non-parallel. So the scalar state is continued
 //! while targets stay on the line, and not derived from the axes again.

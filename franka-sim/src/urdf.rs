@@ -6,7 +6,7 @@
 //!
 //! - all of `joint1` to `joint7`, each with `limit` (lower, upper, velocity, effort) and
 //!   `position_based_velocity_limits` as direct children; no other joint name may contain one of
-//!   these names (those of the fingers do);
+//!   these names (the names of finger joints do);
 //! - exactly seven movable joints, a link named `link8`, an `axis` for each joint;
 //! - no fixed link with mass behind link 7: a hand is part of `m_ee`.
 //!

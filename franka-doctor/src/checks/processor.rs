@@ -233,7 +233,7 @@ fn members(list: &str) -> Option<Vec<usize>> {
     Some(members)
 }
 
-/// Upper bound of processor numbers, above those of any kernel.
+/// Upper bound of processor numbers. No kernel has larger numbers.
 const CPU_MAX: usize = 1 << 16;
 
 fn isolated(readings: &Readings<'_>) -> Result<Judged, Unread> {

@@ -105,7 +105,8 @@ impl Shape<'static> {
         Self { lengths, ..self }
     }
 
-    /// Adds the Franka Hand on the flange, mounted as by the vendor: turned by -45° about its axis.
+    /// Adds the Franka Hand on the flange, mounted as the vendor mounts it: turned by -45° about
+    /// its axis.
     pub const fn with_hand(self) -> Self {
         Self {
             tool: self.hand,

@@ -22,7 +22,7 @@
 //! - On links 1 and 2, one or two torques determine neither place nor force: [`Unknown::Base`].
 //! - On link 3, three torques determine the force along the normal and an inexact place. On link 4,
 //!   the place depends on the angle of the force. [`Contact::spread`] is the uncertainty.
-//! - Forces whose torques are within the errors of the estimate cannot be detected:
+//! - If the torques of a force are within the errors of the estimate, the force cannot be detected:
 //!   [`Unknown::Weak`].
 //! - A force along a line that crosses the axes of the outer joints looks the same on several
 //!   links: [`Unknown::Tie`].

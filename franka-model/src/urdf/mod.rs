@@ -15,7 +15,7 @@
 //! The geometry is the crate's own, with one of the [known](crate::geometry::Lengths::KNOWN) sets
 //! of lengths, because inverse kinematics and capsules depend on it. A text with another geometry
 //! is refused rather than used in part. If a frame deviates by less than 1 µm and 10 µrad, the
-//! error of rounded numbers, the crate's numbers replace those of the text.
+//! error of rounded numbers, the crate's numbers replace the numbers of the text.
 //!
 //! The text has no limits of acceleration, jerk and torque rate, and no end-effector limits; the
 //! model then uses the limits of the FR3. The text has no commanded position range either

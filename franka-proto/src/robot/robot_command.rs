@@ -10,8 +10,8 @@ use crate::wire::{self, from_wire, to_wire};
 /// The client's command for one cycle; the field names are the vendor's.
 ///
 /// Only the fields of the active generator and controller count; leave the other fields zero. A
-/// command has two halves, for the generator and the controller. The robot reads every field of a
-/// half that it uses and ignores the other half.
+/// command has two halves, for the generator and the controller. If the robot uses a half, it reads
+/// every field of this half. It ignores a half that it does not use.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotCommand {

@@ -7,8 +7,8 @@ macro_rules! robot_errors {
     ($($variant:ident = $text:literal,)*) => {
         /// One of the 41 reasons for which a robot stops itself.
         ///
-        /// The order is that of the wire, the same in protocols 5 and 10. The texts come from
-        /// libfranka 0.21.
+        /// The errors have the order of the wire, which is the same in protocols 5 and 10. The
+        /// texts come from libfranka 0.21.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u8)]
         pub enum RobotError {

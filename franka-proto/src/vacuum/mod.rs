@@ -1,7 +1,7 @@
 //! The protocol of the vacuum gripper: TCP port 1339, version 1, the same on both robots.
 //!
-//! The protocol works like that of the [Hand](crate::gripper). The gripper replies to each request
-//! when the action has ended, and sends its [`State`] by UDP.
+//! The protocol works like the protocol of the [Hand](crate::gripper). The gripper replies to each
+//! request when the action has ended, and sends its [`State`] by UDP.
 
 mod request;
 mod state;

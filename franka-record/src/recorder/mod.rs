@@ -359,7 +359,7 @@ impl RecordHandle {
     }
 }
 
-/// Capacity of the recorder's queue, which it polls 50 times a second.
+/// Capacity of the recorder's queue. The recorder polls it 50 times a second.
 const ORDERS_MAX: usize = 4096;
 
 const FINISH_MAX: Duration = Duration::from_secs(10);

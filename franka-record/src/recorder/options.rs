@@ -202,7 +202,7 @@ pub struct Robot {
     pub kind: RobotKind,
     /// Lengths of the robot's links, for viewers. Default: the vendor's description.
     pub lengths: Lengths,
-    /// URDF of the robot, if known. It is attached to the file.
+    /// URDF of the robot, if known. The recorder attaches it to the file.
     pub urdf: Option<String>,
     /// Other known facts for the metadata: address, version, options.
     pub metadata: BTreeMap<String, String>,

@@ -80,7 +80,7 @@ impl Sensors {
     }
 }
 
-/// Standard deviation between `rest` and `motion`. It reaches `motion` at 1 rad/s.
+/// Standard deviation between `rest` and `motion`. The value is `motion` from 1 rad/s on.
 fn between(rest: &JointVector, motion: &JointVector, dq: &JointVector) -> JointVector {
     JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
 }

@@ -10,8 +10,8 @@ use crate::arm::Drive;
 /// motors and have neither delay nor lag.
 #[derive(Debug, Clone)]
 pub(super) struct TorqueInterface {
-    /// Commands that do not act yet, the oldest first. Their number is the delay in cycles, in
-    /// addition to the one cycle of the protocol.
+    /// Commands that do not act yet, the oldest first. Their number is the additional delay in
+    /// cycles. The protocol itself has a delay of one cycle.
     pending: VecDeque<JointVector>,
     /// Time constant of the lag, `[s]`.
     lag: f64,

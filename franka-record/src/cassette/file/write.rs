@@ -233,7 +233,7 @@ fn metadata<const N: usize>(name: &str, fields: [(&str, String); N]) -> mcap::re
     }
 }
 
-/// Returns the nanoseconds for the file. They last for 584 years.
+/// Returns the nanoseconds for the file. 64 bits are enough for 584 years.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }

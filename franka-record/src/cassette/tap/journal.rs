@@ -45,7 +45,7 @@ pub(super) struct Source {
 #[derive(Debug)]
 struct Note {
     source: Source,
-    /// Number of events before this one that did not fit into the queue.
+    /// Number of events, directly before this event, that did not fit into the queue.
     missing: u32,
     event: Option<Event>,
 }

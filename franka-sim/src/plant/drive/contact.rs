@@ -63,8 +63,8 @@ impl Contact {
     /// with at least the inertia `inertia`.
     ///
     /// While a side sticks, its torque is the bristles' torque at the end of the step. While it
-    /// slides, its torque follows the Stribeck curve. The slope keeps a side that stops within the
-    /// step inside the range in which it sticks.
+    /// slides, its torque follows the Stribeck curve. If a side stops within the step, the slope
+    /// keeps it inside the range in which it sticks.
     pub(super) fn tangent(&self, v: f64, inertia: f64, dt: f64) -> Tangent {
         let Some(bristle) = &self.bristle else {
             let shape = (v / self.stribeck_speed).tanh();
