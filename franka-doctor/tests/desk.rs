@@ -10,7 +10,7 @@ use franka_doctor::{Purpose, Verdict, ask_desk, web};
 use rustls::pki_types::PrivatePkcs8KeyDer;
 use rustls::{ServerConfig, ServerConnection, StreamOwned};
 
-/// The answer for a path: status and JSON.
+/// Returns the answer for a path: status and JSON.
 type Pages = fn(&str) -> (u16, &'static str);
 
 /// The newest generation: brakes closed, FCI not active.
@@ -68,7 +68,7 @@ fn listener() -> (TcpListener, SocketAddr) {
     (listener, address)
 }
 
-/// Serves until the process ends; returns the address.
+/// Starts a server that runs until the process ends. Returns its address.
 fn serve(pages: Pages, tls: Option<Arc<ServerConfig>>) -> SocketAddr {
     let (listener, address) = listener();
     thread::spawn(move || {
@@ -86,7 +86,7 @@ fn serve(pages: Pages, tls: Option<Arc<ServerConfig>>) -> SocketAddr {
     address
 }
 
-/// Returns a configuration with a self-signed certificate, whose name differs from the server's
+/// Returns a configuration with a self-signed certificate. The name in it differs from the server's
 /// address.
 fn self_signed() -> Arc<ServerConfig> {
     let made = rcgen::generate_simple_self_signed(["robot.franka.de".to_owned()]);

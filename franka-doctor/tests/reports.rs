@@ -1,7 +1,7 @@
 //! Reports about hosts whose files are in `fixtures`, compared exactly with the texts in `golden`.
 //!
-//! The trees contain the files that the checks read, modelled after real hosts; none is a copy of a
-//! real host. With `FRANKA_DOCTOR_REWRITE=1` the texts are rewritten.
+//! The trees contain the files that the checks read. They are modelled after real hosts, but none
+//! is a copy. With `FRANKA_DOCTOR_REWRITE=1`, the tests rewrite the texts.
 
 use std::fs;
 use std::net::Ipv4Addr;
@@ -33,7 +33,7 @@ fn tree(host: &str) -> Tree {
     Tree::new(directory("fixtures").join(host))
 }
 
-/// Returns the robot address that this host has a route to.
+/// Returns the robot address to which this host has a route.
 fn robot(host: &str) -> Ipv4Addr {
     match host {
         "laptop_on_battery" => Ipv4Addr::new(192, 168, 1, 30),

@@ -1,4 +1,5 @@
-//! The doctor on the host of the tests: no check passes that cannot, and nothing is changed.
+//! The doctor on the host of the tests: no check passes that cannot pass here, and nothing is
+//! changed.
 
 #[path = "trace/harm.rs"]
 mod harm;
@@ -9,7 +10,7 @@ use std::time::Duration;
 
 use franka_doctor::{Doctor, Ethtool, Host as _, Purpose, System, Verdict};
 
-/// Environment variable of the traced child.
+/// Environment variable that marks the traced child process.
 const TRACED: &str = "FRANKA_DOCTOR_TRACED";
 
 #[test]
@@ -61,7 +62,7 @@ fn wake_ups_are_measured_and_progress_is_told() {
     assert_eq!(parts.last(), Some(&1.0));
 }
 
-/// Runs this test in a child under `strace`, and checks its files and calls.
+/// Runs this test in a child process under `strace`, and checks its files and system calls.
 #[test]
 fn no_call_changes_the_host() {
     if std::env::var_os(TRACED).is_some() {

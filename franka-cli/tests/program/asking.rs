@@ -93,7 +93,7 @@ fn an_arm_that_moves_while_somebody_reads_is_not_moved_as_said() {
     assert!(shown.contains("joint 1 has moved from"), "{shown}");
 }
 
-/// Checks a position, within the noise of the sensors and the motion of the brakes.
+/// Checks a position, with a tolerance for the noise of the sensors and the motion of the brakes.
 #[track_caller]
 fn near(q: [f64; 7], expected: [f64; 7]) {
     for (q, expected) in q.iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! Properties of every command: tables of commands, each in the same situation.
+//! Properties of every command, from tables of commands in the same situation.
 
 use std::net::TcpListener;
 use std::path::Path;
@@ -34,7 +34,7 @@ const STILL: [&str; 16] = [
     "gripper stop HAND",
 ];
 
-/// Commands that move the arm for some seconds, or could.
+/// Commands that move the arm for some seconds, or that could move it.
 const MOVING: [&str; 6] = [
     "move ROBOT --by 0,0.2,0 --speed 0.3 --yes --realtime ignore",
     "replay run.mcap ROBOT --speed 0.3 --yes --realtime ignore",
@@ -44,7 +44,7 @@ const MOVING: [&str; 6] = [
     "trial ROBOT --report new.md --yes --realtime ignore",
 ];
 
-/// Other commands that connect.
+/// Other commands that connect to a robot.
 const OTHER: [&str; 4] = [
     "state ROBOT --watch --json",
     "dash ROBOT --listen 127.0.0.1:0",
@@ -52,7 +52,7 @@ const OTHER: [&str; 4] = [
     "gripper grasp HAND --width 0.03 --yes",
 ];
 
-/// Short motions, and the checks that contact the robot.
+/// Short motions, and checks that contact the robot.
 const SHORT: [&str; 3] = [
     "guide ROBOT --seconds 0.1 --yes --realtime ignore",
     "test communication ROBOT --seconds 0.2 --yes --realtime ignore",
@@ -93,7 +93,7 @@ fn words<'a>(command: &'a str, robot: &'a str, hand: &'a str) -> Vec<&'a str> {
     command.split(' ').map(word).collect()
 }
 
-/// Records a motion of such a robot to `run.mcap`; returns the robot.
+/// Records a motion of this robot to `run.mcap`. Returns the robot.
 fn record(home: &Home, sim: Sim) -> Simulated {
     let sim = Simulated::fast(sim);
     let robot = sim.address();
@@ -191,7 +191,7 @@ fn a_reflex_ends_every_motion_and_is_explained() {
     });
 }
 
-/// Waits until a command has begun to move the arm, or to hold it.
+/// Waits until a command has begun to move or hold the arm.
 fn begins(sim: &Simulated, command: &str) {
     match command.split(' ').next() {
         Some("guide" | "test" | "trial") => until("a motion", || sim.state().motion_running()),

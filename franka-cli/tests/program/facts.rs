@@ -191,7 +191,8 @@ fn robots_have_names() {
         .failed(2, &["robots.toml", "port"]);
 }
 
-/// As in a container: the file of names is not needed, and its directory does not exist.
+/// This is a situation as in a container: the file of names is not needed, and its directory does
+/// not exist.
 #[test]
 fn an_address_needs_no_home() {
     let (home, sim) = (Home::new(), Simulated::fr3());

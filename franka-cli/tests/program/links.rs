@@ -57,7 +57,7 @@ fn ctrl_c_ends_the_watching_with_code_0() {
     watching.ended().done();
 }
 
-/// Returns the next line of its output.
+/// Returns the next line of the program's output.
 fn read_line(program: &mut crate::program::Started) -> String {
     use std::io::Read;
     let mut line = Vec::new();

@@ -1,6 +1,6 @@
 //! The program `franka` against simulated robots in the test process, in pipes, and in
 //! pseudo-terminals for questions and drawings. Simulators wait for late commands of a busy
-//! computer; no verdict depends on its punctuality.
+//! computer, so no verdict depends on the computer's punctuality.
 //!
 //! | module | content |
 //! |---|---|

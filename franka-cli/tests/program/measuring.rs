@@ -1,4 +1,5 @@
-//! Tests of connections, benchmarks, and the simulator as a command. No measured figure is judged.
+//! Tests of connections, benchmarks, and the simulator as a command. No test judges a measured
+//! value.
 
 #[path = "../../../franka-doctor/tests/trace/harm.rs"]
 mod harm;
@@ -136,7 +137,7 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
     );
 }
 
-/// Includes the dry run of the control loop, and a connected robot.
+/// This includes the dry run of the control loop, and a connected robot.
 #[test]
 fn a_doctor_changes_nothing_on_this_computer() {
     let (home, sim) = (Home::new(), Simulated::fr3());

@@ -152,7 +152,8 @@ fn ctrl_c_at_a_recovery_says_that_it_may_go_on() {
     });
 }
 
-/// Interrupts a program, and waits for its end or some seconds: the robot is at rest meanwhile.
+/// Interrupts a program, and waits for its end, or for some seconds. The robot must be at rest
+/// meanwhile.
 fn interrupt_and_wait(id: u32) {
     kill(Pid::from_raw(id as i32), Signal::SIGINT).expect("it runs");
     let begin = Instant::now();
@@ -205,7 +206,7 @@ fn a_guided_arm_is_held_again_at_the_end() {
     });
 }
 
-/// Through a second Ctrl-C, or automatically after some seconds.
+/// The command ends with a second Ctrl-C, or automatically after some seconds.
 #[test]
 fn guide_ends_while_a_hand_pushes_on() {
     for again in [true, false] {

@@ -11,7 +11,7 @@ use tungstenite::client::IntoClientRequest as _;
 use crate::program::{Home, Started, until};
 use crate::simulated::Simulated;
 
-/// Returns the address from the first line with an address that serves the page.
+/// Returns the address that serves the page, from the first output line with an address.
 fn page(program: &mut Started) -> String {
     let out = program.child().stdout.as_mut().expect("piped");
     let lines = BufReader::new(out).lines().map(|line| line.expect("text"));

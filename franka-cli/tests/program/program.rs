@@ -1,4 +1,4 @@
-//! The program, with a separate configuration.
+//! The program `franka`, with a configuration of its own.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -9,7 +9,7 @@ use std::{env, fs, process, thread};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-/// A folder that is deleted at the end, with the configuration of programs in it.
+/// A folder for the configuration of programs. It is deleted at the end.
 pub(crate) struct Home(PathBuf);
 
 impl Home {
@@ -27,7 +27,7 @@ impl Home {
         self.0.join(name)
     }
 
-    /// Returns the program with these arguments, not started.
+    /// Returns the command for the program with these arguments, not started.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_franka"));
         command
@@ -69,7 +69,7 @@ impl AsRef<Path> for Home {
     }
 }
 
-/// The end of the program.
+/// Result of a program that has ended.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,
@@ -86,7 +86,7 @@ impl Ran {
         }
     }
 
-    /// Checks that it ended with this code, and that its errors contain these texts.
+    /// Checks that the program ended with this code, and that its errors contain these texts.
     #[track_caller]
     pub(crate) fn failed(&self, code: i32, texts: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
@@ -96,14 +96,14 @@ impl Ran {
         assert!(!self.err.contains("panicked"), "{self:?}");
     }
 
-    /// Checks that it succeeded; returns its output.
+    /// Checks that the program succeeded, and returns its output.
     #[track_caller]
     pub(crate) fn done(self) -> String {
         assert_eq!(self.code, Some(0), "{self:?}");
         self.out
     }
 
-    /// Checks that it succeeded; returns its JSON output.
+    /// Checks that the program succeeded, and returns its JSON output.
     #[track_caller]
     pub(crate) fn json(self) -> serde_json::Value {
         let out = self.done();
@@ -114,7 +114,7 @@ impl Ran {
     }
 }
 
-/// A running program; killed when dropped.
+/// A running program. Dropping this value kills it.
 pub(crate) struct Started(Option<Child>);
 
 impl Started {
@@ -127,7 +127,7 @@ impl Started {
         kill(id, signal).expect("it runs");
     }
 
-    /// Waits for its end.
+    /// Waits for the end of the program.
     pub(crate) fn ended(mut self) -> Ran {
         let child = self.0.take().expect("not ended");
         Ran::of(child.wait_with_output().expect("it ends"))
@@ -151,7 +151,7 @@ pub(crate) fn robot_address(text: &str) -> Option<String> {
     Some(rest[..end].to_owned())
 }
 
-/// Waits until a condition is true; the limit is for a program that hangs.
+/// Waits until a condition is true. A time limit detects a program that hangs.
 #[track_caller]
 pub(crate) fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     let begin = Instant::now();

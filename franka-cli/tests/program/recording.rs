@@ -155,8 +155,8 @@ fn a_file_of_another_program_is_refused_with_its_name() {
     assert!(!home.path("bag.csv").exists() && !home.path("data").exists());
 }
 
-/// Returns an MCAP file with the minimum of every file: the record that names its writer, and an
-/// end.
+/// Returns an MCAP file with the minimum that every file has: the record that names its writer, and
+/// an end.
 fn foreign_mcap() -> Vec<u8> {
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
     let record = |kind: u8, body: &[u8]| {
@@ -423,7 +423,7 @@ fn a_session_is_tapped_played_and_converted() {
     });
 }
 
-/// Returns the address of the robot, from the first line on standard error.
+/// Returns the address of the robot from the first line on standard error.
 fn address(program: &mut crate::program::Started) -> String {
     use std::io::Read;
     let (mut line, mut byte) = (Vec::new(), [0]);

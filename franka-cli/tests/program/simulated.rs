@@ -24,19 +24,20 @@ impl Simulated {
         Self::of(Sim::fer())
     }
 
-    /// Runs a test with both robots, in parallel.
+    /// Runs a test with robots of both kinds, in parallel.
     pub(crate) fn each(test: impl Fn(&Self) + Sync) {
         Self::each_kind(|_, sim| test(sim));
     }
 
-    /// Runs a test with both robots, one after the other, from [`Self::fast`]: each keeps a
-    /// processor busy.
+    /// Runs a test with robots of both kinds from [`Self::fast`], one after the other, because each
+    /// keeps a processor busy.
     pub(crate) fn each_fast(test: impl Fn(&Self)) {
         test(&Self::fast(Sim::fr3()));
         test(&Self::fast(Sim::fer()));
     }
 
-    /// Runs a test with both robots, in parallel, and with unstarted robots of the same kind.
+    /// Runs a test with robots of both kinds, in parallel. The test also gets a robot of the same
+    /// kind that is not started.
     pub(crate) fn each_kind(test: impl Fn(Sim, &Self) + Sync) {
         thread::scope(|scope| {
             for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {
@@ -69,7 +70,7 @@ impl Simulated {
         self.sim.addr().to_string()
     }
 
-    /// Returns the address of its Hand.
+    /// Returns the address of the robot's Hand.
     pub(crate) fn hand(&self) -> String {
         self.sim.hand().expect("a Hand").addr().to_string()
     }
@@ -102,7 +103,7 @@ impl Simulated {
         });
     }
 
-    /// Checks that the arm is at rest, and the robot is in this mode.
+    /// Checks that the arm is at rest and that the robot is in this mode.
     #[track_caller]
     pub(crate) fn rests(&self, mode: RobotMode) {
         until("rest", || {
@@ -122,7 +123,7 @@ fn speed(state: &RobotState) -> f64 {
     state.dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
 }
 
-/// Time limit for commands of a busy computer: twenty consecutive missing commands end a motion.
-/// The robot also waits this long, without sending states, for a command that the driver has
-/// skipped. After a second without states the driver considers the robot lost.
+/// Time for which the robot waits for a command of a busy computer. Twenty consecutive missing
+/// commands end a motion. The robot also waits for a command that the driver has skipped, and sends
+/// no states meanwhile. After a second without states, the driver considers the robot lost.
 const PATIENCE: Duration = Duration::from_millis(100);

@@ -13,13 +13,13 @@ use nix::unistd::Pid;
 
 use crate::program::{Home, robot_address, until};
 
-/// A program with its terminal. Killed when dropped.
+/// A program with its terminal. Dropping this value kills the program.
 pub(crate) struct Terminal {
     child: Child,
     input: File,
-    /// Its output so far.
+    /// Output of the program so far.
     shown: Arc<Mutex<String>>,
-    /// Ends when the program has closed the terminal.
+    /// Thread that ends when the program has closed the terminal.
     reader: Option<JoinHandle<()>>,
 }
 
@@ -72,7 +72,7 @@ impl Terminal {
         self.shown.lock().expect("no panic").clone()
     }
 
-    /// Waits until it has shown this text.
+    /// Waits until the program has shown this text.
     #[track_caller]
     pub(crate) fn shows(&self, text: &str) {
         until(&format!("{text:?}"), || self.shown().contains(text));
@@ -96,7 +96,7 @@ impl Terminal {
         kill(Pid::from_raw(self.child.id() as i32), signal).expect("it runs");
     }
 
-    /// Waits for its end; returns the exit code, and its output.
+    /// Waits for the end of the program. Returns the exit code and the output.
     pub(crate) fn ended(mut self) -> (Option<i32>, String) {
         let code = self.child.wait().expect("it ends").code();
         // Its last output is in transit.

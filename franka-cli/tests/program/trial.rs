@@ -19,7 +19,7 @@ fn trial<'a>(robot: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
     all.iter().chain(rest).copied().collect()
 }
 
-/// Returns the report of a trial, and its figures.
+/// Returns the report of a trial, and its JSON data.
 #[track_caller]
 fn report(home: &Home, name: &str) -> (String, Value) {
     let text = fs::read_to_string(home.path(name)).expect("a report");
@@ -154,7 +154,7 @@ fn a_trial_asks_before_each_step_and_replaces_no_file() {
     );
 }
 
-/// Pushed while it moves up 5 cm.
+/// The arm is pushed while it moves up by 5 cm.
 #[test]
 fn a_reflex_ends_a_trial_with_its_report() {
     for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {

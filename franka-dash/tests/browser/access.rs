@@ -8,7 +8,7 @@ use crate::served::{Served, wait};
 /// Token of the server.
 const SECRET: &str = "correct-horse-battery";
 
-/// Checks that the page reports a missing or wrong token, and shows the robot once it is right.
+/// Checks that the page reports a missing or wrong token, and shows the robot with the right token.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let address = served.with_token(SECRET)?;
     for (fragment, why) in [

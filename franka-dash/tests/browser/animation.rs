@@ -1,5 +1,5 @@
-//! An animated PNG with at most 256 colours, each frame of which contains the changes since the
-//! last.
+//! An animated PNG with at most 256 colours. Each frame contains only the changes since the
+//! previous frame.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -13,7 +13,7 @@ use png::{BitDepth, BlendOp, ColorType, Compression, Decoder, Encoder, Filter, T
 /// Red, green and blue.
 type Colour = [u8; 3];
 
-/// The picture from a time on.
+/// A picture, and the time from which it is shown.
 pub(crate) struct Frame {
     pub(crate) at: Duration,
     size: (u32, u32),
@@ -39,7 +39,7 @@ impl Frame {
     }
 }
 
-/// Writes frames, the last of which ends at `end`, as an animation that repeats indefinitely.
+/// Writes frames as an animation that repeats indefinitely. The last frame ends at `end`.
 pub(crate) fn write(file: &Path, frames: &[Frame], end: Duration) -> anyhow::Result<()> {
     let (width, height) = frames[0].size;
     let (palette, places) = colours(frames);
@@ -114,8 +114,8 @@ fn changes(before: &[u8], after: &[u8], width: usize) -> (Area, Vec<u8>) {
     (area, changed)
 }
 
-/// Returns a palette, and the palette index of each colour. The more pixels have a colour, the
-/// closer is its palette entry.
+/// Returns a palette, and the palette index of each colour. A colour of many pixels is closer to
+/// its palette entry than a colour of few pixels.
 fn colours(frames: &[Frame]) -> (Vec<Colour>, HashMap<Colour, u8>) {
     let mut counts: HashMap<Colour, u32> = HashMap::new();
     for pixel in frames.iter().flat_map(|frame| &frame.pixels) {
@@ -159,5 +159,5 @@ fn apart(a: &Colour, b: &Colour) -> u32 {
     off(0) + off(1) + off(2)
 }
 
-/// The palette index of an unchanged pixel.
+/// Palette index that stands for an unchanged pixel.
 const KEPT: u8 = 255;

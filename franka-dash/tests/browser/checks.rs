@@ -58,7 +58,7 @@ pub(crate) fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The end effector of the scene matches the robot's.
+/// Checks that the drawn end effector matches the robot's end effector.
 pub(crate) fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the drawn arm", || {
         let shown = page.state()?["endEffector"].clone();
@@ -68,7 +68,7 @@ pub(crate) fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result
     })
 }
 
-/// The fingers of the scene are as far apart as the robot's.
+/// Checks that the drawn fingers are as far apart as the robot's fingers.
 fn shows_the_fingers(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the drawn fingers", || {
         let shown = page.state()?["width"].as_f64();
@@ -77,7 +77,8 @@ fn shows_the_fingers(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// Another socket of the same page is another viewer: its requests are refused, except a stop.
+/// Checks that another socket of the same page is another viewer, whose requests are refused,
+/// except a stop.
 fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
     let start = served.robot.state().q;
@@ -111,7 +112,7 @@ fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The last seconds can be replayed, and then the live view.
+/// Checks that the page can replay the last seconds, and then returns to the live view.
 fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let height = || page.state()?["endEffector"][2].as_f64().context("a height");
     // Uses the robot's value: a page on a busy machine shows it later.
@@ -135,8 +136,8 @@ fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The links and the fingers are drawn as meshes. Later checks use capsules, which need less
-/// computation without a graphics card, and the arm moves faster.
+/// Checks that the page draws links and fingers as meshes. Later checks use capsules, which need
+/// less computation without a graphics card.
 pub(crate) fn looks(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the meshes", || Ok(page.state()?["meshes"] == true))?;
     shows_the_fingers(page, served)?;
@@ -149,7 +150,8 @@ pub(crate) fn looks(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Takes command, repeatedly if a page that was too busy has lost its connection.
+/// Takes command of the robot. Tries again if the connection was lost because the page was too
+/// busy.
 pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
     let commands = || Ok(page.state()?["commands"] == true);
     let begin = Instant::now();
@@ -162,14 +164,14 @@ pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Presses the button that moves up until the arm has moved. It is still held on return.
+/// Presses the button that moves up until the arm has moved. The button is still pressed on return.
 pub(crate) fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
     hold_until(page, "[data-jog='Z+']", || served.height() > start + 0.003)
 }
 
-/// Presses a button, repeatedly if the machine was too busy for a hold, until `done`. It may be
-/// held on return.
+/// Presses a button until `done` is true. Tries again if the machine was too busy for a hold. The
+/// button may be pressed on return.
 pub(crate) fn hold_until(
     page: &Browser,
     selector: &str,
@@ -214,7 +216,7 @@ fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// A step moves by its stated distance, and ends automatically.
+/// Checks that a step moves by its stated distance, and ends automatically.
 fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let choose = |step| page.run(&format!("document.getElementById('step').value = '{step}'"));
     choose("10")?;
@@ -237,7 +239,7 @@ fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
     choose("").map(drop)
 }
 
-/// Session, law and deadman.
+/// Returns the displayed session, law and deadman.
 fn top_lines(page: &Browser) -> anyhow::Result<Value> {
     page.run(
         "return ['session', 'law', 'deadman'] \
@@ -245,7 +247,7 @@ fn top_lines(page: &Browser) -> anyhow::Result<Value> {
     )
 }
 
-/// Tests each way in which a browser can take a held button away.
+/// Tests each way in which a browser can end the press of a button.
 fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let button = "document.querySelector(\"[data-jog='Z+']\")";
     for way in [
@@ -275,7 +277,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.pointer(&[up()])
 }
 
-/// Enter toggles the compensation when it has the focus.
+/// Checks that Enter toggles the compensation when the checkbox has the focus.
 fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     take(page)?;
     let compensates = || anyhow::Ok(page.state()?["status"]["tuning"]["compensation"] == true);
@@ -290,8 +292,8 @@ fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The space bar stops a motion with the focus on an element of each kind, reached with Tab, and
-/// has no other effect there.
+/// Checks that the space bar stops a motion while an element of each kind has the focus, and that
+/// it has no other effect there.
 fn space_bar(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
     press(page, TAB)?;
@@ -344,7 +346,7 @@ fn press(page: &Browser, key: &str) -> anyhow::Result<()> {
     page.key("keyUp", key)
 }
 
-/// Enter holds a button that has the focus; the space bar stops.
+/// Checks that Enter presses a button that has the focus, and that the space bar stops.
 fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
     for stop in [false, true] {
         let start = served.height();
@@ -373,7 +375,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Drags link 6: the robot measures it, and the page draws the force.
+/// Drags link 6. Checks that the robot measures the force, and that the page draws it.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.make_ready()?;
     drag_until(page, (0.0, -150.0), || {
@@ -387,8 +389,8 @@ fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// Drags link 6 of the drawn arm, repeatedly if a page that was too busy has released it, until the
-/// force is drawn and `felt`. It is still held on return.
+/// Drags link 6 of the drawn arm until the page draws the force and `felt` is true. Tries again if
+/// the page was too busy and released the link. The link is still dragged on return.
 pub(crate) fn drag_until(
     page: &Browser,
     by: (f64, f64),
@@ -417,15 +419,15 @@ pub(crate) fn drag(page: &Browser, (right, down_by): (f64, f64)) -> anyhow::Resu
     page.pointer(&[move_to((x + right, y + down_by))])
 }
 
-/// Starts to hold the arm in place, by the keyboard, so that a pointer can push it.
+/// Starts to hold the arm in place with the keyboard, so that a pointer can push the arm.
 pub(crate) fn hold_here(page: &Browser) -> anyhow::Result<()> {
     let button = "document.querySelector(\"[data-jog='Hold here']\")";
     page.run(&format!("{button}.focus({{preventScroll: true}})"))?;
     page.key("keyDown", ENTER)
 }
 
-/// Pushes the arm while it is held, by less than its collision thresholds: it yields, and the
-/// reference is drawn at the driver's position.
+/// Pushes the arm while it is held, by less than its collision thresholds. Checks that the arm
+/// yields, and that the reference is drawn at the driver's position.
 fn bend(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let apart = |a: &Value, b: &Value| {
         let off = |i: usize| Some((a[i].as_f64()? - b[i].as_f64()?).powi(2));
@@ -469,17 +471,17 @@ fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the recovery", || is(RobotMode::Idle))
 }
 
-/// The page is closed in mid-motion.
+/// Closes the page in the middle of a motion.
 fn leave(page: &Browser, served: &Served) -> anyhow::Result<()> {
     hold_up(page, served)?;
     page.go("about:blank")?;
     served.check_rest().context("the page was left")
 }
 
-/// Time for which a page hangs, `[ms]`: longer than the server waits for a message.
+/// Time for which a page hangs, `[ms]`. It is longer than the server waits for a message.
 const HANGS: u128 = PATIENCE.as_millis() + 500;
 
-/// Time limit for a hold to begin, on a machine where the page answers late.
+/// Time limit for a hold to begin, on a machine on which the page answers late.
 const LONGEST: Duration = Duration::from_secs(60);
 
 /// Keys, in WebDriver's notation.

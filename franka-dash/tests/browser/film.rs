@@ -1,4 +1,4 @@
-//! The film of the README: a target is placed, the arm moves there, and is pushed while it is held.
+//! The film of the README. It shows a target, the motion to it, and a push while the arm is held.
 
 use std::path::Path;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use crate::driver::{Browser, down, move_to, point, up};
 use crate::pictures::resize_scaled;
 use crate::served::{Served, wait};
 
-/// Consecutive screenshots of the page, timed by the robot's clock.
+/// Consecutive screenshots of the page, with times of the robot's clock.
 struct Film<'a> {
     page: &'a Browser,
     served: &'a Served,
@@ -24,7 +24,7 @@ impl Film<'_> {
         Duration::from_millis(self.served.robot.state().message_id)
     }
 
-    /// Takes a screenshot when the next one is due.
+    /// Takes a screenshot when it is due.
     fn shoot(&mut self) -> anyhow::Result<()> {
         ensure!(self.frames.len() < LONGEST, "the film does not end");
         if let Some(last) = self.frames.last().map(|last| last.at) {
@@ -54,7 +54,7 @@ impl Film<'_> {
         Ok(())
     }
 
-    /// Returns the position of an element's centre on the page, which is not scrolled.
+    /// Returns the position of an element's centre on the page, which must not be scrolled.
     fn middle(&self, selector: &str) -> anyhow::Result<(f64, f64)> {
         point(&self.page.run(&format!(
             "const box = document.querySelector({selector:?}).getBoundingClientRect(); \
@@ -127,7 +127,7 @@ pub(crate) fn record(page: &Browser, served: &Served, file: &Path) -> anyhow::Re
     Ok(())
 }
 
-/// Speed of the robot's time.
+/// Speed of the robot's time, relative to the wall clock.
 const SPEED: f64 = 0.15;
 
 /// Smallest interval between screenshots.
@@ -142,7 +142,8 @@ const LONGEST: usize = 200;
 /// Time for which the robot waits for a command on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A speed below the largest, a closer view, and a pointer, because screenshots show none.
+/// Script that sets a lower speed and a closer view, and draws a pointer, because screenshots show
+/// none.
 const PREPARE: &str = "\
     const speed = document.getElementById('speed'); \
     speed.value = 200; \
@@ -159,7 +160,7 @@ const PREPARE: &str = "\
       it.style.left = `${event.clientX - 2}px`; it.style.top = `${event.clientY - 1}px`; \
     }, {capture: true})";
 
-/// Scrolls a third of the way to the guards.
+/// Script that scrolls a third of the way to the guards.
 const SCROLL: &str = "\
     const panel = document.getElementById('guards-list').parentElement; \
     window.__way ??= panel.getBoundingClientRect().bottom + 8 - innerHeight; \

@@ -1,4 +1,4 @@
-//! User actions on the panels, and their expected effects.
+//! User actions on the panels of the page, and their expected effects.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A tare is shown with its range of validity, until it is cleared.
+/// Checks that a tare is shown with its range of validity, until it is cleared.
 pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.check_rest()?;
     take(page)?;
@@ -51,8 +51,8 @@ pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Every quantity draws a coloured line, and the table has a row per frame, with the newest joints
-/// in the last.
+/// Checks that every quantity draws a coloured line, and that the table has a row per frame, with
+/// the newest joints in the last row.
 pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {
     // The last quantities are about control, and the plot covers the last 20 s: so they are tested
     // first.

@@ -8,8 +8,8 @@ use crate::checks::{drag_until, load, shows_the_robot};
 use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
-/// Takes pictures of the page while the hand is pushed, `NAME-SIZE-SCHEME.png` each, and a picture
-/// of a window that shows the whole page.
+/// Takes pictures of the page while the hand is pushed, named `NAME-SIZE-SCHEME.png`. Also takes a
+/// picture of a window that shows the whole page.
 pub(crate) fn run(
     page: &Browser,
     served: &Served,

@@ -37,8 +37,8 @@ pub(crate) fn run(page: &Browser, built: PathBuf, folder: &Path) -> anyhow::Resu
     Ok(())
 }
 
-/// The drawn end effector is at the robot's measured position, which the page computes from the
-/// joints.
+/// Checks that the drawn end effector is at the robot's measured position, which the page computes
+/// from the joints.
 fn drawn_where_it_is(page: &Browser) -> anyhow::Result<()> {
     wait("the drawn arm", || {
         let state = page.state()?;
@@ -50,7 +50,7 @@ fn drawn_where_it_is(page: &Browser) -> anyhow::Result<()> {
     })
 }
 
-/// The target jumps, and the arm arrives without exceeding its speed cap.
+/// Checks that the arm follows a jump of the target, and arrives without exceeding its speed cap.
 fn step(page: &Browser, near: f64) -> anyhow::Result<()> {
     wait("the start", || Ok(number(page, "state")? == 0.0))?;
     page.click("#next")?;
@@ -67,7 +67,7 @@ fn arrive(page: &Browser, near: f64) -> anyhow::Result<()> {
     })
 }
 
-/// The centre of the handle is dragged: the target follows, and then the arm.
+/// Drags the centre of the handle. Checks that the target follows, and then the arm.
 fn drag_the_target(page: &Browser) -> anyhow::Result<()> {
     let (x, y) = point(&page.state()?["gizmo"])?;
     page.pointer(&[move_to((x, y)), down()])?;
@@ -76,7 +76,7 @@ fn drag_the_target(page: &Browser) -> anyhow::Result<()> {
     arrive(page, 1e-3)
 }
 
-/// The hand is pressed and dragged: the robot measures it, and yields until it is released.
+/// Drags the hand. Checks that the robot measures the force, and yields until the hand is released.
 fn push(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     press_the_hand(page, (-35.0, 10.0))?;
     wait("the force", || {
@@ -90,8 +90,8 @@ fn push(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     arrive(page, 1e-3)
 }
 
-/// The hand is pushed too hard: the robot stops, and then continues. Then an obstacle blocks it
-/// during a motion.
+/// Pushes the hand too hard. Checks that the robot stops, and then continues. Then an obstacle
+/// blocks the arm during a motion.
 fn stop_and_recover(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     press_the_hand(page, (-300.0, 150.0))?;
     wait("the reflex", || Ok(number(page, "state")? == 2.0))?;

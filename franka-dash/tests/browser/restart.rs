@@ -6,8 +6,8 @@ use franka_async::MotionError;
 use crate::driver::Browser;
 use crate::served::{Served, wait};
 
-/// A stop that is pressed meanwhile is shown as not sent. It stops the arm as soon as the page is
-/// connected again, and the page's buffer is then reset.
+/// Presses a stop meanwhile. The page must show the stop as not sent, and send it as soon as it is
+/// connected again. The page then resets its buffer.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let (address, server) = served.again("127.0.0.1:0".parse()?)?;
     page.go(&format!("http://{address}/"))?;

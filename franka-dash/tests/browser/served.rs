@@ -77,7 +77,7 @@ impl Served {
         Ok((address, runtime))
     }
 
-    /// Serves the page of this robot and another one together.
+    /// Serves the page of this robot and of another robot together.
     pub(crate) fn beside(&self, other: &Self) -> anyhow::Result<SocketAddr> {
         self.runtime.block_on(async {
             let options = Options::default();
@@ -143,7 +143,8 @@ impl Served {
         Ok(())
     }
 
-    /// Waits until the arm is at rest, for at most 5 s; then it may creep by a millimetre.
+    /// Waits for at most 5 s until the arm is at rest. Afterwards the arm may creep by a
+    /// millimetre.
     pub(crate) fn check_rest(&self) -> anyhow::Result<()> {
         let moving = || {
             let state = self.robot.state();
@@ -166,7 +167,7 @@ impl Drop for Served {
     }
 }
 
-/// Waits until `done`, 20 s at most.
+/// Waits until `done` is true, for at most 20 s.
 pub(crate) fn wait(
     what: &str,
     mut done: impl FnMut() -> anyhow::Result<bool>,
@@ -188,9 +189,9 @@ fn block() -> Obstacle {
     }
 }
 
-/// Half of its height, `[m]`.
+/// Half of the height of this region, `[m]`.
 const BLOCK: f64 = 0.1;
 
-/// Additional time for the browser's messages, compared with a real robot: pictures are drawn
-/// without a graphics card on a busy machine.
+/// Time by which the browser's messages may be later than with a real robot, because a busy machine
+/// draws pictures without a graphics card.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(2);

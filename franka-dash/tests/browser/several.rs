@@ -8,8 +8,8 @@ use franka_async::MotionError;
 use crate::driver::Browser;
 use crate::served::{Served, wait};
 
-/// Both robots are shown side by side at their positions, one button stops all motions, and each
-/// robot has its page.
+/// Checks that both robots are shown side by side at their positions, that one button stops all
+/// motions, and that each robot has its page.
 pub(crate) fn run(
     page: &Browser,
     [left, right]: [&Served; 2],

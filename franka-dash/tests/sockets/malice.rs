@@ -38,7 +38,7 @@ const TEXTS: [&str; 20] = [
     "\u{0}\u{7f}",
 ];
 
-/// Returns a WebSocket frame with this first byte, masked unless it is `bare`. The length may be
+/// Returns a WebSocket frame with this first byte, masked unless `bare` is true. The length may be
 /// wrong.
 fn frame(first: u8, length: u64, content: &[u8], bare: bool) -> Vec<u8> {
     let mask = if bare { 0 } else { 0x80 };

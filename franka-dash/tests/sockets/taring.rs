@@ -1,4 +1,4 @@
-//! The wrench without its offset for an untouched arm, over a socket.
+//! The displayed wrench without its offset for an untouched arm, over a socket.
 
 use franka_async::nalgebra::Vector3;
 use franka_sim::Touch;

@@ -38,8 +38,8 @@ impl Served {
         Self::start_as(Sim::fr3(), async |_| options, |page| page.layer(peer))
     }
 
-    /// Starts a server with all permissions for an ideal arm with a Hand, which records to
-    /// `folder`. A hold survives a busy machine.
+    /// Starts a server with all permissions for an ideal arm with a Hand. It records to `folder`. A
+    /// hold survives a busy machine.
     pub(crate) fn equipped(folder: &Path) -> Self {
         let sim = Sim::fr3().ideal().tool(Tool::hand());
         Self::start(sim.hand(Fingers::new(), 0), async |running| {
@@ -208,8 +208,8 @@ impl Viewer {
         sent.expect("the server reads");
     }
 
-    /// Returns the next message, acknowledged if it is a frame; `None` when the server has closed
-    /// the connection.
+    /// Returns the next message, and acknowledges it if it is a frame. `None` if the server has
+    /// closed the connection.
     pub(crate) fn read(&mut self) -> Option<Value> {
         match self.socket.read() {
             Ok(Message::Binary(frame)) => {
@@ -239,7 +239,7 @@ impl Viewer {
         self.socket.read().expect("a message")
     }
 
-    /// Reads until a message of this type.
+    /// Reads until a message of this type arrives, and returns it.
     pub(crate) fn wait_for(&mut self, kind: &str) -> Value {
         loop {
             let message = self.read().expect("the server has closed");
@@ -261,7 +261,7 @@ impl Viewer {
         }
     }
 
-    /// Reads until an event whose line contains this text.
+    /// Reads until an event arrives whose line contains this text.
     pub(crate) fn event(&mut self, text: &str) {
         let begin = Instant::now();
         loop {
@@ -276,7 +276,7 @@ impl Viewer {
         }
     }
 
-    /// Reads messages of this type until one is `wanted`.
+    /// Reads messages of this type until `wanted` is true for one of them.
     pub(crate) fn wait_until(&mut self, kind: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         let begin = Instant::now();
         loop {
@@ -288,7 +288,7 @@ impl Viewer {
         }
     }
 
-    /// Reads until the newest status is `wanted`.
+    /// Reads until `wanted` is true for the newest status.
     pub(crate) fn wait_for_status(&mut self, wanted: impl Fn(&Value) -> bool) {
         let begin = Instant::now();
         while !wanted(&self.status) {
@@ -297,8 +297,8 @@ impl Viewer {
         }
     }
 
-    /// Begins a hold, repeatedly if the machine is too busy for it, and continues until `reached`.
-    /// Returns the number of the next message of the hold, which is still active.
+    /// Begins a hold, and continues it until `reached` is true. Tries again if the machine was too
+    /// busy. Returns the number of the next message of the hold, which is still active.
     pub(crate) fn hold_until(&mut self, motion: &Value, reached: impl Fn() -> bool) -> u32 {
         let begin = Instant::now();
         loop {
@@ -310,7 +310,7 @@ impl Viewer {
         }
     }
 
-    /// Continues a hold from this message until `reached`; `None` if it has ended.
+    /// Continues a hold from this message until `reached` is true; `None` if the hold has ended.
     pub(crate) fn go_on_until(&mut self, next: u32, reached: impl Fn() -> bool) -> Option<u32> {
         let begin = Instant::now();
         let mut last = begin;

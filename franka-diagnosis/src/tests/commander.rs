@@ -104,8 +104,8 @@ fn no_advice_speaks_of_a_control_function_where_there_is_none() {
     }
 }
 
-/// A motion with sparse targets: one is sent, then the robot moves without commands for this number
-/// of cycles.
+/// A motion with sparse targets. The client sends one target, then the robot moves without commands
+/// for this number of cycles.
 fn sparse(cycles: u32) -> Story {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition).by(Commander::Asynchronous);
     let asked = story.newest().message_id;

@@ -68,7 +68,7 @@ fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
     assert_eq!(diagnosis.advice, [Advice::Network, Advice::Smooth]);
 }
 
-/// A quintic from rest to rest, always within the jerk limit.
+/// The motion is a quintic from rest to rest, always within the jerk limit.
 #[test]
 fn a_smooth_motion_that_is_too_fast_is_no_step() {
     for (model, duration) in [
@@ -330,8 +330,8 @@ fn a_start_pose_is_off_by_position_or_by_rotation() {
     }
 }
 
-/// A robot with other lengths in its poses that continues its motion exceeds no joint limit, with
-/// the commanded fields filled in or zero.
+/// A robot has other lengths in its poses, and continues its motion. No joint limit is exceeded,
+/// with the commanded fields filled in or zero.
 #[test]
 fn joints_of_a_pose_are_found_from_where_the_robot_reports_it() {
     let arm = Model::fr3().clone().with_lengths(Lengths::RECORDED_FR3);

@@ -34,7 +34,7 @@ fn an_arm_that_has_not_followed_to_the_end_is_named() {
     assert_eq!(causes(0.01).0, []);
 }
 
-/// Joint 7 with this velocity, then a last command.
+/// Returns the diagnosis of a motion of joint 7 with this velocity, and then a last command.
 fn finished(velocity: f64, last: impl Fn(&RobotState, &mut RobotCommand)) -> Diagnosis {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition);
     story.go(|_, _| {}, |state| state.dq_d[6] = velocity);

@@ -17,14 +17,14 @@ use super::{Commander, Diagnosis, Finding};
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// A log under construction: a state, then pairs of a command and the next state.
+/// A log under construction: a state, then pairs of a command and the state after it.
 struct Story {
     commander: Commander,
     model: &'static Model,
     entries: Vec<LogEntry>,
 }
 
-/// The first state.
+/// `message_id` of the first state.
 const BEGIN: u64 = 1000;
 
 impl Story {
@@ -60,7 +60,7 @@ impl Story {
         }
     }
 
-    /// The same story under another commander.
+    /// Returns the same story under another commander.
     fn by(self, commander: Commander) -> Self {
         Self { commander, ..self }
     }
@@ -69,9 +69,9 @@ impl Story {
         &self.entries.last().expect("never empty").state
     }
 
-    /// Adds one cycle: the command that answers the newest state, at rest unless `ask` changes it,
-    /// and the next state, which `then` changes. The values that a robot echoes come from the
-    /// command.
+    /// Adds one cycle: the command that answers the newest state, and the next state. The command
+    /// is at rest unless `ask` changes it; `then` changes the state. The values that a robot
+    /// repeats from the command are filled in.
     fn go(
         &mut self,
         ask: impl FnOnce(&RobotState, &mut RobotCommand),
@@ -110,7 +110,7 @@ impl Story {
         self.entries.push(LogEntry::new(state, command));
     }
 
-    /// A last cycle, in which the robot stops for these errors.
+    /// Adds a last cycle, in which the robot stops with these errors.
     fn stop(
         self,
         errors: &[RobotError],
@@ -120,7 +120,7 @@ impl Story {
         self.stop_counted(None, errors, ask, then)
     }
 
-    /// A last cycle, with the counts of the motion.
+    /// Adds a last cycle, with the counts of the motion.
     fn stop_counted(
         mut self,
         statistics: Option<&MotionStatistics>,

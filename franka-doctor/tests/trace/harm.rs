@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::{env, fs};
 
-/// Runs a program, with these arguments, under `strace`. Returns its output, and its calls, one per
-/// line; `None` if programs cannot be traced, which is a failure with `CI=true`. The calls are
-/// written to `file`, which must be new.
+/// Runs a program with these arguments under `strace`. Returns its output, and its system calls,
+/// one per line. The calls go through `file`, which must not exist. `None` if programs cannot be
+/// traced; with `CI=true` this is a failure.
 pub(crate) fn traced(
     file: &Path,
     program: &OsStr,
@@ -103,7 +103,7 @@ const CHANGES: [&str; 28] = [
     "tgkill",
 ];
 
-/// Calls that change system-wide settings. Calls with `?` do not exist on all systems.
+/// Calls that change system-wide settings. Calls marked with `?` do not exist on all systems.
 const SYSTEM: [&str; 12] = [
     "settimeofday",
     "clock_settime",

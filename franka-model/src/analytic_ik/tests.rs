@@ -4,8 +4,7 @@ use crate::{Frame, JointVector, READY, RobotKind, elbow, rotation};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{Matrix4, Translation3, Vector3};
 
-/// Number of poses per robot and parameter; with `--release`, the number behind the figures in the
-/// docs.
+/// Number of poses per robot and parameter. With `--release`, it is the number stated in the docs.
 const CASES: usize = if cfg!(debug_assertions) {
     2_000
 } else {
@@ -46,7 +45,7 @@ fn parameters(q: &JointVector) -> [Parameter; 3] {
     ]
 }
 
-/// Returns the difference between a posture's parameter and the given one.
+/// Returns the difference between the parameter of a posture and the given parameter.
 fn parameter_miss(q: &JointVector, given: Redundancy, of: fn(&JointVector) -> f64) -> f64 {
     let (Redundancy::Joint7(angle) | Redundancy::Joint4(angle) | Redundancy::Swivel(angle)) = given;
     let off = of(q) - angle;
@@ -108,8 +107,8 @@ fn joint_7_gives_none_four_or_eight_solutions_with_the_seed_among_them() {
     }
 }
 
-/// Counts, per branch, how often the swivel angle along joint 7 passes the given one. This search
-/// does not use the equation.
+/// Counts, per branch, how often the swivel angle along joint 7 passes the given angle. This search
+/// does not use the solver's equation.
 fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
     let mut last: [Option<f64>; 8] = [None; 8];
     let mut count = 0;

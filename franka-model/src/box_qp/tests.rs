@@ -67,7 +67,7 @@ fn sides(random: &mut Random) -> [Side; 7] {
     })
 }
 
-/// Number of cases; with `--release`, the number behind the figures in the docs.
+/// Number of cases. With `--release`, it is the number stated in the docs.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 10_000 };
 
 #[test]

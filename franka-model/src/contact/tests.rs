@@ -7,7 +7,7 @@ use crate::collision::Shape;
 use crate::random::Random;
 use crate::{Frame, Model, READY, RobotKind};
 
-/// Errors of torques that are exact except for the width of patches.
+/// Errors of torques that are exact, except for the width of the patches.
 const EXACT: TorqueError = TorqueError {
     floor: crate::joint_vector([0.05; 7]),
     share: 0.03,

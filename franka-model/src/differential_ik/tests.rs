@@ -150,7 +150,7 @@ fn damping_is_smooth_along_a_path_into_a_singularity() {
     }
 }
 
-/// Number of cases; with `--release`, the number behind the figures in the docs.
+/// Number of cases. With `--release`, it is the number stated in the docs.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 100_000 };
 
 #[test]
@@ -219,7 +219,7 @@ impl Follower {
         }
     }
 
-    /// Computes one cycle towards `target`, which moves at `velocity` without turning; returns the
+    /// Computes one cycle towards `target`, which moves at `velocity` without turning. Returns the
     /// remaining distance.
     fn step(&mut self, model: &Model, target: &Isometry3<f64>, velocity: &Vector3<f64>) -> f64 {
         let here = flange(&self.q);
@@ -255,8 +255,8 @@ impl Follower {
         (flange(&self.q).translation.vector - target.translation.vector - velocity * CYCLE).norm()
     }
 
-    /// Follows a straight line of `length` at `speed` from the current position with constant
-    /// orientation; returns the greatest distance from the reference.
+    /// Follows a straight line of `length` at `speed` from the current position, with constant
+    /// orientation. Returns the largest distance from the reference.
     fn line(&mut self, model: &Model, direction: &Vector3<f64>, length: f64, speed: f64) -> f64 {
         let mut target = flange(&self.q);
         let velocity = direction * speed;
@@ -322,7 +322,8 @@ fn a_line_along_a_joint_limit_keeps_the_position_and_lets_the_orientation_give()
     );
 }
 
-/// Returns a posture with joint 5 a quarter turn off, of least manipulability around a random one.
+/// Returns a posture with joint 5 a quarter turn off, with the least manipulability near a random
+/// posture.
 fn singular_wrist(random: &mut Random) -> JointVector {
     let limits = Model::fr3().joint_limits();
     let mut q = random.posture(Model::fr3());

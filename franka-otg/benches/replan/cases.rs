@@ -56,7 +56,7 @@ pub(crate) fn clock() -> u64 {
 }
 
 /// States of motions to a sequence of targets, at random times of each motion: before, in and after
-/// its phase of constant velocity. After a while the next arm's limits are used.
+/// the phase of constant velocity. The limits change to those of another arm from time to time.
 pub(crate) struct Cases<const N: usize, L> {
     random: SmallRng,
     limits: L,
@@ -112,5 +112,5 @@ impl<const N: usize, L: Fn(usize, &mut SmallRng) -> AxisLimits> Iterator for Cas
 
 const SEED: u64 = 3;
 const TARGETS: usize = 100;
-/// The latest time of a new target in a motion, `[s]`.
+/// Latest time in a motion at which a new target is set, `[s]`.
 const MOTION_MAX: f64 = 2.0;

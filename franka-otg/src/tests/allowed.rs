@@ -3,7 +3,7 @@
 
 use super::{AxisLimits, AxisState, Limits, State};
 
-/// Returns a state inside `limits` that can stay there: `coasting` and `bend` are fractions of the
+/// Returns a state inside `limits` that can stay inside. `coasting` and `bend` are fractions of the
 /// allowed values.
 pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
     let sign = 1_f64.copysign(bend);
@@ -19,7 +19,7 @@ pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64
     }
 }
 
-/// Returns a motion of a target that can be met, and left, inside `limits`.
+/// Returns a motion of a target that an axis can meet, and leave, inside `limits`.
 pub(crate) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
     let velocity = speed * limits.velocity;
     let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
@@ -36,8 +36,8 @@ pub(crate) fn way_to_speed(limits: AxisLimits) -> f64 {
     velocity * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk)
 }
 
-/// Returns one axis on its way to a target, together with an axis that takes `duration` from rest
-/// to rest.
+/// Returns one axis that moves to a target, and another axis that takes `duration` from rest to
+/// rest.
 pub(crate) fn beside_one_that_takes(
     duration: f64,
     limits: AxisLimits,

@@ -8,7 +8,7 @@ use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// A number of cycles, and the target (as fractions of a range) set before them.
+/// A number of cycles, and the target (as fractions of a range) that is set before them.
 type Change = (usize, Vec<f64>);
 
 fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
@@ -16,7 +16,7 @@ fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
     proptest::collection::vec(change, 1..6)
 }
 
-/// Follows all changes to the end; checks each cycle and the arrival.
+/// Follows all changes to the end, and checks each cycle and the arrival.
 fn follow<const N: usize>(
     (limits, state, _): (Limits<N>, State<N>, [f64; N]),
     changes: &[Change],
@@ -51,8 +51,8 @@ fn follow<const N: usize>(
     Ok(())
 }
 
-/// Creates a new plan in each cycle, from the state of the previous cycle: the arrival must not
-/// move.
+/// Creates a new plan in each cycle, from the state of the previous cycle. The time of arrival must
+/// not change.
 fn replan<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, [f64; N]),
     synchronisation: Synchronisation,
@@ -146,7 +146,7 @@ proptest! {
     }
 }
 
-/// Near its end, a motion needs the cube root of a rounding of the position, divided by the jerk,
-/// to correct that rounding: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2 and jerks from 100.
-/// Fifty times that is one cycle.
+/// Time that a motion needs near its end to correct a rounding error of the position. It is the
+/// cube root of this error divided by the jerk: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2
+/// and jerks from 100. Fifty times that is one cycle.
 const ROOT_OF_ROUNDING: f64 = 2e-5;

@@ -1,4 +1,5 @@
-//! Extreme limits, distances and states: none may be refused, and every motion arrives.
+//! Extreme limits, distances and states. The generator refuses none of them, and every motion
+//! arrives.
 
 use proptest::prelude::*;
 
@@ -6,8 +7,8 @@ use super::random::{cases, extreme_limits, many, many_moving, problems};
 use super::walk::check_motion;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// Checks a motion unless it ends within a thousandth of a cycle: the end of a motion is brought
-/// forward by a millionth of a cycle.
+/// Checks a motion, unless it ends within a thousandth of a cycle, because the end of a motion is
+/// brought forward by a millionth of a cycle.
 fn check_visible<const N: usize>(generator: &Generator<N>) {
     if generator.remaining() > 1e-3 * CYCLE {
         check_motion(generator, 100);

@@ -1,4 +1,4 @@
-//! Tables of every generation, exception texts, and the errors of invalid ones.
+//! Tables of every generation, exception texts, and the errors of invalid tables and texts.
 
 use franka_model::Model;
 use franka_proto::{ControllerMode, MotionGeneratorMode, RobotCommand, RobotError, RobotState};
@@ -8,7 +8,7 @@ use super::*;
 use crate::explain::Explanation;
 use crate::export::{Columns, write_csv};
 
-/// A motion by joint velocities, whose last command jumps.
+/// Returns the table of a joint velocity motion whose last command jumps.
 fn table() -> String {
     let entry = |time: u64| {
         let speed = 0.001 * (time - 1000) as f64;
@@ -89,7 +89,8 @@ fn every_generation_of_columns_is_read() {
     }
 }
 
-/// Line ends of Windows, quotes of a spreadsheet, columns in another order, and additional columns.
+/// The table has line ends of Windows, quotes of a spreadsheet, columns in another order, and
+/// additional columns.
 #[test]
 fn a_table_that_another_program_has_written_anew_is_read() {
     let expected = ControlLogFile::parse(&table()).unwrap();

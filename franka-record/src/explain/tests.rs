@@ -47,7 +47,8 @@ fn note(robot_time: u64, text: &str) -> Event {
     event(robot_time, EventKind::Note(note))
 }
 
-/// Returns three seconds: a contact and a collision of joint 2 before a reflex at 2500 ms.
+/// Returns three seconds of states: a contact and a collision of joint 2 before a reflex at 2500
+/// ms.
 fn hit() -> Vec<RobotState> {
     (1..=3000)
         .map(|time| {
@@ -190,7 +191,7 @@ fn a_stop_before_the_first_cycle_is_none_of_these() {
     );
 }
 
-/// The robot stops, is restarted and does not stop again; its clock starts again.
+/// The robot stops. It is then restarted, which restarts its clock, and does not stop again.
 #[test]
 fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
     let received = |number: usize| HostTime::from_nanos(number as u64 * 1_000_000);

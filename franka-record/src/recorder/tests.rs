@@ -1,4 +1,4 @@
-//! Recorders with disks that hang, and with a clock that is set.
+//! Recorders with disks that hang, and with a wall clock that is set.
 
 use std::fs::File;
 use std::io::{PipeReader, Read as _};
@@ -94,7 +94,7 @@ fn what_is_left_out_while_a_disk_hangs_is_counted_and_told_in_the_file() {
     }
 }
 
-/// Cycles, events and black boxes, with a disk that accepts none.
+/// Records cycles, events and black boxes with a disk that accepts no data.
 #[test]
 fn memory_is_bounded_while_a_disk_hangs() {
     let (reader, writer) = std::io::pipe().unwrap();

@@ -24,8 +24,8 @@ fn folder(name: &str) -> PathBuf {
     }
 }
 
-/// Returns a hand that turns about its own axis while it points down, through the orientation where
-/// a quaternion with a positive last number would change its sign.
+/// Returns a sample of a hand that points down and turns about its own axis. It passes an
+/// orientation at which a quaternion with a positive last number would change its sign.
 fn sample(millisecond: u64) -> Sample {
     let t = millisecond as f64 * 1e-3;
     let q = |t: f64| std::array::from_fn(|i| 0.1 * (t + i as f64).sin());
@@ -326,7 +326,7 @@ fn dataset_with_cameras_is_refused_by_its_features() {
     assert!(error.len() < 400, "{error}");
 }
 
-/// The process started by the test adds episodes until it is killed.
+/// A child process of the test adds episodes until the test kills it.
 #[test]
 fn dataset_of_a_killed_export_takes_the_next_one() {
     const TO: &str = "FRANKA_RECORD_TEST_DATASET";

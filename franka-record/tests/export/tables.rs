@@ -109,7 +109,7 @@ fn tables_replace_no_file_and_leave_none_when_they_fail() {
     assert!(!text.contains(".partial"), "{text}");
 }
 
-/// The process started by the test writes to the file until it is killed.
+/// A child process of the test writes to the file until the test kills it.
 #[test]
 fn tables_that_were_interrupted_are_in_no_later_ones_way() {
     const TO: &str = "FRANKA_RECORD_TEST_TABLE";

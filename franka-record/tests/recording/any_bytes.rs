@@ -1,4 +1,5 @@
-//! Reads a recording from any bytes: the target of the fuzzer in `fuzz/`, and its initial files.
+//! Reads a recording from any bytes. This is the target of the fuzzer in `fuzz/`, with its initial
+//! files.
 // Public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
@@ -9,7 +10,8 @@ use franka_record::{Cycle, Event, EventKind, HostTime, Recording};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, WriteOptions};
 
-/// Reads all contents of `bytes`. Never panics, and no result is larger than the bytes can encode.
+/// Reads all contents of `bytes`. This never panics, and no result is larger than the bytes can
+/// encode.
 pub fn read(bytes: &[u8]) {
     let Ok(recording) = Recording::from_bytes(bytes.to_vec()) else {
         return;

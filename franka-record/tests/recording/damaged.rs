@@ -137,8 +137,8 @@ fn a_recovered_file_is_whole_and_has_the_same_messages() {
     assert!(matches!(again, RecordingError::File { .. }), "{again}");
 }
 
-/// The result of the standard tool, by its source: the messages of every whole chunk up to the cut.
-/// The crate of the format reads its records here.
+/// According to its source, the standard tool recovers the messages of every whole chunk up to the
+/// cut. Here, the crate of the format reads the records.
 #[test]
 fn files_cut_anywhere_are_recovered_as_the_standard_tool_does() {
     let scratch = Scratch::new();
@@ -354,7 +354,7 @@ fn what_a_killed_program_has_flushed_is_readable() {
     assert_eq!(times, (1..=times.len() as u64).collect::<Vec<_>>());
 }
 
-/// Records until the process is killed.
+/// Records until the test kills the process.
 fn record_for_ever(path: &Path) -> ! {
     let recorder = Recorder::to_file(path, RecordOptions::default()).unwrap();
     let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
@@ -366,7 +366,7 @@ fn record_for_ever(path: &Path) -> ! {
 /// Number of cycles of the recording.
 const CYCLES: usize = 500;
 
-/// Environment variable with the file for the process to be killed.
+/// Environment variable with the file that the child process writes until the test kills it.
 const CHILD: &str = "FRANKA_RECORD_CHILD";
 
 #[test]

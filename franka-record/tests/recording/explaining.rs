@@ -11,8 +11,8 @@ use franka_record::{EventKind, Recording};
 
 use crate::feed::{Arm, Scratch, quick};
 
-/// Returns the bytes of a recording of an arm that is touched at 1501 ms and stops at 1526 ms, and
-/// the explanation of its cycles without a file.
+/// Returns the bytes of a recording, and the explanation of the same cycles without a file. The arm
+/// is touched at 1501 ms and stops at 1526 ms.
 fn stopped() -> (Vec<u8>, Explanation) {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");

@@ -13,8 +13,8 @@ use franka_record::{Episode, EventKind, GripperState, Recording, Sample, Samples
 use crate::feed::{Arm, Scratch, quick};
 use crate::standard::{PYTHON, python};
 
-/// Records four seconds of an arm with a gripper that closes; an episode lasts from the first
-/// second to the third.
+/// Records four seconds of an arm with a gripper that closes. An episode lasts from the first to
+/// the third second.
 fn recorded(path: &std::path::Path) {
     let recorder = Recorder::to_file(path, quick()).unwrap();
     let began = Instant::now();

@@ -1,4 +1,4 @@
-//! Robots with synthetic cycles: only a pace and a seed.
+//! Robots with synthetic cycles, determined by a pace and a seed.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -53,7 +53,7 @@ impl Arm {
         (arm, reader)
     }
 
-    /// Returns a reader of its cycles from now on.
+    /// Returns a reader of this arm's cycles from now on.
     pub(crate) fn reader(&mut self) -> CycleReader {
         let reader = self.feed.attach(RING).unwrap();
         self.publisher.take_attached();
@@ -91,12 +91,13 @@ impl Arm {
             .push(record, &bytes[..length], self.received());
     }
 
-    /// Returns the time of its last cycle, according to its pace, independent of the feeding speed.
+    /// Returns the time of the last cycle according to the arm's pace, regardless of the actual
+    /// speed.
     pub(crate) fn received(&self) -> Instant {
         self.began + Duration::from_millis(self.ms)
     }
 
-    /// Returns state and record of a cycle.
+    /// Returns the state and the record of a cycle.
     pub(crate) fn cycle_at(&self, ms: u64) -> (RobotState, Record) {
         let t = ms as f64 * 1e-3;
         let mut state = self.state;
@@ -135,7 +136,7 @@ impl Arm {
 /// Length of the ring in cycles.
 const RING: usize = 4096;
 
-/// A directory that is removed at the end.
+/// A directory that is removed when this value is dropped.
 pub(crate) struct Scratch(PathBuf);
 
 impl Scratch {

@@ -32,8 +32,8 @@ fn every_cycle_is_in_the_file() {
     assert_eq!(cycles, 5000);
 }
 
-/// Also if the recording ends before the recorder has read the newest connection; a connection that
-/// is reported twice is recorded once.
+/// This also holds if the recording ends before the recorder has read the newest connection. A
+/// connection that is reported twice is recorded once.
 #[test]
 fn cycles_of_other_connections_follow_those_of_the_first() {
     let scratch = Scratch::new();
@@ -153,7 +153,7 @@ fn a_recording_goes_on_in_the_next_file() {
     assert_eq!(cycles, arm.cycles());
 }
 
-/// The files belong to an earlier recording with the same name, whose first file was moved away.
+/// The files belong to an earlier recording with the same name. Its first file was moved away.
 #[test]
 fn rotation_leaves_out_numbers_that_other_files_have() {
     let scratch = Scratch::new();
@@ -236,7 +236,7 @@ fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_o
     assert!(said.contains("full.mcap"), "{said}");
 }
 
-/// Records beyond the limit of this process.
+/// Records more data than this process may write.
 fn record_until_full(path: &Path) {
     tracing_subscriber::fmt().with_ansi(false).init();
     let options = RecordOptions {
@@ -314,5 +314,5 @@ fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
     assert!(status.black_boxes.is_empty());
 }
 
-/// Environment variable with the file for the process whose disk is full.
+/// Environment variable with the file for the child process whose disk is full.
 const FULL: &str = "FRANKA_RECORD_FULL";

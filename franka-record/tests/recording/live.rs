@@ -35,7 +35,7 @@ impl Viewer {
         }
     }
 
-    /// Waits until `count` channels were offered.
+    /// Waits until the server has offered `count` channels.
     fn wait_for_channels(&mut self, count: usize) {
         while self.channels.len() < count {
             let Message::Text(text) = self.socket.read().unwrap() else {

@@ -24,7 +24,7 @@ fn recorded() -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
-/// Returns its channels.
+/// Returns the channels of the recording.
 fn channels() -> BTreeSet<String> {
     let bytes = recorded();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();

@@ -1,4 +1,4 @@
-//! Both end effectors in virtual time, through the sessions of both sides.
+//! Tests of both end effectors in virtual time, through the sessions of client and device.
 
 use franka_proto::client;
 use franka_proto::gripper::{self, Grasp, Move, Reply, Request, Status};
@@ -6,11 +6,11 @@ use franka_proto::vacuum::{self, Profile, Vacuum};
 
 use super::*;
 
-/// An end effector and its client: time is a counter.
+/// An end effector and its client. Time is a counter.
 struct Pair<M: Mechanism> {
     device: EndEffector<M>,
     client: Session<M>,
-    /// Answers, with the id of their requests.
+    /// Answers so far, each with the id of its request.
     answers: Vec<(CommandId, Status)>,
     states: Vec<u32>,
 }
@@ -86,7 +86,7 @@ impl<M: Mechanism> Pair<M> {
     }
 }
 
-/// A hand after its homing.
+/// Returns a hand after its homing.
 fn homed(fingers: Fingers) -> Pair<Fingers> {
     let mut pair = Pair::new(fingers);
     assert_eq!(pair.complete(&Request::Homing).0, Status::Success);

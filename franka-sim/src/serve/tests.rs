@@ -12,10 +12,10 @@ use super::*;
 use crate::network::Conditions;
 use crate::robot::Touch;
 
-/// Time limit for every event, also on a busy machine.
+/// Time limit for every event, long enough for a busy machine.
 pub(super) const SOON: Duration = Duration::from_secs(300);
 
-/// A plain blocking client.
+/// A simple client that blocks.
 struct Client {
     stream: TcpStream,
     session: client::Session,
@@ -61,7 +61,7 @@ impl Client {
     }
 }
 
-/// Waits for this many milliseconds of the robot's time; returns the state at that time.
+/// Waits for this number of milliseconds in robot time, and returns the state at the end.
 pub(super) async fn robot_time(sim: &Running, milliseconds: u64) -> RobotState {
     let begun = Instant::now();
     let mut state = sim.state().await.expect("running");
@@ -427,8 +427,8 @@ fn robots_are_realistic_unless_they_are_to_be_ideal() {
     }
 }
 
-/// A program keeps the future on a stack, which may be a thread's of 2 MiB, and builds without
-/// optimisation copy it from frame to frame.
+/// A program keeps the future on a stack. The stack of a thread may have only 2 MiB, and builds
+/// without optimisation copy the future from frame to frame.
 #[test]
 fn the_future_of_a_start_is_small() {
     let size = size_of_val(&Sim::fr3().start());
@@ -455,7 +455,7 @@ fn a_hand_on_sockets_moves_the_fingers_in_the_scene() {
     use crate::plant::{MujocoArm, Scene};
     use franka_proto::gripper;
 
-    /// Distance between the fingers in the scene.
+    /// Returns the distance between the fingers in the scene, `[m]`.
     async fn gap(sim: &Running) -> f64 {
         sim.with(|robot| {
             let plant: &dyn std::any::Any = robot.plant();

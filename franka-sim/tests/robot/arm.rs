@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::pair::*;
 
-/// A robot with an ideal arm except for a change.
+/// Returns a robot with an ideal arm, except for one change.
 fn pair(change: impl Fn(&mut Arm)) -> Pair {
     let mut arm = Arm::ideal(RobotKind::Fr3);
     change(&mut arm);
@@ -18,7 +18,7 @@ fn pair(change: impl Fn(&mut Arm)) -> Pair {
     })
 }
 
-/// Commands a torque on joint 1 that grows to `most`, for this many milliseconds.
+/// Commands a torque on joint 1 that rises to `most`, for this number of milliseconds.
 fn lean(pair: &mut Pair, most: f64, milliseconds: u32) -> RobotState {
     for cycle in 0..milliseconds {
         let torque = most * (f64::from(cycle) * 1e-3).min(1.0);

@@ -1,4 +1,4 @@
-//! Commands that a robot refuses, and the names of the errors.
+//! Commands that a robot refuses, and the errors that it reports.
 
 use franka_model::READY;
 use franka_proto::RobotError as E;

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::pair::{Pair, positions, ramp, torques};
 
-/// Moves the hand 6 cm upwards within a second, and shows every state.
+/// Moves the hand 6 cm upwards within a second, and calls `see` with every state and its command.
 fn rise(pair: &mut Pair, elbow: bool, mut see: impl FnMut(&RobotState, &RobotCommand)) {
     pair.start(
         MoveControllerMode::JointImpedance,

@@ -1,5 +1,5 @@
-//! A hand that comes down on a table, on every plant: the thresholds that were set end it, those 30
-//! % higher do not.
+//! A hand that descends to a table, on every plant. The configured thresholds stop it. Thresholds
+//! that are 30 % higher do not.
 
 use std::any::Any;
 
@@ -15,7 +15,7 @@ use franka_sim::plant::RigidArm;
 
 const HIGH: f64 = 1e4;
 
-/// Threshold that is set, the others being out of reach.
+/// The threshold under test. All other thresholds are too high to be reached.
 #[derive(Debug, Clone, Copy)]
 enum Threshold {
     /// Threshold of the wrench at the stiffness frame, `[N, N·m]`.
@@ -33,7 +33,7 @@ impl Threshold {
         CollisionBehavior::uniform([HIGH; 7], [torque; 7], [HIGH; 6], [force; 6])
     }
 
-    /// The largest of the values that it is compared with.
+    /// Returns the largest of the values that the robot compares with the threshold.
     fn felt(self, state: &RobotState) -> f64 {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
         match self {
@@ -69,23 +69,24 @@ fn above_the_table() -> Config {
 /// Kind of descent.
 #[derive(Debug, Clone, Copy)]
 enum Descent {
-    /// The client commands 0.1 m/s, 3 cm further than it is to the table.
+    /// The client commands 0.1 m/s, to a point 3 cm below the table.
     Commanded,
-    /// The client does not hold the arm, and the hand carries an undeclared kilogram.
+    /// The client lets the arm yield, and the hand carries an undeclared kilogram.
     Free,
 }
 
 /// Result of a descent.
 struct Landing {
-    /// The most that was felt until the motion ended, and before the table was reached.
+    /// Largest value until the motion ended or the hand reached the table.
     most: f64,
     before: f64,
-    /// In which cycle the most was felt.
+    /// Cycle of the largest value.
     cycle: usize,
     state: RobotState,
 }
 
-/// Comes down on the scene's table, or without a scene on a table that only the fingertips meet.
+/// Lets the hand descend to the table of the scene. Without a scene, it is a table that only the
+/// fingertips can touch.
 fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing {
     pair.request(&Request::SetCollisionBehavior(threshold.behavior()));
     let plant: &dyn Any = pair.robot.plant();

@@ -17,7 +17,7 @@ fn a_stop_preempts_the_move_and_does_not_make_it_a_success() {
     assert_eq!(pair.outcome(id), MoveStatus::Preempted);
 }
 
-/// A box around the ready pose of an FER, 5 cm to each side.
+/// A box around the ready pose of an FER, with 5 cm of space to each side.
 fn wall() -> VirtualWall {
     let pose = Model::fer().pose(Frame::EndEffector, &READY, &Default::default());
     let mut object_frame = [0.0; 16];
@@ -231,8 +231,8 @@ fn states_carry_what_is_commanded_to_the_last_digit() {
     assert_eq!(pair.outcome(id), MoveStatus::Success);
 }
 
-/// Accelerates joint `joint` of an arm of `kind` at `ddq`, reached within its jerk limit, and
-/// returns the errors within 50 ms.
+/// Accelerates joint `joint` of an arm of `kind` to the acceleration `ddq` within its jerk limit.
+/// Returns the errors within 50 ms.
 fn accelerate(kind: RobotKind, joint: usize, ddq: f64) -> Errors {
     let mut pair = Pair::of(kind);
     pair.start_joints();

@@ -9,8 +9,9 @@ use franka_sim::arm::Family;
 use franka_sim::config::Tool;
 use franka_sim::{Arm, Touch};
 
-/// Tests the ideal arm, the middle of each family whose joints flex, and some arms of each, with
-/// and without a Hand, every one in the next pose. Passes the arm's description, too.
+/// Calls `test` for the ideal arm, the central arm of each family with elastic joints, and some
+/// random arms of each family. Each arm is tested with and without a Hand, in another pose. The
+/// text describes the arm.
 fn for_each_arm(seeds: u64, test: impl Fn(&str, &mut Pair)) {
     let families = [("realistic", Family::realistic()), ("bad", Family::bad())];
     let mut poses = poses().into_iter().cycle();
@@ -52,7 +53,7 @@ fn poses() -> [(&'static str, JointVector); 5] {
     ]
 }
 
-/// Waits without any event: an instability shows within milliseconds.
+/// Waits, and asserts that nothing happens. An instability would show within milliseconds.
 fn assert_still(name: &str, pair: &mut Pair) {
     let before = *pair.robot.q();
     let (mut fastest, mut farthest) = (0.0_f64, 0.0_f64);
@@ -141,7 +142,7 @@ fn a_grip_gives_way_by_force_over_stiffness_and_lets_the_robot_serve_again() {
     });
 }
 
-/// Moves joint 1 a little, and reports that it is done.
+/// Moves joint 1 slightly, and checks that the robot reports the end of the motion.
 fn assert_serves(name: &str, pair: &mut Pair) {
     let id = pair.start_joints();
     let mut q_c = pair.q_d();

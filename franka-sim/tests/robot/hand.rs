@@ -2,7 +2,7 @@ use franka_proto::gripper::{Grasp, Move, Reply, Request, Status};
 use franka_proto::{CommandId, client, gripper};
 use franka_sim::{Fingers, Hand, Sim, Suction};
 
-/// A hand and its client: time is a counter.
+/// A hand and its client. Time is a counter.
 struct GraspCase {
     hand: Hand,
     client: gripper::Client,

@@ -1,18 +1,19 @@
-//! Commands that do not come: the robot's extrapolation, and its consequences.
+//! Missing commands: the robot's extrapolation, and its consequences.
 
 use franka_model::CYCLE;
 
 use crate::pair::*;
 
-/// The values that a kind of motion commands, as the state contains them, with their differences.
+/// The values that a kind of motion commands, and their differences, as the state contains them.
 struct Channel {
     name: &'static str,
     generator: MoveGeneratorMode,
-    /// A command at a distance of `shift` from the start; the first argument is the state there.
+    /// Returns a command at the distance `shift` from the start. The first argument is the state at
+    /// the start.
     command: fn(&RobotState, f64) -> RobotCommand,
-    /// The commanded value, its velocity and its acceleration.
+    /// Returns the commanded value, its velocity and its acceleration.
     told: fn(&RobotState) -> [f64; 3],
-    /// Distance from the start after 0.6 s, or the speed.
+    /// Distance from the start after 0.6 s; for a velocity, the speed.
     way: f64,
     /// True if the command is a velocity.
     is_rate: bool,
@@ -87,7 +88,7 @@ const CHANNELS: [Channel; 5] = [
     },
 ];
 
-/// Moves along a channel until commands are lost in the middle of its acceleration.
+/// Moves with this kind of command until the middle of the acceleration.
 fn underway(channel: &Channel, kind: RobotKind) -> (Pair, RobotState) {
     let mut pair = Pair::of(kind);
     pair.start(MoveControllerMode::JointImpedance, channel.generator);
@@ -98,7 +99,7 @@ fn underway(channel: &Channel, kind: RobotKind) -> (Pair, RobotState) {
     (pair, start)
 }
 
-/// The command of a cycle, lost or not.
+/// Returns the command of a cycle, whether it is then lost or not.
 fn nominal(channel: &Channel, start: &RobotState, cycle: u32) -> RobotCommand {
     let shift = channel.way * ramp(f64::from(cycle) * CYCLE, 0.6);
     (channel.command)(start, shift)

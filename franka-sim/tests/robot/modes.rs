@@ -16,7 +16,7 @@ fn push(joint: usize, torque: f64) -> Touch {
     Touch::torque(torques)
 }
 
-/// Causes an error, so that a recovery has work to do.
+/// Causes an error, so that there is an error to recover from.
 fn fail(pair: &mut Pair) {
     pair.start_joints();
     let mut q = READY;
@@ -300,7 +300,7 @@ fn a_controller_that_makes_a_joint_shake_is_an_error() {
     pair.assert_reflex(id, &[E::InstabilityDetected]);
 }
 
-/// Joint 4 folds the forearm back towards the base, at up to 0.4 rad/s.
+/// Folds the forearm back towards the base with joint 4, at up to 0.4 rad/s.
 fn fold(pair: &mut Pair, by: f64, cycles: u32) {
     let start = JointVector::from(pair.state.q_d);
     for cycle in 0..cycles {
@@ -321,7 +321,7 @@ fn with_hand(q: JointVector) -> Config {
     }
 }
 
-/// Folded arm, hand towards the base.
+/// Joint positions of a folded arm, with the hand near the base.
 fn folded() -> JointVector {
     JointVector::from([0.0, -1.2, 0.0, -2.55, 0.0, 1.4, 0.785])
 }

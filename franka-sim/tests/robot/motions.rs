@@ -1,4 +1,4 @@
-//! Every motion generator, for about a second.
+//! Motions of about a second with every motion generator.
 
 use franka_model::{READY, Wrench, rotation, transform};
 use nalgebra::Vector3;

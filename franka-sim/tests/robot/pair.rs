@@ -1,4 +1,4 @@
-//! A client and a robot in one thread; time is a counter.
+//! A client and a robot in one thread. Time is a counter.
 
 pub(crate) use franka_model::{JointVector, RobotKind};
 pub(crate) use franka_proto::{
@@ -27,14 +27,14 @@ pub(crate) fn noisy() -> Arm {
 /// Both ends of a session, and the data that the client has received so far.
 pub(crate) struct Pair {
     pub(crate) robot: Robot,
-    /// As decoded from the newest datagram.
+    /// State in the newest datagram.
     pub(crate) state: RobotState,
     pub(crate) client: client::Session,
     stream: Vec<u8>,
-    /// All answers, with the clock of the state that the client had by then.
+    /// All answers so far, each with the `message_id` of the newest state at that time.
     answers: Vec<(u64, CommandId, Status)>,
     wall: VirtualWall,
-    /// The size of every reply so far.
+    /// Sizes of all replies so far, in bytes.
     pub(crate) sizes: Vec<usize>,
 }
 
@@ -76,7 +76,7 @@ impl Pair {
         Self::of(RobotKind::Fer)
     }
 
-    /// Sends stream bytes, and reads the robot's immediate answers.
+    /// Sends bytes of the stream, and reads the robot's immediate answers.
     pub(crate) fn send(&mut self, bytes: &[u8]) {
         self.robot.receive(bytes).expect("a conforming client");
         self.read();
@@ -108,13 +108,13 @@ impl Pair {
         message.id()
     }
 
-    /// The answers to a request so far.
+    /// Returns the answers to a request so far.
     pub(crate) fn statuses(&self, id: CommandId) -> Vec<Status> {
         let of_id = |answer: &&(u64, CommandId, Status)| answer.1 == id;
         self.answers.iter().filter(of_id).map(|a| a.2).collect()
     }
 
-    /// The only answer to a request, which has come immediately.
+    /// Sends a request, and returns its only answer, which must come immediately.
     pub(crate) fn ask(&mut self, request: &Request) -> Status {
         let id = self.request(request);
         match self.statuses(id)[..] {
@@ -123,13 +123,13 @@ impl Pair {
         }
     }
 
-    /// The virtual wall of this number (protocol 5).
+    /// Returns the virtual wall with this number (protocol 5).
     pub(crate) fn wall(&mut self, id: i32) -> VirtualWall {
         self.ask(&Request::GetCartesianLimit { id });
         self.wall
     }
 
-    /// One cycle: the command answers the newest state, then the next state comes.
+    /// Runs one cycle: the command answers the newest state, then the next state arrives.
     pub(crate) fn tick(&mut self, command: Option<RobotCommand>) {
         if let Some(command) = command {
             self.datagram(&RobotCommand {
@@ -178,7 +178,7 @@ impl Pair {
         self.begin(MoveRequest::new(controller, generator))
     }
 
-    /// Joint positions under the internal joint impedance controller.
+    /// Starts a motion with joint positions under the internal joint impedance controller.
     pub(crate) fn start_joints(&mut self) -> CommandId {
         self.start(
             MoveControllerMode::JointImpedance,
@@ -191,7 +191,7 @@ impl Pair {
         self.start(MoveControllerMode::ExternalController, generator)
     }
 
-    /// Returns the answer to a `Move` of torques.
+    /// Requests a torque motion, and returns the answer to `Move`.
     pub(crate) fn ask_to_move(&mut self) -> Status {
         let generator = self.client.version().torque_generator();
         let controller = MoveControllerMode::ExternalController;
@@ -220,7 +220,7 @@ impl Pair {
         panic!("the motion goes on");
     }
 
-    /// Recovers, and returns in how many cycles.
+    /// Recovers, and returns the number of cycles that this took.
     pub(crate) fn recover(&mut self) -> usize {
         let id = self.request(&Request::AutomaticErrorRecovery);
         let mut cycles = 0;
@@ -234,8 +234,8 @@ impl Pair {
         cycles
     }
 
-    /// Asserts that the newest state shows a reflex for exactly these reasons, and that the
-    /// motion's final reply came after the first state that did.
+    /// Asserts that the newest state shows a reflex for exactly these reasons. Also asserts that
+    /// the final reply to the motion came after the first state that showed the reflex.
     pub(crate) fn assert_reflex(&self, id: CommandId, reasons: &[RobotError]) {
         let reasons: Errors = reasons.iter().copied().collect();
         assert_eq!(self.state.reflex_reason, reasons);
@@ -249,12 +249,12 @@ impl Pair {
         assert_eq!(seen, self.state.message_id, "the reply overtook its state");
     }
 
-    /// The controllers' model.
+    /// Returns the model that the robot's controllers use.
     pub(crate) fn model(&self) -> &'static Model {
         Model::physically_consistent(self.robot.config().kind)
     }
 
-    /// The end effector at the joint positions `q`, with the default frames of a bare flange.
+    /// Returns the pose of the end effector at `q`, with the default frames of a bare flange.
     pub(crate) fn pose_at(&self, q: &JointVector) -> Isometry3<f64> {
         let pose = self
             .model()
@@ -270,19 +270,20 @@ impl Pair {
         JointVector::from(self.state.q_d)
     }
 
-    /// Position of the end effector, `[m]`.
+    /// Returns the position of the end effector, `[m]`.
     pub(crate) fn position(&self) -> [f64; 3] {
         let pose = &self.state.O_T_EE;
         [pose[12], pose[13], pose[14]]
     }
 }
 
-/// The `[linear; angular]` vector of two halves.
+/// Returns the vector `[linear; angular]` from its two halves.
 pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Twist {
     Twist::from_fn(|i, _| if i < 3 { linear[i] } else { angular[i - 3] })
 }
 
-/// A path from 0 to 1 within `duration` seconds, smooth to the acceleration.
+/// Returns the value at `t` of a path from 0 to 1 within `duration` seconds, smooth up to the
+/// acceleration.
 pub(crate) fn ramp(t: f64, duration: f64) -> f64 {
     let x = (t / duration).clamp(0.0, 1.0);
     x * x * x * (10.0 + x * (-15.0 + 6.0 * x))
@@ -302,7 +303,7 @@ pub(crate) fn torques(tau: &JointVector) -> RobotCommand {
     }
 }
 
-/// A command that continues the commanded values.
+/// Returns a command that keeps the commanded values.
 pub(crate) fn stay(state: &RobotState) -> RobotCommand {
     RobotCommand {
         q_c: state.q_d,

@@ -1,4 +1,4 @@
-//! The robots for tests of physics: every kind, on every plant.
+//! Robots for tests of the physics: every kind on every plant.
 
 #[cfg(feature = "mujoco")]
 use franka_sim::plant::{MujocoArm, Scene};
@@ -6,8 +6,8 @@ use franka_sim::plant::{MujocoArm, Scene};
 use crate::pair::*;
 use franka_sim::config::Tool;
 
-/// A robot of every kind on every plant, with its client and its description. Robots in MuJoCo are
-/// on the table, and have the Hand's body and fingers if the Hand is the tool.
+/// Returns a robot of every kind on every plant, with its client and a description. Robots in
+/// MuJoCo stand on the table. If the Hand is the tool, they have its body and fingers.
 pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     let mut robots = Vec::new();
     for kind in RobotKind::ALL {
@@ -30,7 +30,7 @@ pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     robots
 }
 
-/// [`robots`] with a bare flange, and with a Hand.
+/// Like [`robots`], with a bare flange and with a Hand.
 pub(crate) fn robots_with_and_without_hand() -> Vec<(String, Pair)> {
     let tools = [("bare", Tool::NONE), ("Hand", Tool::hand())];
     let with = |(name, tool): (&str, Tool)| {

@@ -1,4 +1,5 @@
-//! Readings of a push on the flange, and the displacement of an impedance, on every plant.
+//! What the robot estimates of a push on the flange, and how far an impedance yields, on every
+//! plant.
 
 use franka_model::{Frame, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -7,16 +8,16 @@ use crate::pair::*;
 use crate::plants::{robots, robots_with_and_without_hand};
 use franka_sim::Touch;
 
-/// Force of a hand, `[N]`.
+/// Force with which a hand pushes, `[N]`.
 const PUSH: f64 = 5.0;
 
 /// Stiffness of the yielding impedances, `[N/m]`.
 const STIFFNESS: f64 = 750.0;
 
-/// Time in which an impedance yields to a hand, or returns, to a hundredth, in cycles.
+/// Number of cycles in which an impedance yields to a push, or returns, to within a hundredth.
 const SETTLING: usize = 1500;
 
-/// Directions that a hand may push in.
+/// Returns directions of a push.
 fn directions() -> [Vector3<f64>; 5] {
     [
         [1.0, 0.0, 0.0],
@@ -33,7 +34,7 @@ fn push(pair: &mut Pair, direction: &Vector3<f64>) -> franka_sim::TouchId {
     pair.robot.touch(push)
 }
 
-/// Action of the hand on the robot: the state has the opposite sign.
+/// Returns the force of the hand on the robot. The force in the state has the opposite sign.
 fn felt(pair: &Pair) -> Vector3<f64> {
     let [x, y, z, ..] = pair.state.O_F_ext_hat_K;
     -Vector3::new(x, y, z)
@@ -108,7 +109,7 @@ fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness
     }
 }
 
-/// Pushes in every direction, one after the other, until the arm has settled, and back.
+/// Pushes in each direction until the arm is at rest, and then releases it.
 fn gives_way(name: &str, pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) {
     let mut run = |pair: &mut Pair, cycles, watch: &mut dyn FnMut(&Pair, usize)| {
         for cycle in 0..cycles {

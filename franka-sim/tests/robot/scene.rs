@@ -1,4 +1,4 @@
-//! The robot among things that it touches.
+//! A robot with objects that it touches.
 
 use std::any::Any;
 
@@ -14,17 +14,17 @@ use franka_sim::{Config, Tool};
 /// Position of the fingertips in the ready pose: x and z, `[m]`.
 const TCP: (f64, f64) = (0.306_89, 0.486_88);
 
-/// A robot with a hand, and the client of both; time is one counter.
+/// A robot with a hand, and the client of both. They share one counter of time.
 struct Cell {
     pair: Pair,
     hand: Hand,
     grip: gripper::Client,
-    /// As decoded from the hand's newest datagram.
+    /// State in the hand's newest datagram.
     state: gripper::State,
 }
 
 impl Cell {
-    /// Between the fingers, a box of 40 mm and 200 g with this friction stands on a column.
+    /// Puts a box of 40 mm and 200 g, with this friction, on a column between the fingers.
     fn with_box(kind: RobotKind, friction: f64) -> Self {
         let ((x, z), top) = (TCP, TCP.1 - 0.02);
         let height = top / 2.0;
@@ -63,7 +63,7 @@ impl Cell {
         cell
     }
 
-    /// The hand's answers so far.
+    /// Returns the answers of the hand so far.
     fn replies(&mut self) -> Vec<(CommandId, HandStatus)> {
         let mut answers = Vec::new();
         while let Some(reply) = self.hand.take_reply() {
@@ -110,7 +110,7 @@ impl Cell {
         self.ask(&HandRequest::Grasp(grasp))
     }
 
-    /// Leans the arm back by a quarter of a radian within 2 s, which lifts the hand.
+    /// Leans the arm back by a quarter of a radian within 2 s. This lifts the hand.
     fn lift(&mut self) {
         let id = self.pair.start_joints();
         let from = self.pair.q_d();
@@ -132,7 +132,7 @@ impl Cell {
         }
     }
 
-    /// The estimated vertical force, `[N]`; positive for a hanging load.
+    /// Returns the estimated vertical force, `[N]`; positive for a load in the hand.
     fn weight(&self) -> f64 {
         self.pair.state.O_F_ext_hat_K[2]
     }
@@ -149,7 +149,7 @@ impl Cell {
         self.pose(name).translation.z
     }
 
-    /// Position of the box in the hand, `[m]`.
+    /// Returns the position of the box relative to the hand, `[m]`.
     fn in_hand(&self) -> Vector3<f64> {
         let inside = self.pose("franka_hand").inverse() * self.pose("box");
         inside.translation.vector

@@ -1,4 +1,4 @@
-//! Connection, requests, stop, recovery, and peers that misbehave.
+//! Connection, requests, stop, recovery, and peers that violate the protocol.
 
 use franka_model::READY;
 use franka_proto::framing::Header;
@@ -165,7 +165,7 @@ fn a_move_sent_right_behind_a_stop_begins_when_the_arm_is_at_rest() {
     assert_eq!(pair.statuses(second), [started]);
 }
 
-/// Asynchronous targets are sent once: there is no second chance to answer.
+/// The client sends asynchronous targets only once, so it has no second chance to answer.
 #[test]
 fn the_first_state_of_a_motion_that_waited_for_the_brake_can_be_answered() {
     let mut pair = Pair::fr3();

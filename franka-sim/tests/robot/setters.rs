@@ -44,7 +44,7 @@ fn a_value_out_of_its_range_is_an_invalid_argument() {
     assert_eq!(pair.ask(&filters), INVALID);
 }
 
-/// Every setter with one large finite number in it.
+/// Returns every setter with one large finite number in it.
 fn large(value: f64) -> [Request; 8] {
     let mut frame = mirrored();
     frame[0] = 1.0;

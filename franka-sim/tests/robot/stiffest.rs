@@ -1,9 +1,9 @@
-//! The stiffest gains that libfranka's users set, on every plant.
+//! The stiffest gains that users of libfranka set, on every plant.
 
 use crate::pair::*;
 use crate::plants::robots;
 
-/// Every robot, with nothing on the flange, which is the least stable case.
+/// Calls `test` for every robot with a bare flange, which is the least stable case.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     let config = Config {
         // This is about the gains. A blow must not cause a reflex.
@@ -15,7 +15,7 @@ fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     }
 }
 
-/// A blow to every joint, then how fast the joints still are half a second later, at most
+/// Applies a blow to every joint. Returns the largest speed of any joint half a second later,
 /// `[rad/s]`.
 fn ringing(pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) -> f64 {
     let blow = JointVector::from([20.0, -20.0, 20.0, 20.0, -5.0, 5.0, 3.0]);
@@ -59,8 +59,9 @@ fn the_stiffest_cartesian_impedance_does_not_ring() {
     });
 }
 
-/// The gains of libfranka 0.21, `joint_impedance_control.cpp`, applied once per millisecond to a
-/// state that is a cycle old, and four times their stiffness with twice their damping.
+/// The client applies its gains once per millisecond, to a state that is one cycle old. The gains
+/// are those of libfranka 0.21, `joint_impedance_control.cpp`, and four times this stiffness with
+/// twice this damping.
 #[test]
 fn a_clients_stiff_impedance_does_not_ring() {
     for factor in [1.0, 2.0] {

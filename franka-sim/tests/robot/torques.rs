@@ -1,4 +1,4 @@
-//! The client's torques drive the arm.
+//! Motions in which the client's torques drive the arm.
 
 use franka_model::{READY, Twist, rotation};
 use franka_proto::{MotionGeneratorMode, MoveGeneratorMode};

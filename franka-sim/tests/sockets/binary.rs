@@ -1,4 +1,4 @@
-//! The simulator as a process.
+//! The simulator as a separate process.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -11,11 +11,11 @@ use franka_proto::Version;
 
 use crate::port::{Port, SOON};
 
-/// In virtual time, so that a good client is late on no machine. The silence of 20 cycles that ends
-/// a motion takes some seconds.
+/// Virtual time, in which no machine is too slow for a client that answers. A silence of 20 cycles,
+/// which ends a motion, then takes some seconds.
 const PATIENCE: &str = "--virtual-time=0.1";
 
-/// A running simulator on free ports of 127.0.0.1. It ends with this value.
+/// A running simulator on free ports of 127.0.0.1. Dropping this value ends the simulator.
 pub(crate) struct Binary {
     child: Mutex<Child>,
     version: Version,
@@ -24,12 +24,13 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// Starts a robot of this kind, which waits for answers, and waits until it listens.
+    /// Starts a robot of this kind that waits for answers. Returns once it listens.
     pub(crate) fn start(kind: &str) -> Self {
         Self::start_with(&["--robot", kind, PATIENCE])
     }
 
-    /// Starts a robot with these arguments, the kind first, and waits until it listens.
+    /// Starts a robot with these arguments, of which the first is the kind. Returns once it
+    /// listens.
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_franka-sim"))
             .args(arguments)
@@ -74,7 +75,7 @@ impl Binary {
         self.version
     }
 
-    /// Robot, hand and vacuum gripper.
+    /// Ports of the robot, the hand and the vacuum gripper.
     pub(crate) fn ports(&self) -> &[Port; 3] {
         &self.ports
     }
@@ -83,7 +84,7 @@ impl Binary {
         &self.ports[0]
     }
 
-    /// Fails unless the process that was started is still there.
+    /// Fails if the process that was started has ended.
     pub(crate) fn assert_alive(&self) {
         let ended = self.child.lock().expect("no panic").try_wait();
         let ended = ended.expect("a child of this process");
@@ -103,7 +104,7 @@ impl Binary {
         self.log.lock().expect("no panic").join("\n")
     }
 
-    /// Stops the process, and continues it after `stop`.
+    /// Stops the process for the time `stop`, and then continues it.
     pub(crate) fn stop_for(&self, stop: Duration) {
         self.signal(libc::SIGSTOP);
         std::thread::sleep(stop);
@@ -123,17 +124,17 @@ impl Binary {
         assert_eq!(result, 0, "{}", std::io::Error::last_os_error());
     }
 
-    /// Memory that the process has and shares with no file, `[KiB]`.
+    /// Private memory of the process, not shared with files, `[KiB]`.
     pub(crate) fn memory(&self) -> usize {
         self.status("RssAnon:")
     }
 
-    /// The largest memory of the process so far, including memory shared with files, `[KiB]`.
+    /// Largest memory of the process so far, including memory that is shared with files, `[KiB]`.
     pub(crate) fn memory_max(&self) -> usize {
         self.status("VmHWM:")
     }
 
-    /// An amount of proc_pid_status(5), `[KiB]`.
+    /// A value of proc_pid_status(5), `[KiB]`.
     fn status(&self, name: &str) -> usize {
         let status = fs::read_to_string(self.proc("status")).expect("Linux");
         let line = status.lines().find_map(|line| line.strip_prefix(name));
@@ -141,7 +142,7 @@ impl Binary {
         text.trim_end_matches(" kB").parse().expect("a number")
     }
 
-    /// File descriptors that the process has open.
+    /// Number of open file descriptors of the process.
     pub(crate) fn descriptors(&self) -> usize {
         fs::read_dir(self.proc("fd")).expect("Linux").count()
     }

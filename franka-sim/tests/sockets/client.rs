@@ -1,4 +1,4 @@
-//! A client of the robot that can do wrong in mid-session.
+//! A client of the robot that can violate the protocol within a session.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Instant;
@@ -13,13 +13,13 @@ use franka_proto::{
 use crate::binary::Binary;
 use crate::port::{Connection, SOON, receive};
 
-/// A client that answers every state until a test changes that.
+/// A client that answers every state, until a test changes this.
 pub(crate) struct Client {
     pub(crate) connection: Connection,
     udp: UdpSocket,
     session: Session,
     version: Version,
-    /// Source address of the states.
+    /// Address from which the states come.
     robot: SocketAddr,
     /// The newest state.
     pub(crate) state: RobotState,
@@ -54,7 +54,7 @@ impl Client {
         (self.robot, self.udp.local_addr().expect("bound"))
     }
 
-    /// Waits for a state; returns the newest of several.
+    /// Waits for a state. Returns the newest state if several have arrived.
     pub(crate) fn next_state(&mut self) -> &RobotState {
         let mut bytes = [0; RobotState::MAX_SIZE];
         let mut length = receive(&self.udp, &mut bytes).0;
@@ -73,7 +73,7 @@ impl Client {
         message.id()
     }
 
-    /// The next answer to `id`.
+    /// Waits for the next answer to `id`.
     pub(crate) fn status(&mut self, id: CommandId) -> Status {
         loop {
             let mut bytes = self.connection.read(12).expect("an answer");
@@ -107,8 +107,8 @@ impl Client {
         self.udp.send_to(bytes, self.robot).expect("sent");
     }
 
-    /// The command that holds the arm where it is, for every generator, in answer to the newest
-    /// state.
+    /// Returns the command that answers the newest state and holds the arm in place, for every
+    /// generator.
     pub(crate) fn holding(&self) -> RobotCommand {
         RobotCommand {
             message_id: self.state.message_id,
@@ -118,7 +118,7 @@ impl Client {
         }
     }
 
-    /// Starts a motion and holds still in it for some cycles.
+    /// Starts a motion and holds the arm still in it for some cycles.
     pub(crate) fn start(
         &mut self,
         controller: MoveControllerMode,

@@ -1,4 +1,4 @@
-//! Commands of a motion with non-finite numbers, in every field of every generator.
+//! Commands of a motion that contain a non-finite number, in every field of every generator.
 
 use franka_proto::{
     MoveControllerMode, MoveGeneratorMode, MoveStatus, RobotCommand, RobotMode, Status,
@@ -10,7 +10,7 @@ use crate::good::{assert_moves, assert_served};
 
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// A motion, and its commands with a bad number, one for each place.
+/// A motion, and its invalid commands: one command for each place of the invalid number.
 struct BadCommands {
     controller: MoveControllerMode,
     generator: MoveGeneratorMode,

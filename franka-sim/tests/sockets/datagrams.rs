@@ -11,10 +11,10 @@ use crate::each_robot;
 use crate::good::{assert_moves, assert_moves_during, assert_served};
 use crate::port::receive;
 
-/// From the client's host, and from another host.
+/// Addresses of senders on the client's host, and on another host.
 const SOURCES: [&str; 2] = ["127.0.0.1:0", "127.0.0.2:0"];
 
-/// Commands of another socket, of the client's host too, are not the client's.
+/// Commands from another socket are not the client's, even on the client's host.
 #[test]
 fn only_the_socket_that_the_client_announced_commands() {
     each_robot(|binary| {
@@ -42,7 +42,7 @@ fn only_the_socket_that_the_client_announced_commands() {
     });
 }
 
-/// Lengths near the lengths of commands and states, and the longest for UDP.
+/// Lengths near the lengths of commands and states, and the largest length of a UDP datagram.
 const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 
 #[test]

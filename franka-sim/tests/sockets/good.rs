@@ -1,4 +1,4 @@
-//! The good client.
+//! The good client, which observes the protocol.
 
 use std::fmt::Display;
 use std::sync::mpsc;
@@ -12,8 +12,8 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::binary::Binary;
 
-/// Number of times that a good client may be refused, each time after the time (50 ms) that a
-/// server waits for the previous client to disconnect.
+/// Largest number of times that a good client may be refused. Before each refusal, the server waits
+/// for 50 ms for the previous client to disconnect.
 const REFUSALS: usize = 20;
 
 fn runtime() -> Runtime {
@@ -22,7 +22,8 @@ fn runtime() -> Runtime {
     builder.build().expect("a runtime")
 }
 
-/// The robot, the hand and the vacuum gripper each serve a good client: connection, state, request.
+/// Asserts that the robot, the hand and the vacuum gripper each serve a good client: connection,
+/// state, request.
 pub(crate) fn assert_served(binary: &Binary) {
     binary.assert_alive();
     runtime().block_on(async {
@@ -45,7 +46,8 @@ pub(crate) fn assert_served(binary: &Binary) {
     });
 }
 
-/// Tries again where it is refused: the client before may not have been taken leave of yet.
+/// Tries again after a refusal, because the server may not have noticed yet that the previous
+/// client has left.
 async fn patiently<T, E: Display, F: Future<Output = Result<T, E>>>(connect: impl Fn() -> F) -> T {
     let mut refusals = 0;
     loop {
@@ -62,7 +64,7 @@ async fn connect(binary: &Binary) -> Robot {
     patiently(|| robot().connect()).await
 }
 
-/// And moves: recovery, then a centimetre up.
+/// Asserts that a good client can also recover the robot and move it, by one centimetre upwards.
 pub(crate) fn assert_moves(binary: &Binary) {
     binary.assert_alive();
     runtime().block_on(async {
@@ -74,7 +76,7 @@ pub(crate) fn assert_moves(binary: &Binary) {
     });
 }
 
-/// Clears the errors of a client that a busy machine kept from answering.
+/// Clears errors that occur because a busy machine delayed a client.
 pub(crate) fn recover(binary: &Binary) {
     runtime().block_on(async {
         let robot = connect(binary).await;
@@ -83,8 +85,8 @@ pub(crate) fn recover(binary: &Binary) {
     });
 }
 
-/// Moves a good client up and down while `mischief` is done, which begins in the middle of a
-/// motion. Every motion arrives.
+/// Moves a good client up and down while `mischief` runs, which begins in the middle of a motion.
+/// Asserts that every motion arrives.
 pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce() + Send) {
     let (begin, begun) = mpsc::channel();
     thread::scope(|scope| {

@@ -1,4 +1,4 @@
-//! Memory of the process, which abuse must not increase.
+//! The memory of the process, which abuse must not increase.
 
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::{Connection, SOON};
 
-/// One abuse of each immediate kind, on every port.
+/// Performs one abuse of each kind that takes no time, on every port.
 fn round(binary: &Binary) {
     for port in binary.ports() {
         let hello = port.connect(port.version, 4711);
@@ -48,7 +48,7 @@ fn round(binary: &Binary) {
     }
 }
 
-/// Waits until the connections of the last round have been taken down.
+/// Waits until the server has removed the connections of the last round.
 fn settled(binary: &Binary, descriptors: usize) {
     let deadline = Instant::now() + SOON;
     while binary.descriptors() > descriptors {
@@ -90,5 +90,5 @@ fn a_robot_that_has_served_takes_less_than_fifty_megabytes() {
     });
 }
 
-/// Memory that an allocator may keep, `[KiB]`: a leak of 1 KiB per connection would show as 2000.
+/// Memory that an allocator may keep, `[KiB]`. A leak of 1 KiB per connection would show as 2000.
 const GROWTH: usize = 512;

@@ -7,7 +7,7 @@ use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::{Connection, Port, SOON};
 
-/// Runs `abuse` on each port of a binary, with a good client after it.
+/// Runs `abuse` on each port of a simulator, and afterwards a good client.
 fn each_port(binary: &Binary, abuse: impl Fn(&Port)) {
     for port in binary.ports() {
         abuse(port);

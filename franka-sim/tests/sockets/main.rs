@@ -1,8 +1,8 @@
-//! The simulator over sockets: its binary against clients that leave the protocol, and stopped in
-//! the middle of a motion; robot time that the client's answers make.
+//! Tests of the simulator over sockets: clients that violate the protocol, a simulator that is
+//! stopped in the middle of a motion, and robot time that follows the client's answers.
 //!
-//! After each abuse a good client is served, by the same process, which has not grown. The robots
-//! wait for answers, so a machine that delays a client only makes it slow.
+//! After each abuse, the same process must serve a good client, and its memory must not have grown.
+//! The robots wait for answers, so a machine that delays a client only makes the test slow.
 //!
 //! | module | content |
 //! |---|---|
@@ -32,10 +32,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use binary::Binary;
 
-/// Held by each test: two cores support only a few robots.
+/// Each test holds this lock, because two cores support only a few robots.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Held across every await of a test, which is its purpose: each test blocks a separate runtime.
+/// Lock that a test holds across every await. This is intended: each test blocks a runtime of its
+/// own.
 struct Alone {
     _guard: MutexGuard<'static, ()>,
 }

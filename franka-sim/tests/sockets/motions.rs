@@ -1,4 +1,4 @@
-//! Clients that leave the protocol, or the robot, in the middle of a motion.
+//! Clients that violate the protocol, or disconnect, in the middle of a motion.
 
 use franka_proto::{
     CommandId, MoveControllerMode, MoveGeneratorMode, MoveRequest, MoveStatus, Request, Status,
@@ -129,7 +129,7 @@ fn non_finite_and_huge_parameters_are_invalid_arguments() {
     });
 }
 
-/// Every setter of both versions, with this number in one place.
+/// Returns every setter of both versions, with this number in one place.
 fn setters(bad: f64) -> [Request; 6] {
     let torque = [20.0; 7];
     let mut force = [20.0; 6];

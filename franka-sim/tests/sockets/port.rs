@@ -1,4 +1,4 @@
-//! A service as bytes see it.
+//! A service of the simulator, seen as bytes.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -8,22 +8,22 @@ use franka_proto::framing::Header;
 use franka_proto::{Command, Version, gripper, vacuum};
 use socket2::SockRef;
 
-/// Time limit for immediate events, on a loaded machine too.
+/// Time limit for events that should be immediate, long enough for a busy machine.
 pub(crate) const SOON: Duration = Duration::from_secs(300);
 
-/// The robot's port, the hand's or the vacuum gripper's.
+/// Port of the robot, the hand or the vacuum gripper.
 pub(crate) struct Port {
     pub(crate) name: &'static str,
     pub(crate) address: SocketAddr,
-    /// The version that it speaks.
+    /// Protocol version of the service.
     pub(crate) version: u16,
-    /// Bytes of a command number: four on the robot's stream, two on the others.
+    /// Number of bytes of a command number: four for the robot, two for the end effectors.
     number: usize,
-    /// The command that only stops.
+    /// Number of a command that only stops.
     pub(crate) stop: u32,
-    /// A command with parameters.
+    /// Number of a command with parameters.
     pub(crate) setter: u32,
-    /// Bytes of the answer to the handshake.
+    /// Number of bytes of the answer to the handshake.
     greeting: usize,
 }
 
@@ -65,18 +65,18 @@ impl Port {
         }
     }
 
-    /// Bytes of a header.
+    /// Number of bytes of a header.
     pub(crate) fn header(&self) -> usize {
         self.number + 8
     }
 
-    /// A message, with the size that it has.
+    /// Returns a message with its correct size.
     pub(crate) fn message(&self, command: u32, id: u32, payload: &[u8]) -> Vec<u8> {
         let size = (self.header() + payload.len()) as u32;
         [&self.announcing(size, command, id), payload].concat()
     }
 
-    /// A header that announces `size`.
+    /// Returns a header that announces `size`.
     pub(crate) fn announcing(&self, size: u32, command: u32, id: u32) -> Vec<u8> {
         let mut bytes = command.to_le_bytes()[..self.number].to_vec();
         bytes.extend(id.to_le_bytes());
@@ -84,7 +84,7 @@ impl Port {
         bytes
     }
 
-    /// The first message of a client.
+    /// Returns the first message of a client.
     pub(crate) fn connect(&self, version: u16, udp_port: u16) -> Vec<u8> {
         let payload = [version.to_le_bytes(), udp_port.to_le_bytes()].concat();
         self.message(0, 0, &payload)
@@ -94,7 +94,7 @@ impl Port {
         Connection::new(TcpStream::connect(self.address).expect("a listener"))
     }
 
-    /// A connection with the handshake done, and the socket that gets the states.
+    /// Returns a connection after the handshake, and the socket that receives the states.
     pub(crate) fn shake_hands(&self) -> (Connection, UdpSocket) {
         let begun = Instant::now();
         loop {
@@ -126,25 +126,25 @@ impl Connection {
         Self { stream }
     }
 
-    /// The client's end.
+    /// Address of the client's end.
     pub(crate) fn address(&self) -> SocketAddr {
         self.stream.local_addr().expect("connected")
     }
 
-    /// The same stream, for another thread.
+    /// Returns the same stream, for another thread.
     pub(crate) fn another(&self) -> Self {
         let stream = self.stream.try_clone().expect("a descriptor");
         Self { stream }
     }
 
-    /// Writes; a peer that has closed already is as good.
+    /// Writes bytes. It is not an error if the peer has already closed the stream.
     pub(crate) fn send(&mut self, bytes: &[u8]) {
         if let Err(error) = self.stream.write_all(bytes) {
             assert!(is_end(error.kind()), "{error}");
         }
     }
 
-    /// Writes a byte at a time, each in a separate segment, for half a second in total.
+    /// Writes the bytes one by one, each in a separate segment, over half a second in total.
     pub(crate) fn trickle(&mut self, bytes: &[u8]) {
         let pause = Duration::from_millis(500) / bytes.len() as u32;
         for byte in bytes {
@@ -153,7 +153,7 @@ impl Connection {
         }
     }
 
-    /// The next bytes, unless the stream ends before.
+    /// Returns the next bytes, unless the stream ends first.
     pub(crate) fn read(&mut self, length: usize) -> Option<Vec<u8>> {
         let mut bytes = vec![0; length];
         match self.stream.read_exact(&mut bytes) {
@@ -163,7 +163,7 @@ impl Connection {
         }
     }
 
-    /// Reads to the end, which must come.
+    /// Reads up to the end of the stream, which must come.
     pub(crate) fn read_to_end(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         match self.stream.read_to_end(&mut bytes) {
@@ -174,15 +174,15 @@ impl Connection {
         bytes
     }
 
-    /// Waits for the reset. Some clients understand it, but would wait indefinitely after an
-    /// orderly end.
+    /// Waits for a reset of the connection. Some clients understand a reset, but would wait
+    /// indefinitely after an orderly close.
     pub(crate) fn expect_reset(&mut self) {
         let end = self.stream.read_exact(&mut [0; 1]);
         let end = end.map_err(|error| error.kind());
         assert_eq!(end, Err(ErrorKind::ConnectionReset));
     }
 
-    /// Ends with a reset in place of an orderly end.
+    /// Resets the connection instead of closing it.
     pub(crate) fn reset(self) {
         let socket = SockRef::from(&self.stream);
         let now = Some(Duration::ZERO);
@@ -190,7 +190,8 @@ impl Connection {
     }
 }
 
-/// Waits for a state, also while the process is stopped; returns its length and source.
+/// Waits for a state, even while the process is stopped. Returns the length and the source of the
+/// state.
 pub(crate) fn receive(udp: &UdpSocket, bytes: &mut [u8]) -> (usize, SocketAddr) {
     loop {
         match udp.recv_from(bytes) {

@@ -1,4 +1,4 @@
-//! More than one client at a time, and clients that leave without a word.
+//! More than one client at a time, and clients that disappear without closing the connection.
 
 use std::net::{SocketAddr, UdpSocket};
 
@@ -6,7 +6,7 @@ use crate::each_robot;
 use crate::good::{assert_moves_during, assert_served};
 use crate::port::{Connection, Port, receive};
 
-/// A request of the client that has the seat is answered, and states come.
+/// Asserts that the connected client still gets answers and states.
 fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket, id: u32) {
     connection.send(&port.message(port.stop, id, &[]));
     let answer = connection.read(port.header() + 1).expect("an answer");
@@ -65,7 +65,8 @@ fn clients_that_crowd_at_the_door_do_not_disturb_a_motion() {
     });
 }
 
-/// A client without a network cannot close the connection: the kernel must detect that.
+/// A client that has lost its network cannot close the connection, so the kernel must detect the
+/// loss.
 #[test]
 fn the_host_of_an_idle_client_is_asked_whether_it_is_there() {
     each_robot(|binary| {

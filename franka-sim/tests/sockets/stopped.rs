@@ -1,6 +1,6 @@
-//! The simulator's process, stopped and continued in the middle of a motion: a busy host does this,
-//! to a smaller extent. A robot's clock never stops, so the client's motion must not suffer. The
-//! robots wait for late commands, so the host's delays of the client do not matter.
+//! The simulator's process is stopped and continued in the middle of a motion. A busy host does the
+//! same for shorter times. A real robot's clock never stops, so the client's motion must not be
+//! affected. The robots wait for late commands, so delays of the client do not matter.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use tokio::runtime::Builder;
 use crate::alone;
 use crate::binary::Binary;
 
-/// From one stop to the next.
+/// Time from one stop to the next.
 const PERIOD: Duration = Duration::from_millis(250);
 
 /// Stops the process for `stop`, four times a second, while `work` runs.
@@ -33,7 +33,7 @@ fn stopping<R>(binary: &Binary, stop: Duration, work: impl FnOnce() -> R) -> R {
     })
 }
 
-/// Ends the stops, also when the work panics.
+/// Ends the stops when it is dropped, even if the work panics.
 struct EndOnDrop<'a>(&'a AtomicBool);
 
 impl Drop for EndOnDrop<'_> {
@@ -42,7 +42,7 @@ impl Drop for EndOnDrop<'_> {
     }
 }
 
-/// A cosine path to 1 and back to 0 within a second.
+/// Returns the value at `time` of a cosine path to 1 and back to 0 within a second.
 fn there_and_back(time: f64) -> f64 {
     0.5 - 0.5 * (2.0 * PI * time.min(DURATION) / DURATION).cos()
 }

@@ -1,4 +1,4 @@
-//! Robot time that the client's answers make, over sockets.
+//! Robot time that follows the client's answers, over sockets.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use franka_sim::{Fingers, Running, Sim, Tool};
 
 use crate::alone;
 
-/// Longer than a busy machine delays a thread.
+/// Time for which no busy machine delays a thread.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 async fn start(sim: Sim, patience: Duration) -> (Running, Robot) {

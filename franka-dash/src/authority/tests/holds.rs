@@ -1,4 +1,4 @@
-//! Tests of every way in which a hold is lost.
+//! Tests of every way in which a hold can end early.
 
 use super::*;
 

@@ -22,7 +22,7 @@ struct Server {
     authority: Authority,
     /// Lease of the robot.
     lease: Lease,
-    /// Time zero.
+    /// Moment at which the simulated time is zero.
     start: Instant,
     now: Duration,
 }
@@ -87,7 +87,7 @@ impl Server {
         server
     }
 
-    /// Asserts that the arm does not move, and that only another `Begin` changes that.
+    /// Asserts that the arm does not move, and that only another `Begin` can move it.
     fn assert_at_rest(&mut self) {
         assert!(!self.authority.status().holding);
         for seq in 0..20 {
@@ -101,8 +101,8 @@ fn begin(speed: f64) -> Request {
     Request::Begin { motion: UP, speed }
 }
 
-/// For any messages at any times, the arm moves only for the holder of the lease, and at most until
-/// the deadman expires after the last valid message.
+/// For any messages at any times, the arm moves only for the holder of the lease. It stops at the
+/// latest when the deadman expires after the last valid message.
 #[test]
 fn nothing_moves_without_the_messages_of_its_commander() {
     let seed: u64 = rand::rng().random();

@@ -12,10 +12,10 @@ use crate::geometry::FLANGE;
 use crate::random::Random;
 use crate::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 
-/// Number of postures, or obstacle placements, for the comparison of a distance.
+/// Number of postures, or of obstacle placements, in the comparison of a distance.
 const CASES: usize = 10_000;
 
-/// Error of the minimisers: they bracket the parameter to 1e-9.
+/// Error of the minimisers, which bracket the parameter to 1e-9.
 const DISTANCE: f64 = 1e-9;
 
 /// Number of steps of the minimisers.

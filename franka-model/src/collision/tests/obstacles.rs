@@ -3,8 +3,7 @@ use crate::collision::Obstacle;
 use crate::rotation;
 use nalgebra::UnitVector3;
 
-/// Returns the distance of a point from a box: outside, the distance to it; inside, the least
-/// depth.
+/// Returns the distance of a point from a box; for a point inside, the least depth.
 fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) -> f64 {
     let local = pose.inverse_transform_point(&(*point).into()).coords;
     let beyond = local.abs() - half;
@@ -24,8 +23,8 @@ fn way_out(
     turned.dot(half) - along(&capsule.start).min(along(&capsule.end))
 }
 
-/// Checks that `shift` separates the two, and that a local search from many directions finds no
-/// shorter shift.
+/// Checks that `shift` separates capsule and box, and that a local search from many directions
+/// finds no shorter shift.
 fn assert_is_the_shortest_way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,

@@ -87,7 +87,7 @@ fn fixed(name: &str, parent: &str, child: &str, xyz: &str, rpy: &str) -> String 
     )
 }
 
-/// Returns the text with one passage replaced, which must exist.
+/// Returns the text with one passage replaced. The passage must exist.
 fn with(from: &str, to: &str) -> String {
     let text = text();
     assert!(text.contains(from), "{from} is not in the text");

@@ -1,4 +1,4 @@
-//! Motions that events end, and goals without an end.
+//! Motions that an event ends, and goals without an end.
 
 use super::*;
 
@@ -120,7 +120,7 @@ fn a_goal_that_failed_of_itself_is_told_where_nothing_ended_a_motion() {
     );
 }
 
-/// A motion that is cut off is reported as such; a goal that is held afterwards is not.
+/// A motion that is cut off is reported as such. A goal that is only held afterwards is not.
 #[test]
 fn a_goal_without_an_end_is_under_way() {
     let of = |ends: bool| {
@@ -150,7 +150,7 @@ fn a_goal_without_an_end_is_under_way() {
     assert_eq!(of(true).under_way, None);
 }
 
-/// Chunks share the goal of the first chunk, which ends for all of them.
+/// Chunks share the goal of the first chunk. Its end is the end of all chunks.
 #[test]
 fn chunks_that_followed_another_are_not_under_way() {
     let mut explainer = Explainer::new(Model::fr3());

@@ -10,14 +10,14 @@ const CLEAR: Conditions = Conditions {
     ..Conditions::cable()
 };
 
-/// Sizes of a state, of protocols 5 and 10.
+/// Sizes of a state in protocols 5 and 10, in bytes.
 const STATES: [usize; 2] = [2373, 1377];
 
 fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-/// Sends `count` datagrams of this size, one a millisecond, each with its number, and returns the
+/// Sends `count` datagrams of this size, one per millisecond. Each contains its number. Returns the
 /// arrivals.
 fn pass(path: &mut Path, count: u64, size: usize) -> Vec<(Duration, u64)> {
     let mut arrived = Vec::new();
@@ -191,7 +191,7 @@ fn a_stall_holds_datagrams_back_and_sends_them_all_at_the_rate_of_the_line() {
     }
 }
 
-/// Figures measured on robots: see [`Stalls::FER`].
+/// Compares with values that were measured on robots: see [`Stalls::FER`].
 #[test]
 fn the_silences_of_an_fer_are_those_measured() {
     let conditions = Conditions {

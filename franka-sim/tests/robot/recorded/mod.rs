@@ -1,7 +1,7 @@
-//! Model and simulated arms against recordings of real arms.
+//! Comparison of the model and of simulated arms with recordings of real arms.
 //!
-//! A recording is too large for the repository. `rows` has some of its states, and figures from all
-//! of them.
+//! A recording is too large for the repository. `rows` contains some states of a recording, and
+//! values computed from all its states.
 
 mod four_gains;
 mod rows;
@@ -14,8 +14,8 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use rows::{AT_REST, MOVING, Reported, SAMPLES, TORQUE};
 
-/// Distances between the reported positions and the model's, `[m]`, and the largest of the angles
-/// between the orientations, `[rad]`.
+/// Returns the distances between reported positions and positions of the model, `[m]`, and the
+/// largest angle between the orientations, `[rad]`.
 fn deviations<'a>(lengths: Lengths, rows: impl Iterator<Item = &'a Reported>) -> (Vec<f64>, f64) {
     let model = Model::physically_consistent(RobotKind::Fr3)
         .clone()

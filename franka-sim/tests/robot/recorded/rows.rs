@@ -1,16 +1,17 @@
-//! Rows of recordings, and figures read from them.
+//! Rows of recordings, and values computed from recordings.
 //!
 //! All are of a Franka Research 3 with the Hand in 2026, from `franka_data` of
 //! `shubhamsonkar01/franka_ros2_teleop_data_collection` at 1c62aa8d, under the Apache License 2.0.
 
-/// Joint positions, and position and orientation `[x, y, z, w]` of the fingertips in `O_T_EE`.
+/// Joint positions, and the pose of the fingertips in `O_T_EE`: position and orientation `[x, y, z,
+/// w]`.
 pub(super) struct Reported {
     pub(super) q: [f64; 7],
     pub(super) p: [f64; 3],
     pub(super) quaternion: [f64; 4],
 }
 
-/// States in which no joint is faster than 5 mrad/s, of three runs.
+/// States of three runs in which no joint is faster than 5 mrad/s.
 #[rustfmt::skip]
 pub(super) const AT_REST: [Reported; 14] = [
     Reported {
@@ -85,8 +86,8 @@ pub(super) const AT_REST: [Reported; 14] = [
     },
 ];
 
-/// States in motion, taken at regular intervals from four runs. Joints and pose are of two topics,
-/// up to 1.3 ms apart.
+/// States in motion, taken at regular intervals from four runs. Joints and pose come from two
+/// topics, up to 1.3 ms apart.
 #[rustfmt::skip]
 pub(super) const MOVING: [Reported; 12] = [
     Reported {
@@ -153,9 +154,9 @@ pub(super) const MOVING: [Reported; 12] = [
 
 /// One of the cycles that represent the whole recording, and its share.
 ///
-/// Torques of the model are linear in masses, moments and inertias. The weighted mean of each of
-/// their coefficients over these rows is that over 6942 rows, to 4 mN·m for any arm of this shape.
-/// Positions and velocities went through the low-pass of 8 Hz that is in `tau_ext_hat_filtered`.
+/// Torques of the model are linear in masses, moments and inertias. The weighted means of their
+/// coefficients over these rows equal the means over all 6942 rows, to within 4 mN·m for any arm of
+/// this shape. Positions and velocities passed the same low-pass of 8 Hz as `tau_ext_hat_filtered`.
 pub(super) struct Sample {
     pub(super) weight: f64,
     pub(super) q: [f64; 7],
@@ -311,6 +312,6 @@ pub(super) const SAMPLES: [Sample; 24] = [
     },
 ];
 
-/// Mean of `tau_J - tau_ext_hat_filtered` over the 6942 rows, with `tau_J` behind the same
-/// low-pass, `[N·m]`.
+/// Mean of `tau_J - tau_ext_hat_filtered` over the 6942 rows, with the same low-pass applied to
+/// `tau_J`, `[N·m]`.
 pub(super) const TORQUE: [f64; 7] = [0.0012, -42.3738, -3.8106, 16.3492, 0.4477, 2.2485, -0.0015];
