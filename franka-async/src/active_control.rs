@@ -1,5 +1,5 @@
-//! Active control: a thread of the program reads states and writes commands, and is the control
-//! cycle meanwhile.
+//! Active control: a thread of the program reads states, writes commands, and runs the control
+//! cycle itself.
 
 use std::marker::PhantomData;
 use std::time::Duration;
@@ -22,12 +22,12 @@ use crate::robot::Robot;
 
 impl Robot {
     /// Begins control by torques from the caller's thread, and resolves when the motion runs. The
-    /// first command is due within a few milliseconds, so hand the result at once to the thread
-    /// that reads and writes.
+    /// first command is due within a few milliseconds. Hand the result at once to the thread that
+    /// reads and writes.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm; otherwise the cause of an end
-    /// before the motion ran.
+    /// [`MotionError::Busy`] while anything else controls the arm. Otherwise, the reason why the
+    /// motion ended before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -37,9 +37,9 @@ impl Robot {
         Active::begin(self, request).await
     }
 
-    /// Begins control by joint positions, for the given controller; with
-    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Otherwise like
-    /// [`Self::active_torques`].
+    /// Begins control by joint positions, for the given controller. With
+    /// [`MoveControllerMode::ExternalController`] every command also needs torques. The rest is as
+    /// for [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -106,32 +106,31 @@ impl Robot {
     }
 }
 
-/// A motion under active control. Send it to a thread, which then is the control cycle. From the
-/// first [`read_once`](Self::read_once) until this is dropped, states are received in that thread
-/// and nowhere else. A thread that neither reads nor writes leaves the robot without commands,
-/// which stops it.
+/// A motion under active control. Send it to a thread, which then runs the control cycle. From the
+/// first [`read_once`](Self::read_once) until this value is dropped, only that thread receives
+/// states. If the thread neither reads nor writes, the robot gets no commands and stops.
 ///
-/// **A thread that hangs** between two reads takes the states of the whole connection with it:
+/// **If that thread hangs** between two reads, the whole connection gets no states:
 /// [`Robot::state`] stands still and the loss of the link goes unseen. After the link timeout the
-/// motion is given up, the robot is asked to stop, and the next read or write fails with
-/// [`MotionError::Stalled`]. Until then, or until this is dropped, other motions are refused with
-/// [`MotionError::Busy`].
+/// driver gives the motion up and asks the robot to stop. The next read or write then fails with
+/// [`MotionError::Stalled`]. Other motions are refused with [`MotionError::Busy`] until then, or
+/// until this value is dropped.
 ///
 /// Commands pass no filter and no limiter. All methods block; none may be called from async code.
 /// The driver raises only its own thread: the caller sets the real-time scheduling of the calling
 /// thread, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
-/// **Dropping it** before the last command stops the robot.
+/// **Dropping this value** before the last command stops the robot.
 #[derive(Debug)]
 pub struct Active<C> {
     robot: Robot,
     id: GoalId,
     lender: Lender,
-    /// `None` before the first read, and once the cycle went back.
+    /// The borrowed cycle; `None` before the first read, and once the cycle was given back.
     lease: Option<Lease>,
-    /// `None` once the end is known.
+    /// Receives the outcome; `None` once the motion has ended.
     outcome: Option<oneshot::Receiver<Outcome>>,
-    /// Cause of the end of the motion, if it did not end as asked.
+    /// Cause of the end of the motion, unless the motion ended as asked.
     error: Option<MotionError>,
     /// `message_id` of the newest state read.
     previous: Option<u64>,
@@ -155,8 +154,8 @@ impl<C> Active<C> {
         })
     }
 
-    /// Waits for the next state of the motion. Returns it with the robot's time since the previous
-    /// state that was read, which is zero at first and more than a millisecond after a loss.
+    /// Waits for the next state of the motion. Returns the state, and the robot's time since the
+    /// previous state that was read: zero at first, and more than a millisecond after a loss.
     ///
     /// # Errors
     /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link
@@ -213,7 +212,7 @@ impl<C> Active<C> {
         Ok(None)
     }
 
-    /// Returns the outcome if the motion was given up while nothing was read. The cycle then goes
+    /// Returns the outcome if the motion was given up while nothing was read, and gives the cycle
     /// back.
     fn given_up(&mut self) -> Option<Outcome> {
         let outcome = self.outcome.as_mut()?.try_recv().ok()?;
@@ -227,14 +226,14 @@ impl<C> Active<C> {
         end
     }
 
-    /// The error of a call after the end.
+    /// Returns the error for a call after the end.
     fn over(&self) -> ActiveError {
         self.error
             .clone()
             .map_or(ActiveError::Finished, ActiveError::Ended)
     }
 
-    /// Returns the cycle, which the first call takes over.
+    /// Returns the borrowed cycle. The first call borrows it.
     fn lease(&mut self) -> Result<&mut Lease, BorrowError> {
         match &mut self.lease {
             Some(lease) => Ok(lease),
@@ -265,8 +264,8 @@ impl<C> Active<C> {
 }
 
 impl Active<Torques> {
-    /// Sends torques for the newest state. After the last ones (`torques.finish()`), waits until
-    /// the robot has ended the motion and returns its report.
+    /// Sends torques for the newest state. After the last torques (`torques.finish()`), waits until
+    /// the robot has ended the motion and returns the report.
     ///
     /// # Errors
     /// [`ActiveError::Write`] for torques that cannot be sent; the motion continues.
@@ -283,12 +282,12 @@ impl Active<Torques> {
 
 impl<C: GeneratorCommand> Active<C> {
     /// Sends a command to the motion generator for the newest state, under one of the robot's own
-    /// controllers. After the last one, waits until the robot has ended the motion and returns its
-    /// report.
+    /// controllers. After the last command, waits until the robot has ended the motion and returns
+    /// the report.
     ///
     /// # Errors
-    /// As [`Active<Torques>::write_once`]; fails with the vendor's text if the motion requires
-    /// torques and none are given.
+    /// As [`Active<Torques>::write_once`]. Also fails, with the vendor's text, if the motion
+    /// requires torques and none are given.
     pub fn write_motion(
         &mut self,
         motion: impl Into<Next<C>>,
@@ -300,7 +299,7 @@ impl<C: GeneratorCommand> Active<C> {
     }
 
     /// Sends a command to the motion generator together with torques, under an external controller.
-    /// If either is the last, waits until the robot has ended the motion and returns its report.
+    /// If either is the last, waits until the robot has ended the motion and returns the report.
     ///
     /// # Errors
     /// As [`Self::write_motion`]; torques for a motion without torques are refused with the

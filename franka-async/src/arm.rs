@@ -1,4 +1,4 @@
-//! An engaged arm: one session, many goals.
+//! An engaged arm: one session of target control with many goals.
 
 use std::fmt;
 use std::future::Future;
@@ -25,8 +25,8 @@ use crate::robot::Robot;
 use crate::session::Session;
 use crate::user_value::UserValue;
 
-/// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains
-/// of each kind of goal and the default budget.
+/// Options of a session of target control; see [`Robot::engage`]. By default the session holds the
+/// arm with the gains of each kind of goal and the default budget.
 #[derive(Debug, Default)]
 #[must_use = "options do nothing until `Robot::engage` takes them"]
 pub struct Engage {
@@ -37,11 +37,12 @@ pub struct Engage {
 impl Engage {
     goal_options!();
 
-    /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
-    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal
-    /// that this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked), while a
-    /// stream continues and waits for other targets; an arm that stands in a region may leave it.
-    /// Links and the Franka Hand are kept out, no other tool.
+    /// Keeps the arm out of these regions, in the base frame; none by default. The reference slows
+    /// down on its way to a region and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before
+    /// the region. A goal behind the region is given up as
+    /// [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream continues and waits for other
+    /// targets. An arm that stands in a region may leave it. Links and the Franka Hand are kept
+    /// out; other tools are not.
     /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
     /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
@@ -50,19 +51,19 @@ impl Engage {
     }
 
     /// Limits the speed of all joints, the flange and the end effector, `[m/s]`, 0.1 to 3; by
-    /// default there is only what goals ask for. On the way to a pose the reference is slowed to 94
-    /// % of it, and 0.03 m/s below it at least. An arm that is still faster, because its goal leads
-    /// over joints, or because something throws it, gives up its goal and is braked, as
-    /// [`Lapse::TooFast`](crate::error::Lapse::TooFast).
+    /// default only the limits of the goals hold. On the way to a pose the reference is slowed to
+    /// 94 % of the cap, and to 0.03 m/s below the cap at least. The arm may still be faster if its
+    /// goal moves the joints, or if something pushes the arm. The goal is then given up as
+    /// [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes.
     /// [`GoalError::Number`](crate::error::GoalError::Number) refuses other numbers.
     pub fn speed_cap(mut self, speed: f64) -> Self {
         self.engagement.speed_cap = Some(speed);
         self
     }
 
-    /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
-    /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence must be 10 ms or
-    /// more. See [`Deadman::new`](crate::goal::Deadman::new).
+    /// Binds the session to a deadman. While the deadman is silent, and once it is dropped, the arm
+    /// brakes and holds, and every goal resolves as [`MotionError::Held`]. The silence that the
+    /// deadman allows must be 10 ms or more. See [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
         self
@@ -75,18 +76,18 @@ impl Engage {
     }
 
     /// Sets the backend that turns setpoints into torques; by default the session's own law.
-    /// [`Backend`] lists the guards of each backend, and [`Setpoints`](crate::goal::Setpoints) the
-    /// goals that each kind takes. Goals that a backend does not support are refused as
-    /// [`GoalError::Backend`](crate::error::GoalError::Backend).
+    /// [`Backend`] lists the guards of each backend. [`Setpoints`](crate::goal::Setpoints) lists
+    /// the goals that each kind of setpoint supports. Goals that a backend does not support are
+    /// refused as [`GoalError::Backend`](crate::error::GoalError::Backend).
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self
     }
 
-    /// Shows every cycle to `function`, on the real-time thread, once its command has left: the
-    /// record of the cycle and its state. It must not lock, allocate, print or wait; if it panics
-    /// it is not called again, and the session continues. For records outside the thread see
-    /// [`Robot::records`].
+    /// Calls `function` in every cycle, on the real-time thread, once the command has left. The
+    /// arguments are the record of the cycle and its state. The function must not lock, allocate,
+    /// print or wait. If the function panics, it is not called again, and the session continues.
+    /// For records outside the thread see [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         let mut function = UserValue::new("an observer", function);
         let observer = Observer::new(move |record, state| (*function)(record, state));
@@ -95,15 +96,15 @@ impl Engage {
     }
 }
 
-/// A session of target control: the arm is held, and goes from goal to goal of any kind without a
-/// stop in between. Made by [`Robot::engage`].
+/// A session of target control: the session holds the arm and moves it from goal to goal of any
+/// kind without a stop in between. Made by [`Robot::engage`].
 ///
-/// A cheap handle: clones share the session, motions that are awaited are handles too. Dropping the
-/// last one brakes the arm and ends the session, in the background; [`Self::disengage`] does the
-/// same and can be awaited. [`Robot::stop`] ends it from outside, as does the robot by a reflex.
+/// A cheap handle: clones share the session, and motions that are awaited are handles too. Dropping
+/// the last handle brakes the arm and ends the session, in the background. [`Self::disengage`] does
+/// the same and can be awaited. [`Robot::stop`] and a reflex of the robot also end the session.
 /// Every later call on the session then returns the reason.
 ///
-/// While a session has the arm, motions of the [`Robot`] itself are refused as
+/// While a session controls the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
 #[derive(Clone)]
 #[must_use = "dropping the last handle ends the session and brakes the arm"]
@@ -112,9 +113,9 @@ pub struct Arm {
 }
 
 impl Robot {
-    /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves
-    /// when it has begun. After a dropped motion or session it begins when that has released the
-    /// arm.
+    /// Begins a session of target control that holds the arm where it is, and resolves when the
+    /// session has begun. If a dropped motion or session is still braking the arm, the new session
+    /// begins after it.
     ///
     /// # Errors
     /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains
@@ -161,30 +162,32 @@ impl Robot {
 }
 
 impl Arm {
-    /// The robot of this arm.
+    /// Returns the robot of this arm.
     pub fn robot(&self) -> &Robot {
         self.session.robot()
     }
 
-    /// A motion to a pose or to joint positions; see [`Robot::move_to`]. It resolves when the arm
-    /// has arrived and rests; the arm is then held. Dropping it brakes the arm and holds it.
+    /// Returns a motion to a pose or to joint positions; see [`Robot::move_to`]. The motion
+    /// resolves when the arm has arrived and rests; the session then holds the arm. Dropping the
+    /// motion brakes the arm and holds it.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::within(&self.session, destination.into())
     }
 
-    /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
+    /// Returns a motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
     pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
         self.move_to(q.into())
     }
 
-    /// A motion of the end effector away from the present target, or from the arm; otherwise like
-    /// [`Self::move_to`].
+    /// Returns a motion of the end effector by `offset` from the present target, or from the arm;
+    /// otherwise like [`Self::move_to`].
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
 
-    /// A motion through several poses, or several joint positions, without stops where they are
-    /// [rounded](Waypoint::blend); otherwise like [`Self::move_to`]. See [`Robot::move_through`].
+    /// Returns a motion through several poses, or several joint positions. The arm does not stop at
+    /// waypoints that are [rounded](Waypoint::blend). Otherwise like [`Self::move_to`]; see
+    /// [`Robot::move_through`].
     pub fn move_through<W: Into<Waypoint>>(
         &self,
         waypoints: impl IntoIterator<Item = W>,
@@ -192,32 +195,33 @@ impl Arm {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// Brakes at any time, and resolves when the arm rests; it is then held there.
+    /// Returns a motion that brakes the arm, and resolves when the arm rests and is held there. May
+    /// be used at any time.
     pub fn hold(&self) -> Motion {
         self.move_to(Target::Rest)
     }
 
-    /// Replaces the current goal by a pose or joint positions, and holds them on arrival. Returns
-    /// as soon as the goal is taken. For programs that set goals at their own rate and read the
-    /// state for the rest.
+    /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
+    /// Returns as soon as the session has accepted the goal. For programs that set goals at their
+    /// own rate and read the state for the progress.
     ///
-    /// A target that comes with its velocity is followed without a lag. Without new targets it
-    /// keeps moving for [`Target::MOVES_ON_MS`].
+    /// The arm follows a target with a velocity without a lag. Without new targets, such a target
+    /// moves on for [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a
     /// [deadman](Engage::deadman) holds the arm, and the cause of the end of the session.
     ///
     /// # Cancel safety
-    /// Once the future is polled, the goal is still taken.
+    /// Once the future is polled, the goal still takes effect.
     pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         self.take(destination.into()).await
     }
 
     /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at
-    /// their own rate. If goals come faster than they are taken, the newest one counts. A goal is
-    /// checked here. Refusals by the session are only logged: by the [`Backend`], and of an offset
-    /// that comes before the previous goal was taken.
+    /// their own rate. If goals come faster than the session accepts them, only the newest one
+    /// counts. This call checks the goal. Later refusals are only logged: by the [`Backend`], and
+    /// of an offset that comes before the previous goal was accepted.
     ///
     /// # Errors
     /// As for [`Self::set`].
@@ -240,9 +244,9 @@ impl Arm {
         Ok(())
     }
 
-    /// Target that the arm heads for or is held at, the last one taken. [`Target::Rest`] along a
-    /// chunk, at the start of a session and where a goal was given up; `None` once the session has
-    /// ended.
+    /// Returns the target that the arm moves to or is held at: the last one accepted. This is
+    /// [`Target::Rest`] along a chunk, at the start of a session and where a goal was given up.
+    /// `None` once the session has ended.
     pub fn target(&self) -> Option<Target> {
         let ended = self.session.has_ended();
         self.session.link().course.target().filter(|_| !ended)
@@ -254,14 +258,14 @@ impl Arm {
         self.robot().reference().filter(|_| !ended)
     }
 
-    /// Waits until the arm rests at the last target taken, or where that target has been given up.
-    /// At rest means that for 250 ms the reference has not moved and no joint has moved by more
-    /// than half a milliradian, so that friction has been made up for. For goals that are
-    /// [set](Self::set); a motion that is awaited rests when it resolves.
+    /// Waits until the arm rests at the last accepted target, or where that target was given up.
+    /// The arm is at rest if for 250 ms the reference has not moved and no joint has moved by more
+    /// than half a milliradian. The law has then compensated the friction. For goals that are
+    /// [set](Self::set); after an awaited motion the arm rests anyway.
     ///
-    /// It has no time limit. An arm that is pushed, that an obstacle holds back from its target, or
-    /// that follows a stream, rests only when that ends. Only the program knows how long that may
-    /// take. Where it may take indefinitely, await it within `tokio::time::timeout`.
+    /// The wait has no time limit. It may last while the arm is pushed, is blocked by an obstacle,
+    /// or follows a stream. Where that may take indefinitely, await it within
+    /// `tokio::time::timeout`.
     ///
     /// # Errors
     /// The cause of the end of the session.
@@ -300,19 +304,20 @@ impl Arm {
         }
     }
 
-    /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
-    /// soon as it is taken. A chunk that comes while another one runs continues from it: see
-    /// [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the observation.
-    /// The limits are kept for any points. The arm rests at the last one unless another chunk or
-    /// goal comes.
+    /// Follows a chunk of points with times, as a policy predicts them, from now on. Returns as
+    /// soon as the chunk is accepted. If another chunk is running, the new one continues from it:
+    /// see [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the
+    /// observation. The arm keeps its limits for any points. It rests at the last point unless
+    /// another chunk or goal comes.
     ///
     /// # Errors
-    /// As for [`Self::set`]. If a guard gave up the previous chunk, once: [`MotionError::Held`] or
-    /// [`MotionError::Braked`]. [`GoalError::Late`](crate::error::GoalError::Late) if all points
-    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of
-    /// another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation
-    /// of the previous chunk is newer. [`GoalError::Chunks`](crate::error::GoalError::Chunks) if
-    /// chunks come faster than the control thread takes them up.
+    /// As for [`Self::set`]. [`MotionError::Held`] or [`MotionError::Braked`], once, if a guard
+    /// gave up the previous chunk. [`GoalError::Late`](crate::error::GoalError::Late) if all points
+    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time is
+    /// of another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the
+    /// observation of the previous chunk is newer.
+    /// [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the
+    /// control thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].
@@ -334,10 +339,10 @@ impl Arm {
             .await
     }
 
-    /// Lets a hand guide the arm once it rests. There is no spring along the axes that are `free`,
-    /// nor at the elbow if that is free; the others stay where they are. Guiding lasts until the
-    /// next goal; [`Self::hold`] ends it. Returns as soon as it is taken. Declare the load, or it
-    /// pulls the arm down.
+    /// Lets a hand guide the arm once the arm rests. No spring acts along the axes that are `free`,
+    /// nor at the elbow if it is free; the other axes stay where they are. Guiding lasts until the
+    /// next goal; [`Self::hold`] ends it. Returns as soon as the request is accepted. Declare the
+    /// load, or the load pulls the arm down.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -348,8 +353,8 @@ impl Arm {
         self.take(Target::Guide(free).into()).await
     }
 
-    /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the
-    /// sender is dropped, and then stops at the last one. See [`Robot::follow`].
+    /// Follows the newest of the targets in `targets`, poses or joint positions, until the sender
+    /// is dropped, and then stops at the last target. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -357,9 +362,9 @@ impl Arm {
         self.follow_targets(watched(targets))
     }
 
-    /// Follows the newest of the targets that a stream yields, poses or joint positions, until it
-    /// ends, and then stops at the last one. Targets that came while another one was taken are
-    /// skipped, up to 256 at once: a stream that is always ready is followed, too.
+    /// Follows the newest of the targets that a stream yields, poses or joint positions, until the
+    /// stream ends, and then stops at the last target. Targets that come while another one is being
+    /// accepted are skipped, up to 256 at once. This works for a stream that is always ready, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -372,15 +377,15 @@ impl Arm {
     }
 
     /// Retunes the current and later goals of the session, and leaves options that are `None` as
-    /// they are. Options of a motion come before it. Gains, force cap and leash fade over 0.3 s:
-    /// neither the reference nor the torques step.
+    /// they are. Options of a single motion take precedence. Gains, force cap and leash change over
+    /// 0.3 s, so that neither the reference nor the torques step.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; the cause of the
-    /// end of the session.
+    /// [`MotionError::Goal`] for values out of their bounds, which change nothing. Otherwise, the
+    /// cause of the end of the session.
     ///
     /// # Cancel safety
-    /// Once the future is polled, the change is still made.
+    /// Once the future is polled, the change still takes effect.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
         let (id, kept) = (self.session.id(), self.session.tuning().clone());
         let tuning = Box::new(tuning);
@@ -394,8 +399,9 @@ impl Arm {
             .await
     }
 
-    /// Brakes, releases the arm and ends the session; resolves when it has ended. A goal under way
-    /// resolves as [`MotionError::Stopped`]. Every other handle is then disengaged.
+    /// Brakes, releases the arm and ends the session; resolves when the session has ended. A goal
+    /// under way resolves as [`MotionError::Stopped`]. All other handles of the session are then
+    /// disengaged, too.
     ///
     /// # Errors
     /// [`MotionError`] if the session ended otherwise: by a reflex, or [`MotionError::Stopped`] by
@@ -415,7 +421,7 @@ impl Arm {
     /// As [`Self::disengage`].
     ///
     /// # Cancel safety
-    /// Nothing happens if it is dropped.
+    /// Nothing happens if the future is dropped.
     pub fn ended(
         &self,
     ) -> impl Future<Output = Result<MotionReport, MotionError>> + Send + 'static {
@@ -427,7 +433,7 @@ impl Arm {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }
 
-    /// Pose of the reference of the end effector.
+    /// Returns the pose of the reference of the end effector.
     ///
     /// # Errors
     /// The cause of the end of the session.
@@ -437,7 +443,7 @@ impl Arm {
         Ok(reference.pose)
     }
 
-    /// Name of the current goal; `None` once the session has ended.
+    /// Returns the name of the current goal; `None` once the session has ended.
     #[cfg(feature = "record")]
     pub(crate) fn heading(&self) -> Option<franka_rt::session::GoalId> {
         let ended = self.session.has_ended();
@@ -450,7 +456,7 @@ impl Arm {
         self.session.check().err()
     }
 
-    /// A goal that is set and then held.
+    /// Returns a goal that is set and then held.
     pub(crate) fn goal(&self, target: Target) -> Goal {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
@@ -479,16 +485,17 @@ impl Arm {
     }
 }
 
-/// Cycles after which a goal that was taken moves the reference, with one to spare.
+/// Cycles after which an accepted goal moves the reference, with one to spare.
 const TAKEN_UP: u64 = 3;
 
-/// Time without a motion after which an arm rests, `[ms]`: as for the arrival of a motion.
+/// Time without motion after which the arm counts as resting, `[ms]`: as for arrivals of motions.
 const SETTLED: u64 = 250;
 
-/// Joint velocity of the reference below which it rests, `[rad/s]`.
+/// Joint velocity below which the reference counts as resting, `[rad/s]`.
 const REFERENCE_REST: f64 = 1e-3;
 
-/// Distance of a joint from where it was when the wait began, `[rad]`, from which on it has moved.
+/// Distance of a joint from its position at the start of the wait beyond which it has moved,
+/// `[rad]`.
 const MOVED: f64 = 5e-4;
 
 impl fmt::Debug for Arm {

@@ -22,13 +22,13 @@ pub struct AsynchronousOptions {
     /// Bounds of the joint velocities, `[rad/s]`.
     pub maximum_joint_velocities: [f64; 7],
     /// Distance of the desired joint positions from the target that counts as reached, as Euclidean
-    /// norm, `[rad]`; 20 at most, which is farther than any two postures are apart.
+    /// norm, `[rad]`. 20 at most, which is more than the distance of any two postures.
     pub goal_tolerance: f64,
 }
 
 impl Default for AsynchronousOptions {
-    /// The speeds and the tolerance of the example of libfranka 0.21: 0.655 rad/s for joints 1 to
-    /// 4, and 1.315 rad/s for the others. The tolerance is 1 mrad.
+    /// Returns the speeds and the tolerance of the example of libfranka 0.21: 0.655 rad/s for
+    /// joints 1 to 4, and 1.315 rad/s for the others. The tolerance is 1 mrad.
     fn default() -> Self {
         Self {
             maximum_joint_velocities: [0.655, 0.655, 0.655, 0.655, 1.315, 1.315, 1.315],
@@ -83,13 +83,13 @@ const FARTHEST: f64 = 20.0;
 
 impl Robot {
     /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when
-    /// it runs. Protocol 10 only, and experimental there.
+    /// the motion runs. Protocol 10 only, and experimental there.
     ///
     /// # Errors
-    /// [`MotionError::Unsupported`] for a version without it. [`MotionError::Goal`] for a velocity
-    /// or a tolerance that is not positive, or beyond the robot's. Both are returned before a byte
-    /// is sent. [`MotionError::Busy`] while anything else controls the arm. Otherwise, the cause of
-    /// an end before the motion ran.
+    /// [`MotionError::Unsupported`] for a protocol version without such motions.
+    /// [`MotionError::Goal`] for a velocity or a tolerance that is not positive, or beyond the
+    /// robot's. Both are returned before a byte is sent. [`MotionError::Busy`] while anything else
+    /// controls the arm. Otherwise, the reason why the motion ended before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -122,9 +122,9 @@ impl Robot {
     }
 }
 
-/// A motion from target to target, which the robot itself plans. May be shared between tasks.
+/// A motion from target to target that the robot itself plans. May be shared between tasks.
 ///
-/// Dropping it stops the robot.
+/// Dropping this value stops the robot.
 #[derive(Debug)]
 pub struct AsynchronousControl {
     robot: Robot,
@@ -142,8 +142,8 @@ struct Targets {
 }
 
 impl AsynchronousControl {
-    /// Sends the robot to `q`, `[rad]`, where it stops; replaces an earlier target. Sent with the
-    /// next state.
+    /// Makes the robot move to `q`, `[rad]`, and stop there; replaces an earlier target. The target
+    /// is sent with the next state.
     ///
     /// # Errors
     /// [`MotionError::Invalid`] for non-finite numbers; the cause of the end of the motion, if it
@@ -157,7 +157,7 @@ impl AsynchronousControl {
         Ok(())
     }
 
-    /// Returns how far the newest target has been followed.
+    /// Returns the progress towards the newest target.
     pub fn status(&self) -> TargetStatus {
         if self.end.clone().now_or_never().is_some() {
             return TargetStatus::Aborted(AbortReason::Ended);
@@ -165,15 +165,15 @@ impl AsynchronousControl {
         self.status_in(&self.robot.state())
     }
 
-    /// Resolves when the newest target is reached. It has no time limit, as only the robot knows
-    /// how long the way takes.
+    /// Resolves when the newest target is reached. Has no time limit, because only the robot knows
+    /// the duration.
     ///
     /// # Errors
-    /// The cause of an earlier end of the motion; never [`MotionError::Goal`], as the robot does
-    /// the planning.
+    /// The cause of an earlier end of the motion. [`MotionError::Goal`] never comes, because the
+    /// robot does the planning.
     ///
     /// # Cancel safety
-    /// Nothing is lost: the robot continues.
+    /// Nothing is lost: the robot continues to move.
     pub async fn reached(&self) -> Result<(), MotionError> {
         let mut states = self.robot.states();
         loop {
@@ -191,9 +191,9 @@ impl AsynchronousControl {
         }
     }
 
-    /// Ends the motion at the newest target, or where the arm is without one, and resolves when the
-    /// robot has ended it. Best after [`Self::reached`]: the robot may refuse to end a motion that
-    /// still moves.
+    /// Ends the motion at the newest target, or without one where the arm is, and resolves when the
+    /// robot has ended the motion. Await [`Self::reached`] before: the robot may refuse to end a
+    /// motion of an arm that still moves.
     ///
     /// # Errors
     /// The cause of another end of the motion.
@@ -228,7 +228,7 @@ impl Drop for AsynchronousControl {
     }
 }
 
-/// The error of a request that the end of the motion leaves unanswered.
+/// Returns the error for a request that the end of the motion leaves unanswered.
 fn end_of(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Stopped)
 }

@@ -1,4 +1,4 @@
-//! Blocking versions for programs without async: [`Wait::wait`] in the place of `.await`, and
+//! Blocking versions for programs without async: [`Wait::wait`] instead of `.await`, and
 //! [`WaitEach::wait_each`] for streams.
 //!
 //! ```no_run
@@ -31,8 +31,8 @@
 //! | `set`, of an [`Arm`](crate::Arm) | `try_set`, which never waits |
 //! | `state`, `pose`, `target`, `reference`, `stats`; [`Deadman`](crate::goal::Deadman) | the same: none of them waits |
 //!
-//! Two motions at a time, or one and the sender of its targets, take two threads, as they take two
-//! tasks with async:
+//! Two motions at a time need two threads, as they need two tasks with async. So do a motion and
+//! the sender of its targets:
 //!
 //! ```no_run
 //! use franka_async::blocking::{Wait, WaitEach, targets};
@@ -53,8 +53,8 @@
 //! # }
 //! ```
 //!
-//! The tasks of a connection run on a thread in the background, one for all connections of the
-//! process. It is started by the first wait.
+//! The tasks of all connections of the process run on one thread in the background. The first wait
+//! starts this thread.
 
 use std::future::IntoFuture;
 use std::sync::OnceLock;
@@ -71,14 +71,14 @@ pub trait Wait: IntoFuture + Sized {
     /// Waits until the future resolves.
     ///
     /// # Panics
-    /// On a thread that runs async tasks, which it would block: `.await` it there. If the system
-    /// starts no thread for the background.
+    /// On a thread that runs async tasks, because the wait would block them: use `.await` there.
+    /// Also if the system cannot start the background thread.
     fn wait(self) -> Self::Output {
         background().block_on(self.into_future())
     }
 
-    /// Waits for `timeout` at most. After that the future is dropped, which brakes the arm if it is
-    /// a motion, and this returns `None`.
+    /// Waits for `timeout` at most. After that the future is dropped and this returns `None`.
+    /// Dropping the future of a motion brakes the arm.
     ///
     /// # Panics
     /// As [`Self::wait`].
@@ -91,7 +91,7 @@ pub trait Wait: IntoFuture + Sized {
 
 impl<F: IntoFuture> Wait for F {}
 
-/// Iterates over a stream on the calling thread. For every stream of this crate.
+/// Iterates over a stream on the calling thread. Implemented for every stream of this crate.
 pub trait WaitEach: Stream + Unpin + Sized {
     /// Returns an iterator that waits, for each item, until the stream yields it; it ends where the
     /// stream ends.
@@ -117,22 +117,22 @@ impl<S: Stream + Unpin> Iterator for Each<S> {
     }
 }
 
-/// Sends the newest target to the motion that follows it. Dropping it ends the motion at the last
-/// target.
+/// Sends the newest target to the motion that follows the channel. Dropping the sender ends the
+/// motion at the last target.
 #[derive(Debug)]
 pub struct Targets<T>(watch::Sender<T>);
 
 impl<T> Targets<T> {
-    /// Replaces the target, even if it has not been taken yet. Never waits. Returns true if there
-    /// is a motion to take it, or will be one.
+    /// Replaces the target, even if no motion has read it yet. Never waits. Returns true while the
+    /// receiving end exists: a motion follows the channel, or may do so later.
     pub fn send(&self, target: T) -> bool {
         self.0.send(target).is_ok()
     }
 }
 
-/// Returns a sender of targets, of which `first` is there already, and a channel for the newest
-/// target. [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) take
-/// that channel.
+/// Returns a sender of targets and a channel with the newest target, at first `first`.
+/// [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) accept that
+/// channel.
 pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
     let (sender, receiver) = watch::channel(first);
     (Targets(sender), receiver)

@@ -21,11 +21,11 @@ use crate::user_value::UserValue;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum VersionPolicy {
-    /// Announce the newest version; if the robot refuses it and names an older version that is
-    /// known, announce that version.
+    /// Announce the newest version. If the robot refuses it and names an older version that this
+    /// driver knows, announce that version.
     #[default]
     Negotiate,
-    /// This one and no other.
+    /// Announce this version and no other.
     Exact(Version),
 }
 
@@ -91,9 +91,9 @@ impl Builder {
         self
     }
 
-    /// Sets whether the control thread must get what it asks the operating system for: `SCHED_FIFO`
-    /// on a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default; [`Realtime::Ignore`] suits
-    /// simulators.
+    /// Sets whether connecting fails if the operating system refuses the control thread its
+    /// requests: `SCHED_FIFO` on a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default;
+    /// [`Realtime::Ignore`] suits simulators.
     pub fn realtime(mut self, realtime: Realtime) -> Self {
         self.scheduling.realtime = realtime;
         self
@@ -107,7 +107,7 @@ impl Builder {
         self
     }
 
-    /// Sets the processor of the control thread; any by default.
+    /// Sets the processor of the control thread; any processor by default.
     pub fn cpu(mut self, cpu: usize) -> Self {
         self.scheduling.cpu = Some(cpu);
         self
@@ -133,17 +133,17 @@ impl Builder {
         self
     }
 
-    /// Sets the bytes of the control thread's stack that get their pages before the first cycle:
-    /// 512 KiB by default, 64 MiB at most. The thread's stack is larger by a reserve. For control
-    /// functions that use more. A size out of range is refused as
+    /// Sets how many bytes of the control thread's stack get their pages before the first cycle:
+    /// 512 KiB by default, 64 MiB at most. The whole stack is larger by a reserve. Control
+    /// functions that use much stack need more. A size out of range is refused as
     /// [`ConnectError::Realtime`](crate::error::ConnectError::Realtime).
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
     }
 
-    /// Polls the network card for `duration` before each wait for a state, in whole microseconds:
-    /// `SO_BUSY_POLL`, 1 to 900 us; not at all by default. The kernel requires `CAP_NET_ADMIN`. Its
+    /// Polls the network card for `duration` before each wait for a state, by `SO_BUSY_POLL`: 1 to
+    /// 900 us, in whole microseconds; not at all by default. The kernel requires `CAP_NET_ADMIN`. A
     /// refusal is an error under [`Realtime::Enforce`] and ignored under [`Realtime::Ignore`];
     /// [`Robot::granted`] reports it.
     pub fn busy_poll(mut self, duration: Duration) -> Self {
@@ -153,18 +153,18 @@ impl Builder {
 
     /// Sets the silence of the robot after which a running motion fails with `LinkLost`: 20 ms to
     /// 10 s, 1 s by default. Longer timeouts are for a simulated robot on a busy host, which may
-    /// delay it for as long. Anything else is refused as
+    /// delay the robot for as long. Other values are refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). Detection may take
-    /// up to a quarter longer. A motion that no state shows within 5 s still fails.
+    /// up to a quarter longer. A motion that no state shows within 5 s fails in any case.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
     }
 
     /// Sets whether to compute with the vendor's published constants in any case; off by default.
-    /// By default a Franka Research 3 is asked for its description, and the limits in there are
-    /// kept. For a robot whose description this driver refuses, once you know that its arm has
-    /// these constants. A Franka Emika Robot has no description.
+    /// By default the driver asks a Franka Research 3 for its description and keeps the limits in
+    /// it. Use the constants for a robot whose description this driver refuses, once you know that
+    /// its arm has them. A Franka Emika Robot has no description.
     pub fn nominal_model(mut self, nominal: bool) -> Self {
         self.nominal_model = nominal;
         self
@@ -172,19 +172,19 @@ impl Builder {
 
     /// Connects to a robot whose reported poses disagree with its model, for any of the known
     /// [lengths](crate::model::geometry::Lengths::KNOWN). Off by default: such a robot is refused
-    /// as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals lead to poses as
-    /// the robot reports them, in simulation with errors of up to 1 mm and 3 mrad. Inverse
-    /// kinematics, clearances and previews are off by the error. [`Robot::geometry_check`] returns
-    /// it, and a warning (`tracing`) states it.
+    /// as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals move the arm to
+    /// poses as the robot reports them, in simulation with errors of up to 1 mm and 3 mrad. Inverse
+    /// kinematics, clearances and previews are wrong by the error of the geometry.
+    /// [`Robot::geometry_check`] returns that error, and a warning (`tracing`) states it.
     pub fn accept_geometry_error(mut self, accept: bool) -> Self {
         self.accept_geometry_error = accept;
         self
     }
 
     /// Sets how many of the last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default. 0 for none, and then
-    /// without the success rate in its text. At most 10 000, which is ten seconds; more is refused
-    /// as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
+    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default, and at most 10 000,
+    /// which is ten seconds. With 0, the text of the error has no success rate. A larger number is
+    /// refused as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
     /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
@@ -192,37 +192,38 @@ impl Builder {
     }
 
     /// Begins with an earlier result of [`Robot::identify`] for this arm, so that the first motion
-    /// is compensated as later ones are. The load counts to the extent that it is not declared when
-    /// that motion begins. By default nothing is known. An arm of another kind and implausible
-    /// numbers are refused as [`ConnectError::Known`](crate::error::ConnectError::Known).
+    /// is compensated like later ones. Of the identified load, only the part counts that is not
+    /// declared when that motion begins. By default nothing is known. An arm of another kind and
+    /// implausible numbers are refused as
+    /// [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
         self
     }
 
     /// Supervises the robot: reconnects when the connection is lost, and recovers the robot from
-    /// reflexes, as the policy states. Handles continue from connection to connection;
-    /// [`Robot::events`] and [`Robot::health`] report what happens. No earlier motion resumes.
-    /// [`connect`](Self::connect) itself is not repeated.
+    /// reflexes, as the policy states. Handles stay valid across connections. [`Robot::events`] and
+    /// [`Robot::health`] report reconnects and recoveries. No earlier motion resumes. A failed
+    /// [`connect`](Self::connect) is not repeated.
     ///
     /// The settings of this program (load, frames, thresholds, impedance, guiding mode, filters)
-    /// are sent again after each reconnect, once the robot is idle, and compared with its states
-    /// where they show them. Motions begin after that. If the robot does not accept a setting,
-    /// motions are refused as [`Unready::NotConfigured`](crate::error::Unready::NotConfigured)
-    /// until it does; see
+    /// are sent again after each reconnect, once the robot is idle. The driver compares them with
+    /// the robot's states where these show them. Motions begin after that. If the robot does not
+    /// accept a setting, motions are refused as
+    /// [`Unready::NotConfigured`](crate::error::Unready::NotConfigured) until it does; see
     /// [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
     pub fn supervise(mut self, policy: Policy) -> Self {
         self.policy = Some(policy);
         self
     }
 
-    /// Asks `agrees` before each recovery that the policy allows, with the reflex and, if it ended
-    /// a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose). Implies
-    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs on a thread for
-    /// blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the
-    /// robot waits for its answer, and nothing else does, except a runtime that is dropped. An
-    /// answer that comes too late has no effect: see [`Robot::agree`]. A function that panics does
-    /// not agree. Without [`Self::supervise`], connecting fails as
+    /// Asks `agrees` before each recovery that the policy allows. The argument is the reflex and,
+    /// if it ended a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose).
+    /// Implies [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a
+    /// thread for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its
+    /// time: only the recovery waits for the answer, and a runtime that is dropped. An answer that
+    /// comes too late has no effect: see [`Robot::agree`]. A function that panics does not agree.
+    /// Without [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(
         mut self,
@@ -234,8 +235,9 @@ impl Builder {
     }
 
     /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the
-    /// motion, closes. For programs that end all their tasks by one token; also await `shutdown`,
-    /// to know when it is done. Connecting itself continues: drop its future to give it up.
+    /// motion, closes. For programs that end all their tasks by one token. Also await `shutdown`,
+    /// to know when the connection has ended. The token does not end connecting itself: drop its
+    /// future to give it up.
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self

@@ -1,11 +1,10 @@
-//! Cancelling and pausing of motions, and the effect on a moving arm. Dropping the future of a
-//! motion cancels it.
+//! Cancelling and pausing of motions. Dropping the future of a motion cancels it.
 //!
 //! A motion towards goals is braked within the robot's limits, and so is a session before it ends.
-//! A control function or program is ended by stopping the robot. All of it is one input to the
-//! bridge, which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's
-//! future is the `Drop` of `Moving`, in `move_to`. Handles that cancel when dropped are in
-//! `session`, `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
+//! A control function or program is ended by stopping the robot. Each request is one input to the
+//! bridge, which acts after `cancel` or `drop` has returned. The `Drop` of a motion's future is the
+//! `Drop` of `Moving`, in `motion`. Handles that cancel when dropped are in `session`,
+//! `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`, decides what happens.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -18,15 +17,15 @@ use tokio_util::sync::CancellationToken;
 use crate::input::{Beginning, Input};
 use crate::robot::{Robot, WeakRobot};
 
-/// Takes a motion back: an arm on its way to a goal brakes, and for a control function or program
-/// the robot is stopped. Clones take back the same motion. None of them counts as a handle of the
-/// robot: dropping the last one of those still brakes the arm and closes the connection.
+/// Cancels a motion from elsewhere. An arm on its way to a goal brakes; for a control function or
+/// program, the robot is stopped. Clones cancel the same motion. A canceller does not count as a
+/// handle of the robot: dropping the last [`Robot`] still brakes the arm and closes the connection.
 #[derive(Clone, Debug)]
 pub struct Canceller {
     robot: WeakRobot,
     id: GoalId,
     cancelled: CancellationToken,
-    /// True if it should pause; locked while that is sent.
+    /// True if the motion should pause; locked while the request is sent.
     paused: Arc<Mutex<bool>>,
 }
 
@@ -42,8 +41,8 @@ impl Canceller {
     }
 
     /// Brakes the motion, which resolves as [`MotionError::Stopped`](crate::MotionError::Stopped).
-    /// A motion that has not begun never begins, and resolves likewise when it is awaited. Without
-    /// effect after the motion has ended or was superseded.
+    /// A motion that has not begun never begins, and resolves likewise when it is awaited. The call
+    /// has no effect after the motion has ended or was superseded.
     pub fn cancel(&self) {
         self.cancelled.cancel();
         // A robot that is gone has braked its motions.
@@ -68,7 +67,7 @@ impl Canceller {
         self.paused.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The robot, unless its last handle was dropped.
+    /// Returns the robot, unless its last handle was dropped.
     pub(crate) fn robot(&self) -> Option<Robot> {
         self.robot.upgrade()
     }
@@ -77,8 +76,8 @@ impl Canceller {
         self.id
     }
 
-    /// Begins `motion` of its robot, unless it is cancelled already. Returns the receiver of its
-    /// outcome.
+    /// Begins `motion` of its robot, unless this canceller was used already. Returns the receiver
+    /// of the outcome.
     pub(crate) fn begin(
         &self,
         robot: &Robot,
@@ -103,7 +102,7 @@ impl Canceller {
     }
 }
 
-/// Cancels a motion when dropped, unless it was defused.
+/// Cancels a motion when this value is dropped, unless it was defused.
 pub(crate) struct CancelOnDrop<'a>(Option<(&'a Robot, GoalId)>);
 
 impl<'a> CancelOnDrop<'a> {

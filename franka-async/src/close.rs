@@ -9,7 +9,7 @@ use franka_rt::lifecycle::CloseReason;
 pub(crate) struct Closing(Arc<OnceLock<CloseReason>>);
 
 impl Closing {
-    /// Notes the reason, unless there is one already; returns the reason that counts.
+    /// Notes the reason, unless an earlier one is there; returns the first reason.
     pub(crate) fn note(&self, reason: CloseReason) -> CloseReason {
         self.0.get_or_init(|| reason).clone()
     }

@@ -13,7 +13,7 @@ use tokio_util::codec::{Decoder, Encoder, Framed};
 
 use crate::world::{self, Stream};
 
-/// Time in which a request must leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
+/// Time in which a request must be sent. Source: `SO_SNDTIMEO` of libfranka's command socket.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Cuts the stream into messages, and writes requests to it.
@@ -23,12 +23,12 @@ pub(crate) struct MessageCodec {
 }
 
 impl MessageCodec {
-    /// The robot's stream.
+    /// The codec for the robot's stream.
     pub(crate) const ROBOT: Self = Self {
         next: framing::next_message,
     };
 
-    /// The stream of an end effector: its headers are shorter.
+    /// The codec for the stream of an end effector, whose headers are shorter.
     pub(crate) const END_EFFECTOR: Self = Self {
         next: gripper::next_message,
     };
@@ -50,7 +50,7 @@ impl Frame {
     }
 }
 
-/// Sends a request. An error is the reason why the connection can no longer be used.
+/// Sends a request. The error is the reason why the connection can no longer be used.
 pub(crate) async fn send(
     stream: &mut Framed<Stream, MessageCodec>,
     request: Outgoing,
@@ -105,7 +105,7 @@ impl Decoder for MessageCodec {
         Ok(Some(Frame { header, payload }))
     }
 
-    /// A stream that ends within a message has also ended; this is no failure to read it.
+    /// Reports a stream that ends within a message as ended, not as failed to read.
     fn decode_eof(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
         let frame = self.decode(received)?;
         if frame.is_none() {

@@ -2,9 +2,9 @@
 //! replies.
 //!
 //! Replies match by command id. Every request has a deadline except `Move`, whose two replies
-//! belong to the lifecycle of the motion. Motions have a separate queue and separate places, so
-//! that no number of other requests delays a stop. When the connection ends, pending and later
-//! calls return the reason.
+//! belong to the lifecycle of the motion. Motions have a separate queue and reserved places, so
+//! other requests never delay a stop. When the connection ends, pending and later calls return the
+//! reason.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -28,25 +28,25 @@ use crate::error::CommandError;
 use crate::journal::{Journal, What};
 use crate::world::{self, Instant, Stream};
 
-/// Requests that may wait for the task. A caller beyond that waits for room.
+/// Number of requests that may wait for the task. Further callers wait for room.
 const CAPACITY: usize = 32;
 
-/// Requests of callers that may wait for their answers: two places are a motion's, for its `Move`
-/// and its `StopMove`.
+/// Number of callers' requests that may wait for answers. Two places are reserved for a motion's
+/// `Move` and `StopMove`.
 const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 
-/// The way to the task. Clones share it.
+/// Sender of requests to the task. Clones share the task.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
     calls: mpsc::Sender<QueuedRequest>,
-    /// Unbounded, and yet bounded: two requests per motion, and motions follow one another.
+    /// Unbounded, but in practice short: two requests per motion, and motions follow one another.
     motions: mpsc::UnboundedSender<QueuedRequest>,
     closing: Closing,
     #[cfg(feature = "record")]
     journal: Journal,
 }
 
-/// The task itself, owned by the bridge.
+/// The task, owned by the bridge.
 #[derive(Debug)]
 pub(crate) struct Connection {
     task: JoinHandle<()>,
@@ -83,13 +83,13 @@ pub(crate) enum Report {
     Closed { reason: CloseReason },
 }
 
-/// Answer to a request that is not a motion, if it is not refused.
+/// Answer of the robot to a request that is not a motion and was not refused.
 #[derive(Debug)]
 pub(crate) enum Response {
     Done,
     /// The robot's description, URDF.
     Model(Vec<u8>),
-    /// The model library, in the format of the system that was named.
+    /// The model library, in the format of the requested system.
     Library(Vec<u8>),
     Wall(VirtualWall),
 }
@@ -102,9 +102,9 @@ struct QueuedRequest {
 
 #[derive(Debug)]
 enum ReplyTo {
-    /// The motion's lifecycle: its replies go to the bridge, without a deadline.
+    /// The lifecycle of a motion: replies go to the bridge, without a deadline.
     Motion(MotionId),
-    /// The reply is discarded: the lifecycle sends `StopMove` and watches the states instead.
+    /// No reader: the lifecycle sends `StopMove` and watches the states instead.
     Discarded,
     Caller {
         answer: oneshot::Sender<Result<Response, CommandError>>,
@@ -144,7 +144,7 @@ impl Channel {
         (channel, Connection { task, close }, inbox)
     }
 
-    /// Makes it write requests and their answers to this journal.
+    /// Makes the channel write requests and their answers to this journal.
     #[cfg(feature = "record")]
     pub(crate) fn with_journal(mut self, journal: Journal) -> Self {
         self.journal = journal;
@@ -163,7 +163,8 @@ impl Channel {
         self.call_in_turn(request, deadline, ()).await
     }
 
-    /// As [`Self::call`], and drops `turn` once the request has its place among all that are sent.
+    /// As [`Self::call`]; also drops `turn` once the request has its place in the order of
+    /// requests.
     ///
     /// # Cancel safety
     /// As [`Self::call`].
@@ -202,7 +203,7 @@ impl Channel {
     }
 
     /// Sends a request on behalf of a motion, ahead of all requests that wait for room. Replies to
-    /// a `Move` come as [`Report`]s; the end of the channel has its own report.
+    /// a `Move` come as [`Report`]s, as does the end of the channel.
     pub(crate) fn send(&self, motion: MotionId, request: Request) {
         let reply_to = match request {
             Request::Move(_) => ReplyTo::Motion(motion),
@@ -217,7 +218,7 @@ impl Channel {
         }
     }
 
-    /// Reason for the end of the connection, once it has ended.
+    /// Returns the reason for the end of the connection, once it has ended.
     pub(crate) fn closing(&self) -> &Closing {
         &self.closing
     }
@@ -358,8 +359,8 @@ impl CommandTask {
         self.pending.insert(id, waiting);
     }
 
-    /// Gives up waiting for motions that have ended for the lifecycle: it begins one after the
-    /// other.
+    /// Stops waiting for replies to motions that have ended for the lifecycle, which begins one
+    /// motion after the other.
     fn forget_motions(&mut self) {
         let over = self
             .pending

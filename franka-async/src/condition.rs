@@ -1,8 +1,8 @@
-//! Conditions that end a motion ([`until`](crate::Motion::until)), and the values that were seen
-//! when one became true.
+//! Conditions that end a motion ([`until`](crate::Motion::until)), and the measured values at the
+//! moment when a condition became true.
 //!
-//! The control thread looks at the condition in every cycle: however busy the program is, the arm
-//! brakes within the next millisecond.
+//! The control thread checks the condition in every cycle. The arm brakes within the next
+//! millisecond, however busy the program is.
 
 pub use franka_rt::session::condition::{
     Axis, Condition, Quantity, cartesian_contact, collision, contact, elapsed, force, force_x,

@@ -38,7 +38,8 @@ impl Builder {
     /// and a third one for supervision.
     ///
     /// # Errors
-    /// [`ConnectError`]; nothing is left behind. Nothing is tried twice, supervised or not.
+    /// [`ConnectError`]; nothing is left behind. No step is tried twice, with supervision or
+    /// without.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.

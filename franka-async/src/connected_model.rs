@@ -21,11 +21,12 @@ use crate::parameters;
 use crate::robot::Robot;
 use crate::state_model::nominal;
 
-/// Time for a library to come over the network.
+/// Time for the download of a library.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
-/// The model of the arm, from its description if it has one and the description is wanted, with a
-/// hash of it. Otherwise the constants of its kind.
+/// Returns the model of the arm and a hash of the robot's description. The model comes from the
+/// description if there is one and it is wanted. Otherwise it has the constants of the kind of
+/// robot.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -40,7 +41,7 @@ pub(crate) async fn of(
     Ok((nominal(version), None))
 }
 
-/// The model of the arm: the constants of its kind.
+/// Returns the model of the arm, with the constants of the kind of robot.
 #[cfg(not(feature = "urdf"))]
 pub(crate) async fn of(
     version: Version,
@@ -59,7 +60,7 @@ impl Robot {
     /// asking the robot.
     ///
     /// # Cancel safety
-    /// Nothing is lost but the answer.
+    /// Only the answer is lost.
     pub async fn load_model_library(
         &self,
         architecture: Architecture,
@@ -94,10 +95,10 @@ mod library {
         /// [`ModelLibraryError`].
         ///
         /// # Cancel safety
-        /// Nothing is lost but the answer.
+        /// Only the answer is lost.
         ///
         /// # Safety
-        /// The robot must be allowed to run code in this process: see [`ModelLibrary::load`].
+        /// You must trust the robot to run code in this process: see [`ModelLibrary::load`].
         pub async unsafe fn model_library(&self) -> Result<ModelLibrary, ModelLibraryError> {
             let architecture = host_architecture().ok_or(LibraryError::Architecture)?;
             let bytes = self.load_model_library(architecture, System::Linux).await?;
@@ -106,7 +107,7 @@ mod library {
         }
     }
 
-    /// Name of the processor that this was compiled for in the protocol, if it has one.
+    /// Returns the protocol's name of the processor that this was compiled for, if it has one.
     fn host_architecture() -> Option<Architecture> {
         Some(match std::env::consts::ARCH {
             "x86_64" => Architecture::X64,

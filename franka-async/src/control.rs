@@ -2,9 +2,9 @@
 //!
 //! * [`Control`]: a function that the real-time thread calls with every state. The call is a
 //!   future: [`Robot::control_torques`](crate::Robot::control_torques) and its siblings.
-//! * [`Active`]: the same from a thread of the program, which reads states and writes commands.
+//! * [`Active`]: the same in a thread of the program, which reads states and writes commands.
 //! * [`AsynchronousControl`]: sparse joint targets between which the robot plans.
-//! * [`slot`]: how values get into a control function, which must not lock.
+//! * [`slot`]: passes values into a control function, which must not lock.
 
 pub use crate::active_control::Active;
 pub use crate::asynchronous_control::{AsynchronousControl, AsynchronousOptions};

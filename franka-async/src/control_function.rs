@@ -20,14 +20,14 @@ use crate::robot::Robot;
 use crate::user_value::UserValue;
 
 impl Robot {
-    /// Control by torques alone: `function` gets every state, and the robot's time since the
-    /// previous state, which is zero at first and more than a millisecond after a loss. It returns
-    /// [`Torques`], or `torques.finish()` for the last.
+    /// Returns control by torques alone. `function` receives every state, and the robot's time
+    /// since the previous state: zero at first, and more than a millisecond after a loss. It
+    /// returns [`Torques`], or `torques.finish()` for the last torques.
     ///
-    /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer:
-    /// it must not lock, allocate, print or wait. If it panics, the robot is asked to stop and the
-    /// motion resolves as [`MotionError::Panicked`](crate::MotionError::Panicked); the thread lives
-    /// on.
+    /// The function runs on the real-time thread, once a millisecond, and has some 300 us to
+    /// answer: it must not lock, allocate, print or wait. If the function panics, the driver asks
+    /// the robot to stop, and the motion resolves as
+    /// [`MotionError::Panicked`](crate::MotionError::Panicked). The thread continues.
     pub fn control_torques<R: Into<Next<Torques>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -38,9 +38,9 @@ impl Robot {
         )
     }
 
-    /// Control by joint positions for the robot's own controller. See [`Self::control_torques`] for
-    /// the rules of a function, and [`Control::controller`] and [`Control::with_torques`] for the
-    /// source of the torques.
+    /// Returns control by joint positions for the robot's own controller. See
+    /// [`Self::control_torques`] for the rules of a function, and [`Control::controller`] and
+    /// [`Control::with_torques`] for the source of the torques.
     pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -48,7 +48,7 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Control by joint velocities; otherwise like [`Self::control_joint_positions`].
+    /// Returns control by joint velocities; otherwise like [`Self::control_joint_positions`].
     pub fn control_joint_velocities<R: Into<Next<JointVelocities>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -56,7 +56,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Control by poses of the end effector; otherwise like [`Self::control_joint_positions`].
+    /// Returns control by poses of the end effector; otherwise like
+    /// [`Self::control_joint_positions`].
     pub fn control_cartesian_pose<R: Into<Next<CartesianPose>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -64,7 +65,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Control by twists of the end effector; otherwise like [`Self::control_joint_positions`].
+    /// Returns control by twists of the end effector; otherwise like
+    /// [`Self::control_joint_positions`].
     pub fn control_cartesian_velocities<R: Into<Next<CartesianVelocities>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -83,14 +85,14 @@ impl Robot {
     }
 }
 
-/// A motion under a control function, before it begins: nothing is sent until it is awaited or
-/// detached.
+/// A motion under a control function, before it begins: nothing is sent until the value is awaited
+/// or detached.
 ///
-/// Awaiting it resolves when the function has finished and the robot has ended the motion. Unlike
-/// goals, it neither supersedes the current motion nor is superseded. It is refused as
-/// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and so is
-/// everything else while it does. **Dropping the future stops the robot**; the function may still
-/// be called for the few cycles that this takes.
+/// The future resolves when the function has finished and the robot has ended the motion. Unlike
+/// goals, a control function neither supersedes a motion nor is superseded. It is refused as
+/// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and other
+/// motions are refused while it runs. **Dropping the future stops the robot**; the function may
+/// still be called for the few cycles that this takes.
 ///
 /// `.await` takes it as it is. Functions that take a future, such as `tokio::spawn`,
 /// `tokio::time::timeout` and `block_on`, need its `.into_future()`.
@@ -120,14 +122,15 @@ impl Control {
     }
 
     /// Sets which of the robot's own controllers follows the commands; joint impedance by default.
-    /// Without effect where torques are commanded. The external one needs [`Self::with_torques`].
+    /// Has no effect if torques are commanded. The external controller needs
+    /// [`Self::with_torques`].
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
     }
 
-    /// Adds torques to the commands to the motion generator, in the place of the robot's own
-    /// controller. Control that has torques already uses the new function alone.
+    /// Adds torques to the commands to the motion generator; they replace the robot's own
+    /// controller. If torques are set already, the new function replaces the old one.
     pub fn with_torques<R: Into<Next<Torques>>>(
         mut self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -136,26 +139,26 @@ impl Control {
         self
     }
 
-    /// Sets whether commands pass the limiter; by default they do for protocol 5 and do not for
-    /// protocol 10, as in libfranka.
+    /// Sets whether commands pass the rate limiter. By default they pass it for protocol 5 and not
+    /// for protocol 10, as in libfranka.
     pub fn limit_rate(mut self, limit: bool) -> Self {
         self.limit_rate = limit;
         self
     }
 
     /// Sets the cutoff of the low-pass filter, `[Hz]`: 100 by default; 1000 and more switch it off.
-    /// With a cutoff that is not above zero, the motion ends with its first command.
+    /// A cutoff that is not above zero ends the motion with its first command.
     pub fn cutoff_frequency(mut self, cutoff_frequency: f64) -> Self {
         self.cutoff_frequency = cutoff_frequency;
         self
     }
 
     /// Begins together with the motions of other robots, see
-    /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all are
-    /// there. Until then the driver holds the arm: by the desired joint positions or pose of the
-    /// robot, by velocities of zero, by torques of zero, which leave it to the robot's gravity
-    /// compensation. The function's first call still has a time step of zero. The report's duration
-    /// includes the wait.
+    /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all
+    /// motions are ready. Until then the driver holds the arm with the robot's own desired joint
+    /// positions or pose, with velocities of zero, or with torques of zero. With torques of zero,
+    /// the robot's gravity compensation alone holds it. The function's first call still has a time
+    /// step of zero. The report's duration includes the wait.
     ///
     /// # Cancel safety
     /// See [`Motion::start_with`](crate::Motion::start_with).
@@ -164,7 +167,7 @@ impl Control {
         self
     }
 
-    /// Begins the motion without a future: it continues, and its outcome is only logged.
+    /// Begins the motion without a future: the motion continues, and its outcome is only logged.
     pub fn detach(self) {
         let (robot, canceller) = (self.robot.clone(), self.canceller.clone());
         match self.begin() {
@@ -197,7 +200,7 @@ impl Control {
     }
 }
 
-/// The same function, which the bridge can free with everything that it has captured.
+/// Wraps the function, so that the bridge frees it with everything that it has captured.
 fn kept<R>(
     function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
 ) -> impl FnMut(&RobotState, Duration) -> R + Send + 'static {

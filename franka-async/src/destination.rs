@@ -1,5 +1,4 @@
-//! Destinations of motions: a target, or a place relative to the target or the current pose of the
-//! arm.
+//! Destinations of motions: a target, or an offset from the target or the current pose of the arm.
 
 use franka_model::Model;
 use franka_proto::RobotState;
@@ -8,10 +7,11 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::end_effector_pose::{pose_at, pose_of};
 
-/// Destination of a motion. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, both with
-/// their velocities for a target that moves, from an [`Offset`], or by the functions here.
+/// Destination of a motion. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, from an
+/// [`Offset`], or by the functions here. A pose or joint positions may come with a velocity, for a
+/// target that moves.
 ///
-/// A destination that is not a whole pose is completed by the present target, when the motion
+/// A destination that is not a whole pose is completed from the present target when the motion
 /// begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -22,22 +22,22 @@ pub enum Destination {
     Position(Vector3<f64>),
     /// An orientation of the end effector in the base frame, with the position kept.
     Orientation(UnitQuaternion<f64>),
-    /// Away from the present target, or from the arm.
+    /// A pose at an offset from the present target, or from the arm.
     Offset(Offset),
 }
 
 impl Destination {
-    /// A position of the end effector in the base frame, `[m]`; it keeps its orientation.
+    /// Returns a position of the end effector in the base frame, `[m]`; the orientation stays.
     pub fn position(position: impl Into<Vector3<f64>>) -> Self {
         Self::Position(position.into())
     }
 
-    /// An orientation of the end effector in the base frame; it keeps its position.
+    /// Returns an orientation of the end effector in the base frame; the position stays.
     pub fn orientation(orientation: UnitQuaternion<f64>) -> Self {
         Self::Orientation(orientation)
     }
 
-    /// The target, to the extent that it is known without the current one: its kind is final.
+    /// Returns the target as far as it is known without the current one: its kind is final.
     pub(crate) fn kind(&self) -> Target {
         match self {
             Self::Target(target) => *target,
@@ -47,7 +47,7 @@ impl Destination {
         }
     }
 
-    /// The target, seen from the present poses.
+    /// Returns the target, given the present poses.
     pub(crate) fn seen_from(&self, now: &Now) -> Target {
         let target = now.target;
         match *self {
@@ -75,7 +75,7 @@ impl From<Offset> for Destination {
     }
 }
 
-/// The poses of the end effector that a destination may be relative to, base frame.
+/// The poses of the end effector that a destination may be relative to, in the base frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now {
     /// Pose of the present target.
@@ -85,8 +85,8 @@ pub(crate) struct Now {
 }
 
 impl Now {
-    /// Returns the poses of an arm in `state` that heads for a target. Its reference is at the
-    /// joint positions `reference`, `[rad]`; none if nothing moves it.
+    /// Returns the poses of an arm in `state` that moves to a target. `reference` is the joint
+    /// positions of its reference, `[rad]`; `None` if nothing moves the arm.
     pub(crate) fn of(
         model: &Model,
         state: &RobotState,
@@ -106,8 +106,8 @@ impl Now {
     }
 }
 
-/// A way from the present target of the arm, or from the arm itself, in the axes of the base or of
-/// the end effector.
+/// An offset from the present target of the arm, or from the arm itself, in the axes of the base or
+/// of the end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     way: Isometry3<f64>,
@@ -122,13 +122,13 @@ enum Axes {
 }
 
 impl Offset {
-    /// Moves along the axes of the base frame, `[m]`, and turns about such axes through the end
-    /// effector.
+    /// Returns an offset along the axes of the base frame, `[m]`, with a rotation about these axes
+    /// through the end effector.
     pub fn base(way: impl Into<Isometry3<f64>>) -> Self {
         Self::along(Axes::Base, way.into())
     }
 
-    /// Moves along the axes of the end effector, `[m]`, and turns about them.
+    /// Returns an offset along the axes of the end effector, `[m]`, with a rotation about them.
     pub fn tool(way: impl Into<Isometry3<f64>>) -> Self {
         Self::along(Axes::Tool, way.into())
     }
@@ -142,9 +142,9 @@ impl Offset {
         }
     }
 
-    /// Counts from where the arm is measured to be. By default an offset counts from the target
-    /// that the arm is held at or on its way to, so that several add up exactly; without such a
-    /// target it counts from the arm.
+    /// Makes the offset count from the measured pose of the arm. By default an offset counts from
+    /// the target that the arm is held at or moves to, so that several offsets add up exactly.
+    /// Without such a target it counts from the measured pose.
     #[must_use]
     pub fn from_arm(mut self) -> Self {
         self.from_arm = true;

@@ -1,9 +1,8 @@
 //! The connection to an end effector: one task that owns both of its sockets.
 //!
 //! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked
-//! move minutes. The task sends a stop once the future of the running action
-//! is dropped. States come by UDP at a leisurely pace; a task of the runtime is good
-//! enough for them.
+//! move minutes. The task sends a stop once the future of the running action is dropped. States
+//! come by UDP at a low rate, so a task of the runtime is fast enough for them.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -28,10 +27,10 @@ use crate::journal::{ActionEnd, Journal, What};
 use crate::states::States;
 use crate::world::{self, Datagrams, StatePort, Stream, timeout};
 
-/// States read ahead of an answer, at most.
+/// Largest number of states that are read ahead of an answer.
 const DATAGRAMS: usize = 64;
 
-/// Bytes of the longest datagram that is read.
+/// Length of the longest datagram that is read, in bytes.
 const DATAGRAM_SIZE: usize = 64;
 
 /// Differences between the end effectors.
@@ -44,19 +43,20 @@ pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
 
     fn state(datagram: &[u8]) -> Result<Self::State, DecodeError>;
 
-    /// The device's clock, `[ms]`.
+    /// Returns the device's clock, `[ms]`.
     fn clock(state: &Self::State) -> u32;
 
-    /// Reason why the device cannot carry out the request, if the request is out of its range.
+    /// Returns the reason why the device cannot carry out the request, if the request is out of
+    /// range.
     fn out_of_range(_request: &Self::Request, _state: &Self::State) -> Option<String> {
         None
     }
 
-    /// Journal entry of an action that has ended.
+    /// Returns the journal entry for an action that has ended.
     #[cfg(feature = "record")]
     fn ended(request: Self::Request, ended: ActionEnd) -> What;
 
-    /// Journal entry of a state.
+    /// Returns the journal entry for a state.
     #[cfg(feature = "record")]
     fn seen(state: Self::State) -> What;
 }
@@ -154,11 +154,11 @@ struct QueuedAction<D: Device> {
     answer: ActionReply<D>,
 }
 
-/// The way to the task. Clones share it.
+/// Sender of requests to the task. Clones share the task.
 pub(crate) struct DeviceConnection<D: Device> {
     address: SocketAddr,
-    /// Unbounded, and yet bounded: the task takes requests at once, and refuses those for which the
-    /// session has no place.
+    /// Unbounded, but in practice short: the task reads requests at once, and refuses those for
+    /// which the session has no place.
     calls: mpsc::UnboundedSender<QueuedAction<D>>,
     states: watch::Receiver<D::State>,
     closing: Closing,
@@ -245,7 +245,7 @@ where
         States::new(self.states.clone(), self.closing.clone())
     }
 
-    /// Journal of the actions that have ended.
+    /// Returns the journal of the actions that have ended.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> &Journal {
         &self.journal
@@ -310,9 +310,9 @@ struct DeviceTask<D: Device> {
     socket: Datagrams,
     peer: IpAddr,
     states: watch::Sender<D::State>,
-    /// The newest action, until its answer.
+    /// The newest action, until its answer comes.
     running: Option<(CommandId, ActionReply<D>)>,
-    /// Stops, and actions that newer ones have replaced.
+    /// Stop requests, and actions that newer ones have replaced.
     waiting: HashMap<CommandId, ActionReply<D>>,
     #[cfg(feature = "record")]
     journal: Journal,
@@ -325,7 +325,7 @@ impl<D: Device> DeviceTask<D> {
         closing.note(reason);
     }
 
-    /// Serves until the connection ends; the error is the reason.
+    /// Serves until the connection ends, and returns the reason as the error.
     async fn serve(
         &mut self,
         calls: &mut mpsc::UnboundedReceiver<QueuedAction<D>>,

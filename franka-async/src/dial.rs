@@ -13,8 +13,8 @@ use crate::world::{self, Stream, timeout};
 /// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
 pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Finds the addresses of the host within `limit`, each once, in the order in which to try them;
-/// `port` is the device's port, for an endpoint without one.
+/// Finds the addresses of the host within `limit`, each once, in the order in which to try them.
+/// `port` is the default port, for an endpoint without one.
 pub(crate) async fn resolve<P: Protocol>(
     endpoint: &Endpoint,
     port: u16,
@@ -58,8 +58,8 @@ fn network<P: Protocol>(reason: impl Into<String>) -> ConnectError<P> {
     }
 }
 
-/// Connects to the first of `addresses` that takes a connection, and returns that address. `limit`
-/// holds for each.
+/// Connects to the first of `addresses` that accepts a connection, and returns that address. Each
+/// attempt may take `limit`.
 pub(crate) async fn dial<P: Protocol>(
     addresses: &[SocketAddr],
     limit: Duration,

@@ -1,5 +1,5 @@
-//! Checks of this computer, and its likely faults after a motion that ended because packets were
-//! missing.
+//! Checks of this computer. After a motion that ended because packets were missing, these checks
+//! find the likely causes on this computer.
 //!
 //! ```no_run
 //! # use franka_async::{Robot, doctor};
@@ -12,7 +12,7 @@
 //! # }
 //! ```
 //!
-//! With this feature, a warning of `tracing` also reports such an end, with the causes in its field
+//! With this feature, a `tracing` warning also reports such an end, with the causes in its field
 //! `causes`.
 
 use std::fmt;
@@ -34,7 +34,8 @@ pub use franka_doctor::{DeskState, SelfTest, ask_desk, web};
 
 /// Explanation of a motion that ended because packets were missing.
 ///
-/// `Display` is the diagnosis of the log, if there is one, and a line for each cause on this host.
+/// `Display` prints the diagnosis of the log, if there is one, and a line for each cause on this
+/// host.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HostDiagnosis {
@@ -73,16 +74,16 @@ impl fmt::Display for HostDiagnosis {
 }
 
 /// Explains why a motion of the robot at this address ended because packets were missing, with the
-/// two likeliest causes on this host; `None` if it ended otherwise.
+/// two likeliest causes on this host. `None` if the motion ended for another reason.
 ///
-/// Reads files and asks the driver of the network card, on a thread for blocking work: some
-/// milliseconds.
+/// Reads files and asks the driver of the network card, on a thread for blocking work. This takes
+/// some milliseconds.
 ///
 /// # Panics
 /// Outside of a Tokio runtime.
 ///
 /// # Cancel safety
-/// Dropping the future gives the answer up; nothing is changed.
+/// Dropping the future discards the answer; nothing is changed.
 pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosis> {
     let evidence = evidence(error)?;
     let error = error.clone();
@@ -94,9 +95,9 @@ pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosi
     looked.await.ok()
 }
 
-/// Warns, by an event of `tracing`, of the two likeliest causes on this host. It does so some
-/// milliseconds later, if packets were missing in a motion of the robot at this address, and
-/// warnings are listened to.
+/// Emits a `tracing` warning with the two likeliest causes on this host, if packets were missing in
+/// a motion of the robot at this address. The warning comes some milliseconds later, and only if a
+/// subscriber is interested in warnings.
 pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
     let Some(evidence) = evidence(error).filter(|_| tracing::enabled!(tracing::Level::WARN)) else {
         return;
@@ -119,7 +120,7 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
     }
 }
 
-/// The two likeliest causes on `host`.
+/// Returns the two likeliest causes on `host`.
 fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
     let robot: Option<Ipv4Addr> = match robot {
         IpAddr::V4(address) => Some(address),
@@ -128,7 +129,7 @@ fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
     likely_causes(&Readings::new(host, robot), evidence)
 }
 
-/// Diagnosis from the log.
+/// Returns the diagnosis from the log.
 #[expect(
     clippy::disallowed_methods,
     reason = "this is a thread for blocking work, and no task"
@@ -137,7 +138,7 @@ fn diagnosis(error: &MotionError) -> Option<Diagnosis> {
     error.diagnose()
 }
 
-/// Evidence in an error of packets that did not come in time; `None` without any.
+/// Returns the evidence in an error of packets that did not come in time; `None` without evidence.
 fn evidence(error: &MotionError) -> Option<Evidence> {
     match error {
         MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
@@ -150,7 +151,7 @@ fn evidence(error: &MotionError) -> Option<Evidence> {
     }
 }
 
-/// Evidence in the errors of a robot, after a motion with `overruns` commands that left too late.
+/// Returns the evidence in a robot's errors, after a motion with `overruns` commands sent too late.
 fn of_errors(errors: Errors, overruns: u64) -> Option<Evidence> {
     if !errors.contains(RobotError::CommunicationConstraintsViolation) {
         return None;

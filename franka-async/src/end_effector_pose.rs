@@ -5,14 +5,13 @@ use franka_proto::RobotState;
 use franka_rt::session::geometry::reported_end_effector;
 use nalgebra::Isometry3;
 
-/// `O_T_EE` of a state, if it is a rigid transformation.
+/// Returns `O_T_EE` of a state, if it is a rigid transformation.
 pub(crate) fn pose_of(state: &RobotState) -> Option<Isometry3<f64>> {
     transform::isometry_from_array(&state.O_T_EE)
 }
 
-/// The pose that it has at the joint positions `q`, `[rad]`, with the end effector of `state` as
-/// the robot reports it there. An end effector that is not a rigid transformation counts as the
-/// flange.
+/// Returns the pose of the end effector at the joint positions `q`, `[rad]`, with the end effector
+/// of `state`. An end effector that is not a rigid transformation counts as the flange.
 pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Isometry3<f64> {
     let ee = reported_end_effector(model, state).unwrap_or_default();
     let pose = model.pose(Frame::EndEffector, &q.into(), &ee);

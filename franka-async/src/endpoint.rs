@@ -1,11 +1,11 @@
-//! Endpoints of devices: texts and addresses, and errors in them.
+//! Endpoints of devices: texts and addresses, and the errors in them.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
 /// Endpoint of a device: a host and a port. The default port depends on the device: 1337 for a
-/// robot. A Franka Hand has 1338, a vacuum gripper 1339.
+/// robot, 1338 for a Franka Hand, 1339 for a vacuum gripper.
 ///
 /// Made from an [`IpAddr`], a [`SocketAddr`], or from text:
 ///
@@ -16,9 +16,9 @@ use std::str::FromStr;
 /// | `fe80::2%eth0`, `[fe80::2%3]:40123` | a link-local address with its interface, by name or index |
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
-/// Other text makes an endpoint too, which connecting refuses as
-/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To
-/// find out at once, `parse` it.
+/// Other text makes an endpoint too. Connecting then refuses it as
+/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. Use
+/// `parse` to check a text at once.
 ///
 /// ```
 /// use franka_async::connection::Endpoint;
@@ -62,23 +62,23 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// Caller: a text that is no endpoint.
+/// Caller: a text that is not an endpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EndpointError {
-    /// There is nothing, or nothing before the port.
+    /// The text has no host: the text is empty, or begins with the port.
     #[error("`{text}` has no host: expected a host name or an IP address")]
     NoHost {
-        /// All of it.
+        /// The whole text.
         text: String,
     },
-    /// Text behind the colon.
+    /// The text after the colon is not a port.
     #[error("`{port}` is not a port: expected a number from 1 to 65535")]
     Port {
         /// Text in the place of the port.
         port: String,
     },
-    /// It looks like an address and is not valid.
+    /// The text looks like an address and is not a valid one.
     #[error(
         "`{address}` is not an IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
          port takes brackets, [fd00::2]:1337"
@@ -90,10 +90,10 @@ pub enum EndpointError {
     /// Unclosed `[`, or text after `]` other than `:port`.
     #[error("`{text}` is incomplete: expected [address] or [address]:port")]
     Brackets {
-        /// All of it.
+        /// The whole text.
         text: String,
     },
-    /// No host is called that.
+    /// The text is not a possible host name.
     #[error(
         "`{name}` is not a host name: expected letters, digits, hyphens and dots, without a scheme, a path or blanks"
     )]
@@ -117,12 +117,12 @@ impl Endpoint {
         self
     }
 
-    /// Returns the host, or the error in the text that this was made from.
+    /// Returns the host, or the error in the text that the endpoint was made from.
     pub(crate) fn host(&self) -> Result<&Host, EndpointError> {
         self.host.as_ref().map_err(Clone::clone)
     }
 
-    /// The port, if one is named.
+    /// Returns the port, if the endpoint names one.
     pub fn port(&self) -> Option<u16> {
         self.port
     }
@@ -133,7 +133,7 @@ impl Endpoint {
 }
 
 impl EndpointError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoHost { .. } => "endpoint-no-host",
@@ -182,7 +182,7 @@ fn parse_port(text: &str) -> Result<u16, EndpointError> {
     }
 }
 
-/// A host name or an IPv4 address, out of `text`.
+/// Parses a host name or an IPv4 address; `text` is the whole text.
 fn parse_host(host: &str, text: &str) -> Result<Host, EndpointError> {
     if host.is_empty() {
         return Err(EndpointError::NoHost { text: text.into() });
@@ -208,7 +208,7 @@ fn parse_host(host: &str, text: &str) -> Result<Host, EndpointError> {
     Ok(Host::Name(host.into()))
 }
 
-/// An IPv6 address, with its interface if it has one.
+/// Parses an IPv6 address, with its interface if it has one.
 fn parse_v6(text: &str) -> Result<Host, EndpointError> {
     let (address, interface) = match text.split_once('%') {
         Some((address, interface)) => (address, Some(interface)),

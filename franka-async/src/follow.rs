@@ -39,9 +39,9 @@ pub struct Follow {
 }
 
 impl Robot {
-    /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
-    /// until the sender is dropped, and then stops at the last one. Targets may come at any pace
-    /// and any distance apart: the arm moves within its budget.
+    /// Follows the newest of the targets in `targets`, poses or joint positions `[rad]`, until the
+    /// sender is dropped, and then stops at the last target. Targets may come at any rate and any
+    /// distance apart: the arm moves within its budget.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -49,8 +49,8 @@ impl Robot {
         Follow::new(self.clone(), None, watched(targets))
     }
 
-    /// Follows the newest of the targets that a stream yields; otherwise like [`Self::follow`], and
-    /// see [`Arm::follow_stream`](crate::Arm::follow_stream).
+    /// Follows the newest of the targets that a stream yields; otherwise like [`Self::follow`]. See
+    /// also [`Arm::follow_stream`](crate::Arm::follow_stream).
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -66,7 +66,7 @@ pub(crate) fn streamed<T: Into<Target> + 'static>(
     Box::pin(targets.map(Into::into).fuse())
 }
 
-/// The targets of a watch channel, starting with its present value.
+/// Returns the targets of a watch channel, starting with its present value.
 pub(crate) fn watched<T: Into<Target> + Clone + Send + Sync + 'static>(
     targets: watch::Receiver<T>,
 ) -> Targets {
@@ -88,20 +88,20 @@ impl Follow {
 
     goal_options!(target);
 
-    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default
-    /// nothing does. A target that is further ahead is drawn nearer, in every cycle anew while
-    /// targets come. So a wild target cannot send the arm far once the stream stops.
+    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; unbounded by
+    /// default. A target that is further ahead is moved closer, in every cycle anew while targets
+    /// come. A wrong target then cannot move the arm far once the stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
         self.lead = Some(lead);
         self
     }
 
-    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on. The arm then
-    /// continues to the last target ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]).
-    /// When it rests, the future resolves as [`MotionError::Held`] or [`MotionError::Braked`],
-    /// unless targets come again before that. A target counts even if it equals the previous one.
-    /// The control thread watches this alone. Without a watchdog, the last target is held
-    /// indefinitely.
+    /// Gives up when no target has come for `silence`, in whole milliseconds from 10 on. The arm
+    /// then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
+    /// ([`OnTimeout::Brake`]). When the arm rests, the future resolves as [`MotionError::Held`] or
+    /// [`MotionError::Braked`], unless targets come again before that. A target counts even if it
+    /// equals the previous one. The control thread itself counts the silence. Without a watchdog,
+    /// the arm holds the last target indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,
@@ -110,14 +110,15 @@ impl Follow {
         self
     }
 
-    /// See [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start
+    /// Begins together with the motions of other robots: see
+    /// [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start
     /// replace the first one.
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self
     }
 
-    /// Makes it part of a joint motion.
+    /// Makes the motion part of a joint motion of a team.
     pub(crate) fn in_round(mut self, round: Round) -> Self {
         self.options.round = Some(round);
         self
@@ -213,8 +214,9 @@ async fn end_of(session: Option<&Session>) -> MotionError {
     }
 }
 
-/// The newest of the available targets, once there is one; `None` at the end. For a stream that is
-/// always ready, the last of [`AT_ONCE`]: the caller then gets to wait for something else.
+/// Returns the newest of the available targets, once there is one; `None` at the end. From a stream
+/// that is always ready, returns the last of [`AT_ONCE`], so that the caller can serve other
+/// events.
 async fn newest(targets: &mut Targets) -> Option<Target> {
     let mut newest = targets.next().await?;
     for _ in 1..AT_ONCE {
@@ -226,11 +228,11 @@ async fn newest(targets: &mut Targets) -> Option<Target> {
     Some(newest)
 }
 
-/// Targets taken from a stream before the newest of them is passed on. A stream that yields one per
-/// millisecond, read by a task that was delayed for a quarter of a second, has as many waiting.
+/// Number of targets read from a stream before the newest one is passed on. A stream with one
+/// target per millisecond and a task that is delayed by a quarter of a second reach this number.
 const AT_ONCE: usize = 256;
 
-/// Returns what a stream has at once. Its next poll registers a waker again.
+/// Returns the next item that a stream has ready. Its next poll registers a waker again.
 fn poll_once(targets: &mut Targets) -> Poll<Option<Target>> {
     let mut context = Context::from_waker(std::task::Waker::noop());
     targets.as_mut().poll_next(&mut context)
@@ -240,10 +242,10 @@ impl IntoFuture for Follow {
     type Output = Result<MotionReport, MotionError>;
     type IntoFuture = Pin<Box<dyn Future<Output = Self::Output> + Send>>;
 
-    /// Resolves when the targets have ended and the arm rests at the last one, or with an error. A
-    /// target that is not accepted brakes the arm and ends the motion with [`MotionError::Goal`].
-    /// Before the first target nothing begins, and no watchdog counts; a stream that ends without
-    /// any resolves as [`GoalError::NoTarget`].
+    /// Returns a future that resolves when the targets have ended and the arm rests at the last
+    /// one, or with an error. A target that is not accepted brakes the arm and ends the motion with
+    /// [`MotionError::Goal`]. Before the first target nothing begins, and no watchdog counts. A
+    /// stream that ends without a target resolves as [`GoalError::NoTarget`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

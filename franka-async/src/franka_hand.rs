@@ -10,16 +10,15 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
-/// A connected Franka Hand. It has its own server besides the robot's, and neither waits for the
-/// other.
+/// A connected Franka Hand. The Hand has its own server, independent of the robot's.
 ///
 /// A cheap handle: clones share one connection, from any task or thread. One action runs at a time:
-/// a newer one aborts it, and so does [`Gripper::stop`], from any handle. Dropping the last handle
-/// closes the connection; a grasped object stays grasped.
+/// a newer action or [`Gripper::stop`], from any handle, aborts it. Dropping the last handle closes
+/// the connection; a grasped object stays grasped.
 ///
-/// Actions have no deadline, since some take long: a move that an obstacle blocks takes minutes.
-/// Put `tokio::time::timeout` around an action to give it up, which stops it. If the Hand is out of
-/// reach, the connection's keepalive ends its actions within seconds.
+/// Actions have no deadline, because some take long: a move that an obstacle blocks takes minutes.
+/// Use `tokio::time::timeout` to limit the time of an action; the timeout stops the fingers. If the
+/// Hand is out of reach, the connection's keepalive ends its actions within seconds.
 ///
 /// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the
 /// connection. Everything else may be called and awaited from anywhere.
@@ -29,8 +28,8 @@ pub struct Gripper {
 }
 
 impl Gripper {
-    /// Connects to the Hand at `endpoint`: TCP, handshake, first state; each step may take 1 s. The
-    /// port is 1338 unless given.
+    /// Connects to the Hand at `endpoint`: TCP, handshake, first state. Each step may take 1 s. The
+    /// default port is 1338.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind.
@@ -42,7 +41,7 @@ impl Gripper {
         Ok(Self { connection })
     }
 
-    /// Address of the Hand.
+    /// Returns the address of the Hand.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
     }
@@ -52,19 +51,19 @@ impl Gripper {
         self.connection.journal()
     }
 
-    /// The newest state.
+    /// Returns the newest state.
     pub fn state(&self) -> State {
         self.connection.state()
     }
 
-    /// The newest state as it changes. Ends when the connection does.
+    /// Returns the newest state as it changes. The stream ends when the connection does.
     pub fn states(&self) -> States<State> {
         self.connection.states()
     }
 
-    /// Finds how wide the fingers open: `max_width` of the state. Needed once after power-on and
-    /// after a change of fingers; until then, wider grasps and moves are refused. True if it
-    /// succeeded.
+    /// Measures the opening width of the fingers: `max_width` of the state. Needed once after
+    /// power-on and after a change of fingers; until then, the Hand refuses wider grasps and moves.
+    /// Returns true on success.
     ///
     /// # Errors
     /// [`GripperError`].
@@ -76,7 +75,7 @@ impl Gripper {
         self.connection.act(Request::Homing).await
     }
 
-    /// Moves the fingers to `width` `[m]` at `speed` `[m/s]`. True if they arrived.
+    /// Moves the fingers to `width` `[m]` at `speed` `[m/s]`. Returns true if the fingers arrived.
     ///
     /// # Errors
     /// [`GripperError`].
@@ -89,8 +88,8 @@ impl Gripper {
             .await
     }
 
-    /// Closes the fingers on an object. True if they ended within the tolerances of its width; the
-    /// force stays applied either way, until the next action or a stop.
+    /// Closes the fingers on an object. Returns true if the fingers stopped within the tolerances
+    /// of the object's width. The force stays applied either way, until the next action or a stop.
     ///
     /// # Errors
     /// [`GripperError`].
@@ -102,8 +101,8 @@ impl Gripper {
         self.connection.act(Request::Grasp(grasp)).await
     }
 
-    /// Stops the fingers and releases the object. The action that runs resolves as aborted. True if
-    /// it succeeded.
+    /// Stops the fingers and releases the object. The running action resolves as aborted. Returns
+    /// true on success.
     ///
     /// # Errors
     /// [`GripperError`].

@@ -1,4 +1,4 @@
-//! The model of a connected robot against the poses that the robot reports.
+//! Comparison of the model of a connected robot with the poses that the robot reports.
 
 use std::fmt;
 
@@ -9,11 +9,11 @@ use franka_rt::session::geometry::{RESIDUAL_MAX, residual};
 
 use crate::error::ConnectError;
 
-/// States that are tried until one has the poses of a known geometry: a robot that is guided by
-/// hand may report a pose and joint positions of different moments.
+/// Number of states to try until one has the poses of a known geometry. While a robot is guided by
+/// hand, its pose and joint positions may be of different moments.
 const STATES: usize = 10;
 
-/// Agreement of a robot's model with the poses that the robot reports, found at connect: see
+/// Agreement of a robot's model with the poses that the robot reports, checked when connecting: see
 /// [`Robot::geometry_check`](crate::Robot::geometry_check).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -44,7 +44,7 @@ impl GeometryCheck {
         self.agrees() && self.residual.is_some() && self.used == self.described
     }
 
-    /// Compares this state with `model`, and with the known lengths if that disagrees.
+    /// Compares this state with `model`. If they disagree, also compares the known lengths.
     fn of(model: &Model, state: &RobotState) -> Self {
         let described = *model.lengths();
         let with = |used: Lengths| Self {
@@ -61,7 +61,7 @@ impl GeometryCheck {
     }
 }
 
-/// One sentence for a person.
+/// Prints one sentence for a person.
 impl fmt::Display for GeometryCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -99,7 +99,7 @@ impl fmt::Display for GeometryCheck {
     }
 }
 
-/// Lengths in a sentence for a person.
+/// Prints lengths in a sentence for a person.
 struct Told<'a>(&'a Lengths);
 
 impl fmt::Display for Told<'_> {
@@ -112,17 +112,17 @@ impl fmt::Display for Told<'_> {
     }
 }
 
-/// A model that is compared with states until one has the pose of a known geometry.
+/// A comparison of a model with states, until a state has the poses of a known geometry.
 #[derive(Debug)]
 pub(crate) struct Comparison {
     model: Model,
     best: GeometryCheck,
-    /// States that may still be tried.
+    /// Number of states that may still be tried.
     left: usize,
 }
 
 impl Comparison {
-    /// Begins with the first state.
+    /// Begins the comparison with the first state.
     pub(crate) fn new(model: Model, first: &RobotState) -> Self {
         Self {
             best: GeometryCheck::of(&model, first),
@@ -145,9 +145,9 @@ impl Comparison {
         }
     }
 
-    /// Returns the model with the lengths that the robot computes its poses with, and the result of
-    /// the check. A robot that reports no pose has the lengths that were found `before`, if it
-    /// describes the same ones.
+    /// Returns the model with the lengths of the robot's own poses, and the result of the check. A
+    /// robot that reports no pose has the lengths that were found `before`, if its description has
+    /// the same lengths as then.
     ///
     /// # Errors
     /// [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is `accepted`.

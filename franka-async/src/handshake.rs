@@ -11,8 +11,8 @@ use crate::codec::{MessageCodec, StreamError};
 use crate::error::ConnectError;
 use crate::world::Stream;
 
-/// Asks the peer for its states at `udp_port` and waits for its answer: the connection is open, or
-/// the peer speaks another version.
+/// Announces `udp_port` to the peer, for its states, and waits for the answer: the connection is
+/// open, or the peer has another version.
 pub(crate) async fn shake_hands<P: Protocol>(
     stream: &mut Framed<Stream, MessageCodec>,
     session: &mut Session<P>,

@@ -1,4 +1,4 @@
-//! Torques that an arm takes in addition to its model, measured by a minute of small motions: see
+//! Torques of an arm that its model does not have, measured in a minute of small motions: see
 //! [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
 
 use std::future::IntoFuture;
@@ -16,7 +16,7 @@ use crate::arm::Engage;
 use crate::error::IdentifyError;
 use crate::robot::Robot;
 
-/// Motions that would show friction and bias of the joints and the load at the flange. Made by
+/// Planned motions that measure friction and bias of the joints and the load at the flange. Made by
 /// [`Robot::identify`]; nothing moves before [`Self::run`] is awaited.
 #[derive(Clone, Debug)]
 #[must_use = "an identification does nothing until it is run"]
@@ -26,9 +26,10 @@ pub struct Identify {
 }
 
 impl Robot {
-    /// Plans motions from the present position of the arm that identify it. In each of six poses
-    /// all joints go 0.2 rad to and fro twice, at 0.2 rad/s. The arm must be free to go so far
-    /// ([`Identify::reach`]), and carry the load that it should be identified with.
+    /// Plans motions from the present position of the arm that identify its friction, bias and
+    /// load. In each of six poses all joints move 0.2 rad to and fro twice, at 0.2 rad/s. The space
+    /// around the arm must be free ([`Identify::reach`]), and the arm must carry the load to
+    /// identify.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::Error> {
@@ -51,35 +52,34 @@ impl Robot {
 }
 
 impl Identify {
-    /// Planned motions, in this order; the last one ends where the first one begins. `Display` is a
-    /// line for each.
+    /// Returns the planned motions, in order; the last one ends where the first one begins.
+    /// `Display` prints a line for each.
     pub fn motions(&self) -> &[PlannedMotion] {
         self.plan.motions()
     }
 
-    /// About how long it will take.
+    /// Returns the approximate duration of all motions.
     pub fn duration(&self) -> Duration {
         self.plan.duration()
     }
 
-    /// Distance that the arm will go from where it is. A compliant arm is some millimetres off its
-    /// reference.
+    /// Returns the distance that the motions move the arm from its present position. A compliant
+    /// arm is some millimetres off its reference.
     pub fn reach(&self) -> Reach {
         self.plan.reach()
     }
 
-    /// Moves the arm and returns its identified values. Nothing changes at the robot or in this
-    /// connection, which learns in any motion. Pass the result to
+    /// Moves the arm and returns its identified values. The robot and this connection stay
+    /// unchanged; the connection learns in any motion. Pass the result to
     /// [`Builder::known`](crate::connection::Builder::known) of later connections, and declare the
     /// load by [`Robot::set_load`] if you like.
     ///
     /// # Errors
-    /// [`IdentifyError`] if a motion fails, if the arm is no longer where it was planned from, or
-    /// if something held or pushed it.
+    /// [`IdentifyError`] if a motion fails, if the arm has left the position of the plan, or if
+    /// something held or pushed the arm.
     ///
     /// # Cancel safety
-    /// Dropping the future brakes the arm, in the background, as dropping a motion does; the
-    /// measurements are lost.
+    /// Dropping the future brakes the arm, in the background; the measurements are lost.
     pub async fn run(self) -> Result<Identified, IdentifyError> {
         let Self { robot, plan } = self;
         let state = robot.state();
@@ -125,6 +125,6 @@ impl Identify {
     }
 }
 
-/// Distance that a joint may be from where the motions begin, `[rad]`. The robot's controller lets
-/// it sink less than that after a motion.
+/// Distance that a joint may be from the start of the motions, `[rad]`. Under the robot's
+/// controller a joint sinks by less after a motion.
 const MOVED: f64 = 0.02;

@@ -19,19 +19,19 @@ pub(crate) enum Input {
         motion: Beginning,
         replies: Replies,
     },
-    /// Moves the target of a goal. The reply is whether the goal is still the newest.
+    /// Moves the target of a goal. The reply is true if the goal is still the newest one.
     Update {
         goal: GoalId,
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
-    /// Begins a motion whose outcome is not awaited. The reply is whether it is accepted; the same
-    /// holds for the next two inputs.
+    /// Begins a motion whose outcome is not awaited. The reply reports whether the motion is
+    /// accepted, as do the replies to the next two inputs.
     Set {
         motion: Beginning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Begins the newest waiting motion, if there is one, as `Set`; no caller waits for it.
+    /// Begins the newest waiting motion, if there is one, as `Set` does; no caller waits for it.
     SetNewest {
         waiting: Waiting,
     },
@@ -45,11 +45,11 @@ pub(crate) enum Input {
     Tune {
         id: GoalId,
         tuning: Box<Tuning>,
-        /// Place to keep it for goals to come, once it is accepted.
+        /// Place where accepted tuning is kept for later goals.
         kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Answered when all inputs before it are taken.
+    /// Replies when all earlier inputs are processed.
     Await {
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
@@ -65,16 +65,16 @@ pub(crate) enum Input {
     },
     Cancel {
         goal: GoalId,
-        /// The refused target for which it is taken back.
+        /// The refused target for which the goal is cancelled.
         refused: Option<GoalError>,
     },
     Stop {
         goal: GoalId,
-        /// True if no motion is admitted after it until it is released.
+        /// True if no motion is admitted after the stop until it is released.
         latches: bool,
         ended: oneshot::Sender<Outcome>,
     },
-    /// Brakes, finishes and closes. The reply comes when the control thread has ended.
+    /// Brakes, ends the motion and closes. The reply comes when the control thread has ended.
     Shutdown {
         ended: oneshot::Sender<()>,
     },
@@ -88,26 +88,26 @@ pub(crate) enum Input {
 #[derive(Debug)]
 pub(crate) struct Beginning {
     pub(crate) motion: NewMotion,
-    /// Destination of its goal, if that depends on the present poses.
+    /// Destination of the goal, if that depends on the present poses.
     pub(crate) destination: Option<Box<Destination>>,
-    /// Waypoints of its path.
+    /// Waypoints of the path.
     pub(crate) path: Option<Arc<[Waypoint]>>,
-    /// Reason why it must not begin: the arm cannot go to its target on a straight line.
+    /// Reason why the motion must not begin: the arm cannot move to the target on a straight line.
     pub(crate) refused: Option<GoalError>,
-    /// The options of a motion of the joints that takes its place in that case.
+    /// The options of a motion of the joints that replaces the straight line in that case.
     pub(crate) joint_fallback: Option<Box<GoalOptions>>,
 }
 
 impl Beginning {
-    /// Sets this posture in its goal.
+    /// Sets this posture in the goal of the motion.
     pub(crate) fn lead(&mut self, posture: Option<[f64; 7]>) {
         if let NewMotion::Goal { goal, .. } = &mut self.motion {
             goal.posture = posture;
         }
     }
 
-    /// Replaces the straight line of the motion by a motion of the joints to `q`, `[rad]`, if
-    /// allowed. Otherwise it is refused for `error`.
+    /// Replaces the straight line of the motion by a motion of the joints to `q`, `[rad]`, if that
+    /// is allowed. Otherwise the motion is refused for `error`.
     pub(crate) fn lead_joints(&mut self, q: [f64; 7], error: GoalError, model: &Model) {
         let (NewMotion::Goal { goal, .. }, Some(options)) =
             (&mut self.motion, &self.joint_fallback)
@@ -136,8 +136,8 @@ impl From<NewMotion> for Beginning {
     }
 }
 
-/// The newest motion that no caller waits for and the bridge has not taken yet. However often one
-/// is put there, one input at a time is under way for it.
+/// The newest motion that no caller waits for and that the bridge has not begun yet. However many
+/// motions are put there, only one input at a time is queued for them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Waiting(Arc<Mutex<Option<Box<Beginning>>>>);
 
@@ -167,17 +167,17 @@ impl Waiting {
     }
 }
 
-/// The outcome of a motion that was begun and never answered: bridges answer everything unless
+/// Returns the outcome of a motion that the bridge never answered: bridges answer everything unless
 /// their runtime drops them.
 pub(crate) fn unserved<E>(_: E) -> Outcome {
     let reason = CloseReason::RuntimeEnded;
     Err(MotionError::ConnectionClosed { reason })
 }
 
-/// Receivers of reports on something that was begun.
+/// Receivers of reports on a program, a session or a motion.
 #[derive(Debug)]
 pub(crate) struct Replies {
-    /// Receives the beginning of a program or a session.
+    /// Is told when a program or a session has begun.
     pub(crate) began: Option<oneshot::Sender<()>>,
     /// Receives the outcome.
     pub(crate) ended: EndReply,
@@ -193,7 +193,7 @@ pub(crate) enum EndReply {
 }
 
 impl EndReply {
-    /// True if no future waits for it.
+    /// True if no future waits for the outcome.
     pub(crate) fn is_closed(&self) -> bool {
         match self {
             Self::One(ended) => ended.is_closed(),
@@ -210,11 +210,11 @@ impl EndReply {
     }
 }
 
-/// The sending end of the bridge's inbox, and the bridge's publications.
+/// Sender to the bridge's inbox, and the bridge's publications.
 #[derive(Clone, Debug)]
 pub(crate) struct BridgeHandle {
-    /// Unbounded, since dropping a motion must be able to send; callers that await an answer bound
-    /// themselves.
+    /// Unbounded, because dropping a motion must be able to send. Callers that await an answer
+    /// limit themselves.
     pub(crate) inbox: mpsc::UnboundedSender<Input>,
     pub(crate) subscriptions: Subscriptions,
 }

@@ -6,8 +6,8 @@
 //! device           actions of an end effector, its states -------+
 //! ```
 //!
-//! An entry holds the data that its writer has at hand; readers turn it into words on their own
-//! thread. Writing never waits for a reader. Without one, nothing is kept.
+//! A writer puts the data into an entry as it is; readers turn it into words on their own thread.
+//! Writing never waits for a reader. Without a reader, nothing is kept.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -26,7 +26,7 @@ use crate::destination::Destination;
 use crate::input::{Beginning, Input};
 use crate::world;
 
-/// Journal to write entries to. Clones are the same journal.
+/// Journal that requests and results are written to. Clones are the same journal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Journal(Arc<Mutex<Vec<Reader>>>);
 
@@ -36,11 +36,11 @@ pub(crate) struct Reader {
     /// Number of the journal, for a reader of several.
     pub(crate) track: usize,
     pub(crate) entries: EntrySender,
-    /// Number of cycles of a connection that may wait for it; `None` if it takes none.
+    /// Number of cycles of a connection that may wait for the reader; `None` if it reads no cycles.
     pub(crate) cycles: Option<usize>,
 }
 
-/// The writing end of a reader's queue. Clones are of the same queue.
+/// The writing end of a reader's queue. Clones write to the same queue.
 #[derive(Clone, Debug)]
 pub(crate) struct EntrySender {
     entries: Sender<(usize, Entry)>,
@@ -54,7 +54,7 @@ pub(crate) struct EntryReceiver {
     counts: Arc<Counts>,
 }
 
-/// Relaxed everywhere: they order no other memory.
+/// Counts of a queue. Relaxed everywhere: the counts order no other memory.
 #[derive(Debug)]
 struct Counts {
     /// Number of further entries that may wait.
@@ -63,8 +63,8 @@ struct Counts {
     lost: AtomicU64,
 }
 
-/// A queue in which `room` entries may wait, and in addition those for which [`What::needs_room`]
-/// is false.
+/// Returns a queue in which `room` entries may wait. Entries for which [`What::needs_room`] is
+/// false do not count.
 pub(crate) fn entry_queue(room: usize) -> (EntrySender, EntryReceiver) {
     let (sender, receiver) = mpsc::channel();
     let counts = Arc::new(Counts {
@@ -91,21 +91,21 @@ pub(crate) struct Entry {
 
 #[derive(Debug)]
 pub(crate) enum What {
-    /// A goal, a session or a program was asked for.
+    /// A goal, a session or a program was requested.
     Goal(Given),
-    /// It has ended, or never began.
+    /// A goal, a session or a program has ended, or never began.
     Ended {
         goal: GoalId,
         outcome: Arc<Outcome>,
     },
-    /// Something happened to the robot.
+    /// The state of the robot or its connection has changed.
     Event(Event),
-    /// There is a new connection, whose cycles these are.
+    /// A new connection, with its cycles.
     Connected(Result<CycleReader, AttachError>),
-    /// The robot has answered a request, or did not.
+    /// The robot has answered a request, or failed to.
     Answered {
         request: Box<Request>,
-        /// Reason why it was not done, if it was not.
+        /// Reason why the request was not carried out, if it was not.
         error: Option<String>,
     },
     /// An action of the Hand has ended.
@@ -120,38 +120,38 @@ pub(crate) enum What {
         ended: ActionEnd,
     },
     VacuumState(vacuum::State),
-    /// The caller changed its mind: a stop, a pause, a motion taken back.
+    /// The caller has changed its request: a stop, a pause, a cancelled motion.
     Remark(String),
-    /// An event that the recorder itself was given.
+    /// An event that the recorder itself has received.
     Told(Box<EventKind>),
-    /// The reader reads no further.
+    /// The reader stops reading.
     End,
 }
 
 impl What {
-    /// True if it is lost where no room is left. A connection is not, since its cycles would be
-    /// lost with it, and neither is the end; both are rare.
+    /// True if the entry is dropped when no room is left. A connection is kept, because its cycles
+    /// would be lost with it, and so is the end; both are rare.
     fn needs_room(&self) -> bool {
         !matches!(self, Self::Connected(_) | Self::End)
     }
 }
 
-/// True if an action succeeded, or the text of its error.
+/// Whether an action succeeded, or the text of its error.
 pub(crate) type ActionEnd = Result<bool, String>;
 
-/// A goal, a session or a program that was asked for.
+/// A goal, a session or a program that was requested.
 #[derive(Clone, Debug)]
 pub(crate) struct Given {
     pub(crate) id: GoalId,
     pub(crate) kind: &'static str,
-    /// The goal; `None` of a program.
+    /// The goal; `None` for a program.
     pub(crate) goal: Option<Box<Goal>>,
-    /// Destination, if that depends on the poses at the start: the goal has no target then.
+    /// Destination, if that depends on the poses at the start; the goal then has no target.
     pub(crate) destination: Option<Destination>,
 }
 
 impl Entry {
-    /// An entry of `what`, at the present time.
+    /// Returns an entry of `what`, at the present time.
     pub(crate) fn now(what: What) -> Self {
         let at = world::now().into_std();
         Self { at, what }
@@ -159,12 +159,12 @@ impl Entry {
 }
 
 impl Journal {
-    /// Sends everything from now on to `reader`, until that is gone.
+    /// Sends all entries from now on to `reader`, until the reader is gone.
     pub(crate) fn read(&self, reader: Reader) {
         self.with(|readers| readers.push(reader));
     }
 
-    /// True if a reader with this queue reads it for this track.
+    /// True if a reader with this queue reads the journal as this track.
     pub(crate) fn is_read(&self, track: usize, entries: &EntrySender) -> bool {
         let same = |reader: &Reader| {
             reader.track == track && Arc::ptr_eq(&reader.entries.counts, &entries.counts)
@@ -181,8 +181,8 @@ impl Journal {
         self.with(|readers| readers.retain(tell));
     }
 
-    /// Writes that there is a new connection, and hands its readers the cycles from now on: they
-    /// may come to read of it much later.
+    /// Writes an entry for a new connection, and gives its readers the cycles from now on, even if
+    /// a reader takes the entry much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
         // Attaching takes memory, for which no caller should wait at the lock.
         for reader in self.with(|readers| readers.clone()) {
@@ -202,7 +202,7 @@ impl Journal {
         });
     }
 
-    /// Writes down the requests of a program to the bridge. Targets that update a goal are not
+    /// Writes down the requests of a program to the bridge. Updates of a goal's target are not
     /// written: every cycle has them.
     pub(crate) fn asked(&self, input: &Input) {
         self.write(|| match input {
@@ -252,8 +252,8 @@ impl Journal {
 }
 
 impl EntrySender {
-    /// Passes an entry of a track on, if there is room, and counts it otherwise. Returns whether
-    /// the reader is still there.
+    /// Passes an entry of a track on if there is room, and counts it as lost otherwise. Returns
+    /// true if the reader is still there.
     pub(crate) fn send(&self, track: usize, entry: Entry) -> bool {
         let less = |room: usize| room.checked_sub(1);
         let has_room = || {
@@ -268,15 +268,14 @@ impl EntrySender {
         self.entries.send((track, entry)).is_ok()
     }
 
-    /// Entries for which there was no room.
+    /// Returns the number of entries for which there was no room.
     pub(crate) fn lost(&self) -> u64 {
         self.counts.lost.load(Ordering::Relaxed)
     }
 }
 
 impl EntryReceiver {
-    /// Waits for the next entry and returns it with its track; `None` once nothing writes any
-    /// more.
+    /// Waits for the next entry and returns it with its track; `None` once all writers are gone.
     pub(crate) fn next(&self) -> Option<(usize, Entry)> {
         let (track, entry) = self.entries.recv().ok()?;
         if entry.what.needs_room() {
@@ -287,7 +286,7 @@ impl EntryReceiver {
 }
 
 impl Given {
-    /// The request of `motion`, whose outcome is not awaited if it is `set`.
+    /// Returns the request of `motion`, whose outcome is not awaited if it is `set`.
     fn of(motion: &Beginning, set: bool) -> Self {
         let Beginning {
             motion,

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use franka_rt::lifecycle::Tuning;
 
-/// Tuning for goals to come of a session. Clones are the same.
+/// Tuning of a session for its later goals. Clones share the tuning.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptTuning(Arc<Mutex<Tuning>>);
 

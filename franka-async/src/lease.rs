@@ -7,16 +7,17 @@ use franka_rt::session::{Deadman, DeadmanMonitor};
 
 use crate::world;
 
-/// Lease of an arm. A cheap handle: clones share the lease.
+/// Lease of an arm: the right of one client at a time to command it. A cheap handle: clones share
+/// the lease.
 #[derive(Clone, Debug, Default)]
 pub struct Lease {
     state: Arc<Mutex<State>>,
 }
 
-/// The right to command the arm, of one client.
+/// The right of one client to command the arm.
 ///
-/// Dropping it brakes the arm of the sessions that are bound to it, as dropping a [`Deadman`] does,
-/// and frees the lease. Drop the [`Arm`](crate::Arm) first: the next holder's session begins when
+/// Dropping it frees the lease, and brakes the arm if a session is bound to the lease, as dropping
+/// a [`Deadman`] does. Drop the [`Arm`](crate::Arm) first: the next holder's session begins when
 /// the arm has been released.
 #[derive(Debug)]
 #[must_use = "dropping the holder brakes the arm and frees the lease"]
@@ -39,7 +40,7 @@ pub struct Taken {
     pub name: String,
 }
 
-/// The holder was silent for too long, and the lease was free since.
+/// The holder was silent for too long, and the lease is free since then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the lease (the right to command this arm) was lost after more than {silence:?} without a \
@@ -55,7 +56,7 @@ pub struct Lost {
 struct State {
     /// The newest time.
     now: Option<Instant>,
-    /// Number of times it was taken.
+    /// Number of times that the lease was taken.
     taken: u64,
     held: Option<Held>,
 }
@@ -66,16 +67,17 @@ struct Held {
     name: String,
     silence: Duration,
     heard: Instant,
-    /// Dropped with the lease: no later message revives the sessions that are bound to it.
+    /// Dropped with the lease, so that no later message revives the sessions that are bound to it.
     deadman: Deadman,
 }
 
 impl Lease {
-    /// Takes the lease under `name`, which refused clients are shown. It is lost after more than
-    /// `silence` without [`Holder::keep_alive`]; with [`Duration::MAX`], only its holder ends it.
+    /// Takes the lease under `name`, which refused clients are shown. The holder loses the lease
+    /// after more than `silence` without [`Holder::keep_alive`]. With [`Duration::MAX`], only
+    /// the holder itself ends the lease.
     ///
     /// # Errors
-    /// [`Taken`] if it is not free.
+    /// [`Taken`] if another client holds the lease.
     pub fn take(
         &self,
         name: impl Into<String>,
@@ -125,11 +127,11 @@ impl Holder {
         &self.name
     }
 
-    /// Restarts the time of silence, of the lease and of the sessions that are bound to it.
+    /// Restarts the time of silence, for the lease and for the sessions that are bound to it.
     ///
     /// # Errors
-    /// [`Lost`] if it comes too late. The arm then stays braked: take the lease again, and begin
-    /// another session.
+    /// [`Lost`] if the call comes too late. The arm then stays braked: take the lease again, and
+    /// begin another session.
     pub fn keep_alive(&self, now: Instant) -> Result<(), Lost> {
         let mut state = self.lease.lock();
         let now = state.advance(now);
@@ -144,14 +146,14 @@ impl Holder {
         self.left(now).is_some()
     }
 
-    /// Returns the deadman of a session: [`Engage::deadman`](crate::Engage::deadman). The control
-    /// thread brakes the arm after the silence of the lease, and when the lease is lost or
-    /// dropped. A session accepts a silence of [`Deadman::SILENCE_MIN`] or more.
+    /// Returns the deadman to bind a session to: see [`Engage::deadman`](crate::Engage::deadman).
+    /// The control thread brakes the arm after the silence that the lease allows, and when the
+    /// lease is lost or dropped. A session accepts a silence of [`Deadman::SILENCE_MIN`] or more.
     pub fn deadman(&self) -> DeadmanMonitor {
         self.monitor.clone()
     }
 
-    /// Resolves when the lease is lost, by the clock of the host. Needs a Tokio runtime.
+    /// Resolves when the lease is lost, by the host's clock. Needs a Tokio runtime.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
@@ -166,7 +168,7 @@ impl Holder {
     /// Frees the lease, as dropping the holder does.
     pub fn release(self) {}
 
-    /// Returns how much longer it may be silent; `None` once the lease is lost.
+    /// Returns how much longer the holder may be silent; `None` once the lease is lost.
     fn left(&self, now: Instant) -> Option<Duration> {
         let mut state = self.lease.lock();
         let now = state.advance(now);

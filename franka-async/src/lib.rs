@@ -2,7 +2,7 @@
 //! real-time thread.
 //!
 //! A program sets goals at its own rate. A separate thread, one per robot, answers the robot every
-//! millisecond; no task of the runtime is on that path, so a busy or blocked program delays new
+//! millisecond. No task of the runtime is on that path, so a busy or blocked program delays new
 //! goals and nothing else. This page is all that a first program needs. The book (`docs/src` of the
 //! repository) shows where to start. Its first chapters have whole programs: a service with a queue
 //! of jobs, a policy at 10 Hz, a guarded move, a script.
@@ -32,12 +32,13 @@
 //! ```
 //!
 //! The address is a host name or an IP address, as any string. A [`Robot`] is a cheap handle: clone
-//! it into every task and request. Dropping the last one brakes the arm and closes the connection,
-//! as [`Robot::shutdown`] does and waits for. If the program is killed, the robot stops on its own.
-//! A robot needs a host with a real-time kernel. On a host without one, as most hosts of a
-//! simulator are, connecting fails, and
-//! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
-//! crate converts into [`Error`]; `anyhow` prints its text when `main` returns it.
+//! it into every task and request. Dropping the last handle brakes the arm and closes the
+//! connection. [`Robot::shutdown`] does the same and waits for the end. If the program is killed,
+//! the robot stops on its own. A robot needs a host with a real-time kernel; most hosts of a
+//! simulator have none, and connecting then fails.
+//! `Robot::builder(address).realtime(Realtime::Ignore).connect()` connects without such a kernel.
+//! Every error of this crate converts into [`Error`]; `anyhow` prints its text when `main` returns
+//! it.
 //!
 //! # Move
 //!
@@ -54,7 +55,7 @@
 //! # }
 //! ```
 //!
-//! Options set speed and compliance, and a motion goes through several places without a stop:
+//! Options set speed and compliance, and a motion passes through several places without a stop:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -71,29 +72,29 @@
 //! ```
 //!
 //! Units are metres, radians, seconds and newtons. A [`Pose`] is the pose of the end effector in
-//! the frame of the base; it is an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is
-//! measured. [`mod@pose`] makes poses of quaternions and arrays.
+//! the frame of the base, as an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is measured.
+//! [`mod@pose`] makes poses from quaternions and arrays.
 //!
-//! The end effector goes to a pose on a straight line; to joint positions, the joints go. An
-//! [`Offset`] starts at the target of the current motion, or at the arm without one. A target out
-//! of reach is refused before anything moves. Motions use 20 % of the robot's limits, and
-//! `speed(0.5)` takes half of that.
+//! To reach a pose, the end effector moves on a straight line. To reach joint positions, all joints
+//! move at once. An [`Offset`] starts at the target of the current motion, or at the arm if no
+//! motion is under way. A target out of reach is refused before anything moves. Motions use 20 % of
+//! the robot's limits; `speed(0.5)` halves that.
 //!
 //! # What a motion is
 //!
 //! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**.
-//! Then
+//! After that:
 //!
 //! * it resolves as `Ok` when the arm has arrived and rests, held by the robot itself, and
 //!   otherwise as a [`MotionError`] with the reason;
 //! * **dropping the future brakes the arm** within the robot's limits: it is still moving when
-//!   `drop` returns, and rests about a quarter of a second later. So the arm stops at a time limit,
-//!   in a `select!` that another branch wins, and when the client of a request has gone;
-//! * a newer motion of the same robot takes over without a stop, and the older one resolves as
+//!   `drop` returns, and rests about a quarter of a second later. This stops the arm at a time
+//!   limit, when another branch wins a `select!`, and when the client of a request has gone;
+//! * a newer motion of the same robot takes over without a stop, and the older motion resolves as
 //!   [`MotionError::Superseded`].
 //!
-//! A motion that should outlive its caller belongs to a separate task, or is
-//! [detached](Motion::detach), which only logs its outcome. Its handle pauses or cancels it:
+//! Put a motion that should outlive its caller into a separate task, or [detach](Motion::detach)
+//! it, which only logs its outcome. The motion's handle pauses or cancels it:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -113,7 +114,7 @@
 //! # }
 //! ```
 //!
-//! A queue of jobs is a task that awaits one motion after the other. Any task may send jobs:
+//! A queue of jobs is a task that awaits one motion after the other. Any task may send it jobs:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -134,8 +135,8 @@
 //! # }
 //! ```
 //!
-//! Between two motions the robot holds its arm by its own controller. An [`Arm`] keeps it under
-//! this crate's control, and goes from goal to goal without a stop:
+//! Between two motions the robot holds the arm with its own controller. An [`Arm`] keeps it under
+//! this crate's control, and moves from goal to goal without a stop:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -152,7 +153,7 @@
 //! # States
 //!
 //! [`Robot::state`] is the newest state, in motion or not. [`Robot::states`] waits for changes, and
-//! [`Robot::state_stream`] has every one of a thousand per second.
+//! [`Robot::state_stream`] has each of the thousand states per second.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -196,11 +197,11 @@
 //! # }
 //! ```
 //!
-//! Where the stream ends, the motion resolves as `Ok` at the last target. The watchdog is counted
-//! by the control thread: it brakes the arm even if the program hangs, and the motion resolves as
-//! [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its
-//! velocity as a pair, `(pose, twist)` or `(q, dq)`, by which the arm does not fall behind.
-//! Policies that predict several steps at once have [`Arm::chunk`].
+//! When the stream ends, the motion resolves as `Ok` at the last target. The control thread counts
+//! the time of the watchdog: it brakes the arm even if the program hangs, and the motion resolves
+//! as [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its
+//! velocity as a pair, `(pose, twist)` or `(q, dq)`. With the velocity, the arm does not lag behind
+//! the target. For policies that predict several steps at once, use [`Arm::chunk`].
 //!
 //! # Move until contact
 //!
@@ -224,15 +225,15 @@
 //! # }
 //! ```
 //!
-//! The control thread looks at the condition in every cycle. `force_z` is the external force along
-//! z of the base, either way; `relative` counts from the beginning of the motion, and the 200 ms
-//! leave out the torques in which it begins. `contact` has the time and the place. Without a
-//! contact the motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once
-//! instead of stopping; [`condition`] has the others.
+//! The control thread checks the condition in every cycle. `force_z` is the external force along z
+//! of the base, in either direction. `relative` counts from the beginning of the motion; the 200 ms
+//! leave out the torques of the start. `contact` has the time and the place. Without a contact the
+//! motion arrives, and `reacted` is `None`. `touched.then(pose)` moves elsewhere at once instead of
+//! stopping. See [`condition`] for other conditions.
 //!
 //! # Errors and recovery
 //!
-//! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
+//! A robot that stops itself (a *reflex*, for instance by a collision) accepts no motion before it
 //! has been recovered. The error has the log of the last cycles, and its diagnosis names what to
 //! change. [`MotionError::party`] names where to act: in this program, on its computer, in the
 //! network, at the robot, or in the code of one side.
@@ -251,8 +252,8 @@
 //! # }
 //! ```
 //!
-//! A supervised robot connects again when the link was lost, and recovers by a policy; its motions
-//! still end, and the program decides on the next one:
+//! A supervised robot reconnects when the link was lost, and recovers as its policy states. Its
+//! motions still end, and the program decides on the next one:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -271,7 +272,8 @@
 //!
 //! # Without async
 //!
-//! With the feature `blocking`, `.wait()` stands for `.await`, on any thread and without a runtime:
+//! With the feature `blocking`, use `.wait()` instead of `.await`, on any thread and without a
+//! runtime:
 //!
 //! ```no_run
 //! # #[cfg(feature = "blocking")]
@@ -293,8 +295,8 @@
 //!
 //! # Test without a robot
 //!
-//! `franka-sim` is a robot on sockets, in the process of the test. Its arm sticks, flexes and lags
-//! as in published measurements of real ones.
+//! `franka-sim` simulates a robot on sockets, in the process of the test. Its arm sticks, flexes
+//! and lags as in published measurements of real arms.
 //!
 //! ```
 //! use std::time::Duration;
@@ -317,8 +319,8 @@
 //! }
 //! ```
 //!
-//! The program `franka-sim` is the same for everything else: start it, and connect to `127.0.0.1`,
-//! with `Realtime::Ignore` as above.
+//! The program `franka-sim` is the same simulator for programs outside of a test: start it, and
+//! connect to `127.0.0.1`, with `Realtime::Ignore` as above.
 //!
 //! # Where to go next
 //!
@@ -329,16 +331,16 @@
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; conditions that end a motion |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
-//! | [`state`] | every state, or the newest as it changes; external wrenches without the offset of an untouched arm |
+//! | [`state`] | every state, or the newest as it changes; external wrenches minus the offset of an untouched arm |
 //! | [`error`], [`diagnosis`] | errors, by who can act on them; why the robot ended a motion |
-//! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
+//! | [`supervision`] | automatic reconnects, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with its own connection |
 //! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | records of every cycle |
-//! | `recording` | all of that, and the requests to the robot, in files; logs of libfranka (feature `record`) |
+//! | `recording` | states, cycles and requests to the robot, in files; logs of libfranka (feature `record`) |
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
@@ -361,11 +363,11 @@
 //!
 //! Every future of this crate may be dropped at any point. The robot still carries out a request
 //! that was sent; its answer is then discarded. Dropping a motion brakes it. Methods that differ
-//! have a separate section.
+//! state this in their own section.
 //!
 //! # What it does not do
 //!
-//! It neither reconnects nor recovers without
+//! The crate neither reconnects nor recovers without
 //! [`Builder::supervise`](connection::Builder::supervise), and moves nothing without a call. It is
 //! no safety function. It has not been run against a real arm yet.
 
@@ -470,7 +472,7 @@ pub use robot::{Pose, Robot};
 pub use franka_model::READY;
 pub use franka_rt::lifecycle::{MotionError, MotionReport};
 pub use franka_rt::sched::Realtime;
-/// The library that [`Pose`] and [`model::JointVector`] come from.
+/// The library that defines [`Pose`] and [`model::JointVector`].
 pub use nalgebra;
 
 // The program in the README compiles.
@@ -478,7 +480,7 @@ pub use nalgebra;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Programs rely on this: handles go anywhere, futures go to any worker.
+/// Checks what programs rely on: handles may move to any thread, futures to any worker.
 const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}
     const fn spawned<T: Send + 'static>() {}

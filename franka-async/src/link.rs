@@ -37,8 +37,8 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Sends to the bridge. A bridge that has ended drops the input, and with it the sender of its
-    /// reply: the receiver sees that.
+    /// Sends an input to the bridge. A bridge that has ended drops the input together with the
+    /// sender of its reply, which the receiver notices.
     pub(crate) fn send(&self, input: Input) {
         let _ = self.try_send(input);
     }
@@ -56,19 +56,19 @@ impl Link {
         &self.bridge.subscriptions
     }
 
-    /// True if the bridge takes nothing any more.
+    /// True if the bridge accepts no more inputs.
     pub(crate) fn has_ended(&self) -> bool {
         self.bridge.inbox.is_closed()
     }
 
-    /// The silence for which the link was given up, if no state has come since.
+    /// Returns the silence for which the link was given up, if no state has come since.
     pub(crate) fn silence(&self) -> Option<Duration> {
         let newest = self.newest.state().message_id;
         self.subscriptions().silence(newest)
     }
 
-    /// Waits until the link has been given up for `more` and no state has come meanwhile, and
-    /// returns the whole silence.
+    /// Waits until the link has been given up for `more` and no state has come meanwhile. Returns
+    /// the whole silence.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
@@ -89,7 +89,7 @@ impl Link {
         }
     }
 
-    /// Waits until the connection has ended, and returns why.
+    /// Waits until the connection has ended, and returns the reason.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.

@@ -1,10 +1,10 @@
 //! The model of an arm: kinematics, dynamics, limits, inverse kinematics, distances.
 //!
 //! [`Robot::model`](crate::Robot::model) is the model of the connected arm, from its own
-//! description (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without
-//! a robot. Control functions may call the functions here, which neither allocate nor wait. Models
-//! that are read from a description, or loaded, are made beforehand. [`StateModel`] takes states,
-//! with the end effector and the load that they have.
+//! description (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] need no robot.
+//! Control functions may call the functions here, which neither allocate nor wait. Models that are
+//! read from a description, or loaded, are made beforehand. [`StateModel`] accepts states, with
+//! their end effector and load.
 //!
 //! ```
 //! use franka_async::READY;
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! Feature `model-library` (off by default): [`load_model_library`], the code that a Franka Emika
-//! Robot hands out.
+//! Robot provides.
 //!
 //! [`load_model_library`]: crate::Robot::load_model_library
 

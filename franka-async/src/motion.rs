@@ -1,5 +1,5 @@
-//! Motions under way: their futures, handles to them from elsewhere, how far they are, and motions
-//! of several robots that begin together.
+//! Motions under way: their futures, handles, progress, and motions of several robots that begin
+//! together.
 
 pub use crate::cancel::Canceller;
 pub use crate::follow::Follow;

@@ -1,5 +1,5 @@
-//! Motions to one target, and [`Moving`], the future of these, of followed targets and of control
-//! functions. See `cancel` for the effect of dropping it.
+//! Motions to one target. [`Moving`] is the future of these motions, of followed targets and of
+//! control functions. See `cancel` for the effect of dropping it.
 
 use std::future::IntoFuture;
 use std::pin::Pin;
@@ -45,25 +45,25 @@ pub struct Motion {
 }
 
 impl Robot {
-    /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. A
-    /// motion to a pose that begins at rest is a straight line and a rotation about one axis. The
-    /// arm is compliant on the way, see [`Motion::stiffness`]. In a motion to joint positions, all
-    /// joints arrive together.
+    /// Returns a motion to a pose of the end effector in the base frame, or to joint positions,
+    /// `[rad]`. A motion to a pose that begins at rest is a straight line and a rotation about one
+    /// axis. The arm is compliant on the way, see [`Motion::stiffness`]. In a motion to joint
+    /// positions, all joints arrive together.
     ///
-    /// The line to a pose is planned by the task that awaits the motion, in a millisecond as a
-    /// rule. If joints would come to the ends of their ranges on it, or the arm too near itself,
-    /// the elbow is led to a posture that avoids it. If there is no such posture, the motion is
-    /// refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint
-    /// positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the joints
-    /// go there instead.
+    /// The task that awaits the motion plans the line to a pose, usually in a millisecond. If the
+    /// line would bring joints to the ends of their ranges, or the arm too close to itself, the
+    /// elbow moves to a posture that avoids this. If no such posture exists, nothing moves, and the
+    /// motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). The error names
+    /// joint positions that reach the pose. With [`Motion::joint_fallback`] the joints move there
+    /// instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
 
-    /// A motion through several poses, or several joint positions, to the last of them: as fast as
-    /// the limits allow, on straight lines between them, and without a stop where the corner is
-    /// [rounded](Waypoint::blend). It has one outcome. A waypoint that the arm cannot reach, or a
-    /// way between two poses that it cannot follow, is refused before anything moves, as
+    /// Returns a motion through several poses, or several joint positions, to the last of them. The
+    /// arm moves as fast as the limits allow, on straight lines, and without a stop at corners that
+    /// are [rounded](Waypoint::blend). The motion has one outcome. A waypoint out of reach, or a
+    /// line between two poses that the arm cannot follow, is refused before anything moves, as
     /// [`MotionError::Path`]. If the arm is held back, the path waits: no waypoint is left out.
     /// Planning takes tens of milliseconds of the connection's task.
     ///
@@ -86,14 +86,14 @@ impl Robot {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
+    /// Returns a motion of the joints to `q`, `[rad]`; all joints arrive together.
     pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
         self.move_to(q.into())
     }
 
-    /// A motion of the end effector away from where it is, or from the target if a motion is under
-    /// way; otherwise like [`Self::move_to`]. Where several follow each other,
-    /// [engage](Self::engage) the arm: it moves a little when it is released in between.
+    /// Returns a motion of the end effector by `offset` from its place, or from the target if a
+    /// motion is under way. Otherwise like [`Self::move_to`]. [Engage](Self::engage) the arm for
+    /// several such motions in a row: the arm moves a little whenever it is released.
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -114,7 +114,7 @@ impl Motion {
         }
     }
 
-    /// A motion within a session, which holds the arm at the target.
+    /// Returns a motion within a session, which holds the arm at the target.
     pub(crate) fn within(session: &Arc<Session>, destination: Destination) -> Self {
         Self {
             session: Some(session.clone()),
@@ -123,7 +123,7 @@ impl Motion {
         }
     }
 
-    /// Leads through `waypoints` to the last of them.
+    /// Leads the motion through `waypoints` to the last of them.
     pub(crate) fn along<W: Into<Waypoint>>(self, waypoints: impl IntoIterator<Item = W>) -> Self {
         let path: Arc<[Waypoint]> = waypoints.into_iter().map(Into::into).collect();
         let last = path.last().map(|last| Destination::Target(*last.target()));
@@ -136,42 +136,43 @@ impl Motion {
 
     goal_options!(target);
 
-    /// Moves the joints to the pose, as [`Robot::move_joints`] does, where the arm cannot follow
-    /// the straight line of [`Robot::move_to`]. The end effector then moves along a curve: mind
+    /// Moves the joints to the pose, as [`Robot::move_joints`] does, if the arm cannot follow the
+    /// straight line of [`Robot::move_to`]. The end effector then moves along a curve: mind
     /// obstacles near the line. [`Self::preview`] shows the path. If the joints have no path
-    /// either, the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), and
-    /// one in a session that commands poses to the robot's own controller as
+    /// either, the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). In
+    /// a session that commands poses to the robot's own controller, it is refused as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     ///
-    /// Without effect on motions that are not planned: through waypoints, of joints, and with a
-    /// [condition](Self::until).
+    /// Has no effect on motions that are not planned in this way: through waypoints, of joints, and
+    /// with a [condition](Self::until).
     pub fn joint_fallback(mut self) -> Self {
         self.joint_fallback = true;
         self
     }
 
     /// Begins together with the motions of other robots. The robot starts the motion, and holds the
-    /// arm until all that have a ticket of the same [`StartBarrier`](crate::motion::StartBarrier)
-    /// are there. Then they begin within a millisecond of each other. Such a motion supersedes
-    /// nothing: it is refused as [`MotionError::Busy`] while anything controls the arm. If the
-    /// others do not all come, it resolves as [`MotionError::Start`], and the arm has not moved.
+    /// arm until all motions with a ticket of the same
+    /// [`StartBarrier`](crate::motion::StartBarrier) are ready. Then they begin within a
+    /// millisecond of each other. Such a motion supersedes nothing: it is refused as
+    /// [`MotionError::Busy`] while anything controls the arm. If not all motions become ready, it
+    /// resolves as [`MotionError::Start`], and the arm has not moved.
     ///
     /// # Cancel safety
-    /// Dropped, stopped or superseded before the start, it releases the others, which resolve as
-    /// [`MotionError::Start`].
+    /// A motion that is dropped, stopped or superseded before the start releases the others, which
+    /// resolve as [`MotionError::Start`].
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self
     }
 
-    /// Makes it part of a joint motion.
+    /// Makes the motion part of a joint motion of a team.
     pub(crate) fn in_round(mut self, round: Round) -> Self {
         self.options.round = Some(round);
         self
     }
 
-    /// Makes the target a pose of an object in the hand, which has the pose `grasp` in the frame of
-    /// the end effector.
+    /// Makes the target a pose of an object in the hand. `grasp` is the object's pose in the frame
+    /// of the end effector.
     pub(crate) fn of_object(mut self, grasp: Isometry3<f64>) -> Self {
         self.options.grasp = Some(grasp);
         self
@@ -181,8 +182,9 @@ impl Motion {
         self.session.as_ref()
     }
 
-    /// Begins the motion without a future: it continues, and its outcome is only logged. It does
-    /// not count as a handle: dropping the last handle of its session or robot still brakes it.
+    /// Begins the motion without a future: the motion continues, and its outcome is only logged. A
+    /// detached motion is no handle: dropping the last handle of its session or robot still brakes
+    /// it.
     pub fn detach(mut self) {
         match self.begin() {
             Ok(mut motion) => {
@@ -200,9 +202,9 @@ impl Motion {
     }
 
     /// Returns the preview of the motion if it began now, or the error with which it would be
-    /// refused; nothing moves, and nothing is sent. A motion to one target is taken for a path of
-    /// one waypoint, which it is if it begins at rest. [`Preview::blocked`] reports whether the arm
-    /// would come too near itself or a region to keep out of. Takes milliseconds.
+    /// refused. Nothing moves, and nothing is sent. The preview treats a motion to one target as a
+    /// path with one waypoint, which is exact if the motion begins at rest. [`Preview::blocked`]
+    /// reports whether the arm would come too near itself or a keep-out region. Takes milliseconds.
     ///
     /// # Errors
     /// [`MotionError::Path`] and [`MotionError::Goal`].
@@ -239,7 +241,7 @@ impl Motion {
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
-    /// Its options and the options of its session.
+    /// Returns the motion's options, completed by the options of its session.
     fn pursued(&self) -> GoalOptions {
         let session = self.session.as_ref();
         self.options
@@ -267,7 +269,7 @@ impl Motion {
     }
 }
 
-/// Looks for the straight line of a motion to a pose, from where the arm is now: see
+/// Searches the straight line of a motion to a pose, from the arm's present place: see
 /// [`Goal::plan_line`].
 fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
     let (NewMotion::Goal { goal, .. }, Some(destination), None) =
@@ -324,20 +326,20 @@ impl IntoFuture for Motion {
 }
 
 /// Access to a motion from elsewhere: its progress, and pausing or braking it. Clones are for the
-/// same motion; none of them counts as a handle of the robot or its session, or keeps the motion
-/// going.
+/// same motion. A handle of a motion is no handle of the robot or the session, and does not keep
+/// the motion going.
 #[derive(Clone, Debug)]
 pub struct MotionHandle(Canceller);
 
 impl MotionHandle {
-    /// Brakes the motion for good: see [`Canceller::cancel`].
+    /// Brakes and cancels the motion: see [`Canceller::cancel`].
     pub fn cancel(&self) {
         self.0.cancel();
     }
 
-    /// Stops the motion on its way, within its limits and on its line if it goes along one, until
-    /// [`Self::resume`]. The arm is held there meanwhile. A motion that has not begun is then held
-    /// where it begins. Without effect after its end and once a newer goal has come.
+    /// Stops the motion on its way until [`Self::resume`], within its limits, and on its line if it
+    /// follows one. The arm is held there meanwhile. A motion that has not begun is then held at
+    /// its start. Has no effect after the end of the motion and once a newer goal has come.
     ///
     /// The pause counts in the [duration](franka_rt::lifecycle::MotionReport::duration) of the
     /// motion, in its [`Progress::elapsed`], and in every time limit that the program sets.
@@ -350,42 +352,42 @@ impl MotionHandle {
         self.0.set_paused(false);
     }
 
-    /// Progress of the motion; `None` before it has begun and after its end.
+    /// Returns the progress of the motion; `None` before it has begun and after its end.
     pub fn progress(&self) -> Option<Progress> {
         self.0.robot()?.link().course.progress(self.0.id())
     }
 }
 
-/// A motion as a future. It begins with the first poll and resolves when the arm has arrived,
-/// rests, and is no longer controlled; or with the reason why it ended before.
+/// A motion as a future. The motion begins with the first poll. The future resolves when the arm
+/// has arrived, rests, and is no longer controlled, or with the reason why the motion ended before.
 ///
 /// # Cancel safety
-/// Dropping it brakes the arm, in the background: within about a quarter of a second and the
-/// robot's limits.
+/// Dropping the future brakes the arm, in the background: within the robot's limits and about a
+/// quarter of a second.
 ///
 /// # Panics
 /// When polled after it has resolved, as futures may.
 #[derive(Debug)]
 #[must_use = "futures do nothing unless polled"]
 pub struct Moving {
-    /// Keeps the robot.
+    /// Keeps the robot connected.
     robot: Robot,
     canceller: Canceller,
-    /// Keeps the session of the goal.
+    /// Keeps the session of the goal alive.
     session: Option<Arc<Session>>,
     stage: Stage,
 }
 
 #[derive(Debug)]
 enum Stage {
-    /// Or the error of options that are not accepted.
+    /// The motion, or the error of options that are not accepted.
     Ready(Result<Box<Beginning>, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
 
 impl Moving {
-    /// `motion` of this robot, which has the name of the canceller, as a future.
+    /// Returns `motion` of this robot, named as the canceller, as a future.
     pub(crate) fn new(
         robot: Robot,
         canceller: Canceller,

@@ -7,23 +7,24 @@ use franka_rt::state_wakeups::StateWakeups;
 use franka_rt::thread::StateReader;
 use tokio::sync::watch;
 
-/// Reads the newest state where the control thread has left it.
+/// Reads the newest state from the control thread's slot.
 ///
-/// Reading it costs no other thread or task anything. For a subscriber to changes, the bridge is
-/// woken for every state.
+/// Reading the state costs no other thread or task anything. Subscribing to changes makes the
+/// control thread wake the bridge for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
-    /// Stays as it is, so that each of its clones finds everything that came later.
+    /// Never advanced, so that each of its clones finds everything that came later.
     reader: StateReader,
-    /// The state before the states that `reader` finds.
+    /// The state before the first state that `reader` finds.
     first: RobotState,
-    /// Last state published by the bridge. Without wake-ups per state it may be some states behind.
-    /// Weak, so that subscribers see the end; and no receiver, as those are counted.
+    /// Last state published by the bridge, which may be some states old without wake-ups per state.
+    /// Weak, so that subscribers see the end of the connection. No receiver, because receivers are
+    /// counted as subscribers.
     publisher: Weak<watch::Sender<RobotState>>,
     state_wakeups: StateWakeups,
 }
 
-/// Publishes a state, unless a newer one is published already.
+/// Publishes a state, unless a newer state is published already.
 pub(crate) fn publish(publisher: &watch::Sender<RobotState>, state: RobotState) {
     publisher.send_if_modified(|newest| {
         let newer = state.message_id > newest.message_id;
@@ -35,7 +36,8 @@ pub(crate) fn publish(publisher: &watch::Sender<RobotState>, state: RobotState) 
 }
 
 impl Newest {
-    /// Reads what `reader` has not read yet; `first` is the state before.
+    /// Returns a reader of the states that `reader` has not read yet; `first` is the state before
+    /// them.
     pub(crate) fn new(
         (first, reader): (RobotState, StateReader),
         publisher: &Arc<watch::Sender<RobotState>>,
@@ -49,7 +51,7 @@ impl Newest {
         }
     }
 
-    /// The newest state.
+    /// Returns the newest state.
     pub(crate) fn state(&self) -> RobotState {
         // Without one there is nothing newer than `first`; or the kernel has stopped this thread in
         // the middle of each attempt.
@@ -60,7 +62,7 @@ impl Newest {
         })
     }
 
-    /// The newest state, and as it changes from now on.
+    /// Returns a receiver of the newest state and of its changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
         let Some(publisher) = self.publisher.upgrade() else {
             // Closed from the outset.

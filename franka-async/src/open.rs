@@ -1,5 +1,5 @@
-//! From an address to a connection. If the robot refuses the version and names an older one, that
-//! version is tried.
+//! From an address to a connection. If the robot refuses the version and names an older version,
+//! the driver tries the older version.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ pub(crate) struct Opened {
     pub(crate) version: Version,
     pub(crate) link: Link,
     pub(crate) first: RobotState,
-    /// To be started once the supervisor knows of the connection.
+    /// The bridge, to be started once the supervisor knows of the connection.
     pub(crate) bridge: Prepared,
 }
 
@@ -192,8 +192,8 @@ async fn open_with(
     })
 }
 
-/// Runs work that blocks for milliseconds (threads that are started and joined, memory that is
-/// locked and touched) where no other task waits for it. Dropping the future drops the result.
+/// Runs work that blocks for milliseconds on a thread where no other task waits: starting and
+/// joining threads, locking and touching memory. Dropping the future discards the result.
 async fn off_worker<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> std::io::Result<T> {
@@ -201,7 +201,7 @@ async fn off_worker<T: Send + 'static>(
     done.map_err(std::io::Error::other)
 }
 
-/// Compares the model with the poses of this state, and of newer ones until it agrees, and returns
+/// Compares the model with the poses of this state, and of newer states until they agree. Returns
 /// the model to use.
 async fn check_geometry(
     model: Model,
@@ -222,7 +222,8 @@ async fn check_geometry(
     comparison.conclude(builder.accept_geometry_error, before)
 }
 
-/// Waits for a state that was not read: without a first one there is nothing to control.
+/// Waits for a state that was not read yet. Fails if none comes, because control needs a first
+/// state.
 async fn newer_state(handle: &mut Handle, wake: &Wake) -> Result<RobotState, ConnectError> {
     loop {
         wake.woken().await?;

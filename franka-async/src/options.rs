@@ -1,4 +1,4 @@
-//! The options that motions, streams and sessions have in common: each written once.
+//! The options that motions, streams and sessions have in common.
 
 use franka_model::Model;
 use franka_rt::lifecycle::Tuning;
@@ -6,8 +6,7 @@ use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance}
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
-/// Options of one goal or of many. An option that is `None` is left to the goal, whose kind
-/// decides.
+/// Options of one goal or of many. An option that is `None` has the default for the kind of goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GoalOptions {
     pub(crate) tuning: Tuning,
@@ -16,14 +15,14 @@ pub(crate) struct GoalOptions {
     pub(crate) tolerance: Option<Tolerance>,
     pub(crate) settling: Option<Settling>,
     pub(crate) reaction: Option<Reaction>,
-    /// The joint motion of a team that it is part of.
+    /// The joint motion of a team that the goal is part of.
     pub(crate) round: Option<Round>,
-    /// The object in the hand that the goal is for, in the frame of the end effector.
+    /// Pose of the object in the hand that the goal is for, in the frame of the end effector.
     pub(crate) grasp: Option<Isometry3<f64>>,
 }
 
 impl GoalOptions {
-    /// These options, and the tuning of a session for all others.
+    /// Returns these options, completed by the tuning of a session.
     pub(crate) fn within(self, session: Option<Tuning>) -> Self {
         Self {
             tuning: self.tuning.or(session.unwrap_or_default()),
@@ -77,9 +76,9 @@ impl GoalOptions {
 /// setters of a type that has one target or one stream of them.
 macro_rules! goal_options {
     () => {
-        /// Walks the same paths `factor` times as fast as the limits allow: velocities scale with
-        /// it, accelerations with its square, jerks with its cube. A factor that is not positive,
-        /// or takes a limit beyond the robot's, is refused as
+        /// Follows the same paths `factor` times as fast as the limits allow. Velocities scale with
+        /// `factor`, accelerations with its square, jerks with its cube. A factor that is not
+        /// positive, or raises a limit above the robot's, is refused as
         /// [`GoalError::Speed`](crate::error::GoalError::Speed) when the motion begins.
         pub fn speed(mut self, factor: f64) -> Self {
             self.options.speed = Some(factor);
@@ -93,31 +92,30 @@ macro_rules! goal_options {
             self
         }
 
-        /// Replaces the law and all gains; by default the gains of the session, or
+        /// Replaces the law and all gains. The default is the gains of the session, or
         /// [`Gains::cartesian`](crate::goal::Gains::cartesian) for poses and
-        /// [`Gains::joint`](crate::goal::Gains::joint) for joint positions. The kind of the first
-        /// target of a stream decides. The law is [`Gains::law`](crate::goal::Gains::law):
-        /// [`Law::OperationalSpace`](crate::goal::Law::OperationalSpace) moves the arm by the
-        /// springs at the end effector, and gains without any are refused under it.
+        /// [`Gains::joint`](crate::goal::Gains::joint) for joint positions. For a stream, the kind
+        /// of the first target decides. [`Gains::law`](crate::goal::Gains::law) selects the law.
+        /// Under [`Law::OperationalSpace`](crate::goal::Law::OperationalSpace) the springs at the
+        /// end effector move the arm, and gains without such springs are refused.
         pub fn gains(mut self, gains: crate::goal::Gains) -> Self {
             self.options.tuning.gains = Some(gains);
             self
         }
 
         /// Bounds the force with which springs and dampers press at the end effector, `[N]`,
-        /// between 5 and 200; by default the cap of the session, or
+        /// between 5 and 200. The default is the cap of the session, or
         /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). An undeclared
-        /// load counts: the arm sinks under more weight than the cap, and the motion does not
-        /// arrive. Refused under
-        /// [`Backend::RobotController`](crate::goal::Backend::RobotController), which cannot keep
-        /// it.
+        /// load counts: if its weight exceeds the cap, the arm sinks and the motion does not
+        /// arrive. [`Backend::RobotController`](crate::goal::Backend::RobotController) cannot bound
+        /// the force, so the option is refused there.
         pub fn force_cap(mut self, newtons: f64) -> Self {
             self.options.tuning.force_cap = Some(crate::goal::ForceCap::Newtons(newtons));
             self
         }
 
-        /// Removes the force cap, unless [`Self::force_cap`] sets one, before or after. The reach
-        /// of the springs still bounds their force.
+        /// Removes the force cap, unless [`Self::force_cap`] sets one, before or after. The
+        /// springs' largest deflection still bounds their force.
         pub fn without_force_cap(mut self) -> Self {
             let cap = &mut self.options.tuning.force_cap;
             *cap = cap.or(Some(crate::goal::ForceCap::Off));
@@ -127,16 +125,17 @@ macro_rules! goal_options {
         /// Sets how far the reference may be ahead of the arm, between
         /// [`Leash::LEAST`](crate::goal::Leash::LEAST) and
         /// [`Leash::MOST`](crate::goal::Leash::MOST). The defaults are 25 mm and 0.15 rad, and 0.1
-        /// rad of each joint. An arm that is held feels its springs at that length. Without effect
-        /// under [`Backend::RobotController`](crate::goal::Backend::RobotController).
+        /// rad of each joint. If the arm is blocked, its springs are stretched by this distance at
+        /// most. Has no effect under
+        /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn leash(mut self, leash: crate::goal::Leash) -> Self {
             self.options.tuning.leash = Some(leash);
             self
         }
 
-        /// Sets how far the arm may be pushed off its way before the motion is given up as
+        /// Sets how far the arm may be pushed off its path. Beyond that, the motion is given up as
         /// [`Lapse::Displaced`](crate::error::Lapse::Displaced). The defaults are 30 cm and 0.5
-        /// rad, and 1 rad of a joint. Without effect under
+        /// rad, and 1 rad of a joint. Has no effect under
         /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn deviation(mut self, deviation: crate::goal::Deviation) -> Self {
             self.options.tuning.deviation = Some(deviation);
@@ -144,11 +143,11 @@ macro_rules! goal_options {
         }
 
         /// Sets the posture, joint positions in `[rad]`, for the null space of the end effector's
-        /// pose. The arm takes it on the way to poses and while it holds them. The elbow moves at
-        /// no more than half of the joints' budget, and a motion that is awaited arrives when it
-        /// rests. By default the elbow stays near where the motion or the session began. An engaged
-        /// arm keeps its posture until another is set. Positions out of range are refused as
-        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// pose. The arm approaches the posture while it moves to poses and holds them. The elbow
+        /// uses at most half of the joints' budget, and an awaited motion arrives when the elbow
+        /// rests, too. By default the elbow stays near its position at the start of the motion or
+        /// session. An engaged arm keeps its posture until another one is set. Positions out of
+        /// range are refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self
@@ -158,38 +157,38 @@ macro_rules! goal_options {
         goal_options!();
 
         /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
-        /// axes. It replaces the stiffness of the gains, whether those are set before or after;
-        /// dampings keep their ratio.
+        /// axes. It replaces the stiffness of the gains, regardless of the order of the calls. The
+        /// damping ratios stay.
         pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
             self.options.stiffness = Some(stiffness);
             self
         }
 
-        /// Sets how near to the target counts as arrived; for a stream, how near to its last
-        /// target. By default it is the accuracy of the law or the robot's controller on an arm
-        /// that sticks: [`Tolerance::of`](crate::goal::Tolerance::of) and
+        /// Sets the distance to the target that counts as arrived; for a stream, the distance to
+        /// its last target. The default is the accuracy of the law, or of the robot's controller,
+        /// on an arm with friction: [`Tolerance::of`](crate::goal::Tolerance::of) and
         /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
             self
         }
 
-        /// Sets how long the arm must rest at the target to have arrived, and the longest time
-        /// allowed for that; by default 250 ms and 5 s.
+        /// Sets how long the arm must rest at the target until it has arrived, and the time limit
+        /// for the whole wait; by default 250 ms and 5 s.
         pub fn settling(mut self, settling: crate::goal::Settling) -> Self {
             self.options.settling = Some(settling);
             self
         }
 
-        /// Ends the motion early when a condition becomes true before the arrival. Then the arm
-        /// stops as quickly as the jerk limit allows, or, for a
-        /// [`Reaction`](crate::condition::Reaction) with another target, brakes and goes there. The
-        /// control thread checks the condition in every cycle, until the motion is reported, and
-        /// acts in the next one. Replaces an earlier condition.
+        /// Ends the motion early when a condition becomes true before the arrival. The arm then
+        /// stops as quickly as the jerk limit allows. With a
+        /// [`Reaction`](crate::condition::Reaction) that has another target, the arm brakes and
+        /// moves there. The control thread checks the condition in every cycle, until the motion
+        /// has ended, and acts in the next cycle. Replaces an earlier condition.
         ///
-        /// Both ends are `Ok`: [`MotionReport::reacted`](crate::MotionReport::reacted)
-        /// distinguishes a reaction from an arrival. See [`condition`](crate::condition) for the
-        /// quantities that can be compared.
+        /// Arrival and reaction both resolve as `Ok`:
+        /// [`MotionReport::reacted`](crate::MotionReport::reacted) distinguishes them. See
+        /// [`condition`](crate::condition) for the quantities that can be compared.
         ///
         /// ```no_run
         /// # use std::time::Duration;

@@ -1,6 +1,6 @@
 //! Parameters of the robot, and recovery: requests with one answer.
 //!
-//! The robot takes parameters between motions and refuses them during one.
+//! The robot accepts parameters between motions and refuses them during a motion.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -26,10 +26,10 @@ use crate::world::timeout;
 /// Time for an answer that the robot gives at once.
 const ANSWER: Duration = Duration::from_secs(5);
 
-/// Time for a recovery, which moves brakes.
+/// Time for a recovery, which opens and closes brakes.
 const RECOVERY: Duration = Duration::from_secs(30);
 
-/// Silence allowed to a robot that recovers, in addition to the link timeout.
+/// Silence allowed to a robot during a recovery, in addition to the link timeout.
 const SILENT: Duration = Duration::from_secs(3);
 
 /// Payload of both arms, `[kg]`. Source: the vendor's data sheets.
@@ -38,15 +38,15 @@ const PAYLOAD: f64 = 3.0;
 /// Time after the answer in which states are searched for the new value, `[ms]`.
 const SHOWN_MS: u64 = 200;
 
-/// Time for these states, if they come at all.
+/// Time to wait for these states, if none come.
 const SHOWN_WITHIN: Duration = Duration::from_secs(5);
 
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
     /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
     /// [`insensitive`](CollisionBehavior::insensitive), or values of your own. A goal whose force
-    /// cap is above them begins with a warning (`tracing`). Below about 10 N the friction of an arm
-    /// that touches nothing is enough for a reflex.
+    /// cap exceeds them begins with a warning (`tracing`). Below about 10 N, the friction of an
+    /// untouched arm alone can trigger a reflex.
     ///
     /// The vendor documents no range. The simulator refuses negative and non-finite values.
     ///
@@ -54,8 +54,8 @@ impl Robot {
     /// [`CommandError`].
     ///
     /// # Cancel safety
-    /// Once the future is polled, the request may still be carried out, and a robot that is
-    /// [supervised](crate::connection::Builder::supervise) counts it as set.
+    /// Once the future is polled, the robot may still carry the request out. The driver of a
+    /// [supervised](crate::connection::Builder::supervise) robot counts the value as set.
     pub async fn set_collision_behavior(
         &self,
         behavior: CollisionBehavior,
@@ -63,8 +63,8 @@ impl Robot {
         self.set(Request::SetCollisionBehavior(behavior)).await
     }
 
-    /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0,
-    /// 14250].
+    /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`. Each value is
+    /// in [0, 14250].
     ///
     /// # Errors
     /// [`CommandError`].
@@ -102,13 +102,13 @@ impl Robot {
         .await
     }
 
-    /// Sets the stiffness frame in the end effector's, `EE_T_K`. Resolves when a state shows it,
-    /// because later results are computed from states.
+    /// Sets the stiffness frame in the end effector's frame, `EE_T_K`. Resolves when a state shows
+    /// the new frame, because later results are computed from states.
     ///
     /// The vendor documents no range. The simulator refuses a frame more than 2 m away.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::LinkLost`] if the robot answers and its states stay away.
+    /// [`CommandError`]; [`CommandError::LinkLost`] if the robot answers but no states come.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -117,8 +117,8 @@ impl Robot {
         self.set(Request::SetEEToK(frame)).await
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range, and when it
-    /// resolves, are as for [`Self::set_k`].
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Range and resolution
+    /// are as for [`Self::set_k`].
     ///
     /// # Errors
     /// As for [`Self::set_k`].
@@ -131,13 +131,14 @@ impl Robot {
     }
 
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
-    /// `[m]`, inertia about it `[kg m^2]`, column-major. Resolves when a state shows it.
+    /// `[m]`, inertia about that centre `[kg m^2]`, column-major. Resolves when a state shows the
+    /// load.
     ///
-    /// A load that no rigid body has is refused, and not sent. Such loads have a mass below 0, an
-    /// inertia that is not symmetric, or a principal moment below 0 or above the sum of the others.
-    /// The vendor documents no range. The simulator also refuses more than 10 kg and a centre more
-    /// than 1 m away. It refuses a principal moment above 1 kg m^2; its configuration has other
-    /// bounds.
+    /// A load that is impossible for a rigid body is refused before it is sent. It has a mass below
+    /// 0, an inertia that is not symmetric, or a principal moment below 0 or above the sum of the
+    /// others. The vendor documents no range. The simulator also refuses more than 10 kg, a centre
+    /// more than 1 m away, and a principal moment above 1 kg m^2. Its configuration can change
+    /// these bounds.
     ///
     /// # Errors
     /// As for [`Self::set_k`].
@@ -156,14 +157,14 @@ impl Robot {
         self.set(request).await
     }
 
-    /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
-    /// again. Succeeds without effect if there is nothing to recover from. May take as long as the
-    /// brakes do, 30 s at most.
+    /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot accepts
+    /// motions again. Without an error, succeeds and does nothing. May take as long as the brakes
+    /// do, 30 s at most.
     ///
     /// # Errors
     /// [`CommandError`]; a refusal that names manual recovery must be solved at the robot.
-    /// [`CommandError::LinkLost`] if the robot answers and its states stay away, or if both do for
-    /// three seconds more than the link timeout.
+    /// [`CommandError::LinkLost`] if the robot answers but no states come. Also if answers and
+    /// states both stay away for three seconds more than the link timeout.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -190,9 +191,9 @@ impl Robot {
         urdf(&self.channel(), ANSWER).await
     }
 
-    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz. The
-    /// upper end switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
-    /// vendor: filter on this side.
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000
+    /// Hz switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
+    /// vendor: filter in this program instead.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
@@ -219,9 +220,9 @@ impl Robot {
         }
     }
 
-    /// Sets something at the robot, and waits for a state that shows it, if states do. The answer
-    /// may come before such a state, and a motion that begins in between would compute with the old
-    /// tool.
+    /// Sets a value at the robot, and waits for a state that shows it, if states have the value.
+    /// The answer may come before such a state; a motion that begins in between would compute with
+    /// the old tool.
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         check_finite(&request)?;
         let turn = self.setting().lock().await;
@@ -254,8 +255,8 @@ impl Robot {
     }
 }
 
-/// A setting that is with the robot. The supervisor has its answer when this is dropped, also with
-/// the future of the call.
+/// A setting that was sent to the robot. Dropping this value gives the supervisor the answer, also
+/// if the future of the call is dropped.
 struct Declared<'a> {
     supervisor: &'a Supervisor,
     id: SettingId,
@@ -268,8 +269,8 @@ impl Drop for Declared<'_> {
     }
 }
 
-/// Resources to set settings again over one connection. The last handle of the robot closes the
-/// connection, also while a request is under way.
+/// Resources for sending settings again over one connection. The last handle of the robot still
+/// closes the connection, even during a request.
 pub(crate) struct Again {
     supervisor: Arc<Supervisor>,
     setting: Arc<Mutex<()>>,
@@ -290,7 +291,7 @@ impl Again {
         }
     }
 
-    /// Sets everything again that this program has set and that does not hold.
+    /// Sends all settings of this program again that the robot does not have.
     pub(crate) async fn run(self) {
         loop {
             let turn = self.setting.lock().await;
@@ -316,7 +317,7 @@ impl Again {
     }
 }
 
-/// Meaning of an error for a setting.
+/// Returns the meaning of an error for a setting.
 fn answer_of(error: &CommandError) -> Answer {
     let text = error.to_string();
     match error {
@@ -337,7 +338,7 @@ fn note(thresholds: &Thresholds, request: &Request) {
     }
 }
 
-/// Waits for a state that shows the new value, or until [`SHOWN_MS`] have passed without one.
+/// Waits for a state that shows the new value; stops when [`SHOWN_MS`] have passed without one.
 async fn shown(newest: &Newest, request: &Request) -> Answer {
     if difference(request, &newest.state()).is_none() {
         return Answer::Taken;
@@ -358,7 +359,7 @@ async fn shown(newest: &Newest, request: &Request) -> Answer {
     }
 }
 
-/// Refuses numbers that no robot can use. The robot itself decides which others it takes.
+/// Refuses numbers that are not finite. The robot itself judges all other numbers.
 fn check_finite(request: &Request) -> Result<(), CommandError> {
     for &(what, values) in &parts(request) {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
@@ -369,7 +370,7 @@ fn check_finite(request: &Request) -> Result<(), CommandError> {
     Ok(())
 }
 
-/// The numbers of a request, by argument.
+/// Returns the numbers of a request, by argument.
 fn parts(request: &Request) -> Vec<(&'static str, &[f64])> {
     match request {
         Request::SetCollisionBehavior(CollisionBehavior {
@@ -408,7 +409,7 @@ fn parts(request: &Request) -> Vec<(&'static str, &[f64])> {
     }
 }
 
-/// Returns the reason why no rigid body has this load, which is finite; `None` if one may have it.
+/// Returns the reason why a rigid body cannot have this load, which is finite; `None` if it can.
 fn impossible(load: &Load) -> Option<String> {
     if load.m_load < 0.0 {
         return Some(format!("m_load is {} kg, expected 0 or more", load.m_load));
@@ -436,12 +437,12 @@ fn impossible(load: &Load) -> Option<String> {
     })
 }
 
-/// Six digits after the point, without zeros at the end.
+/// Rounds to six digits after the point, without zeros at the end.
 fn short(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }
 
-/// Adds the values that were sent, and the documented range, to an answer that names no number.
+/// Adds the sent values and the documented range to an answer that names no number.
 fn explained(error: CommandError, request: &Request) -> CommandError {
     let invalid = Status::Setter(SetterStatus::InvalidArgumentRejected);
     let refusal = match error {
@@ -500,8 +501,8 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
     CommandError::InvalidArgument { refusal, why }
 }
 
-/// Difference between the value that was set and the value in a state. `None` for values that no
-/// state shows.
+/// Returns the difference between the value that was set and the value in a state. `None` for
+/// values that states do not have.
 fn difference(request: &Request, state: &RobotState) -> Option<String> {
     let text = |got: &dyn Debug, set: &dyn Debug| {
         format!("the robot accepted the setting, but its states show {got:?}, expected {set:?}")
@@ -542,7 +543,7 @@ pub(crate) async fn recover(channel: &Channel) -> Result<(), CommandError> {
     recovery.await.map(|_| ())
 }
 
-/// The robot's description of itself, waited for as long as `deadline`.
+/// Returns the robot's description of itself; waits for `deadline` at most.
 pub(crate) async fn urdf(channel: &Channel, deadline: Duration) -> Result<String, CommandError> {
     match channel.call(Request::GetRobotModel, deadline).await? {
         Response::Model(text) => Ok(String::from_utf8_lossy(&text).into_owned()),

@@ -1,7 +1,7 @@
-//! Conversions of poses from and to other programs, and turned poses.
+//! Conversions of poses from and to other programs, and rotations of poses in place.
 //!
-//! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`, so that
-//! products of poses do most of the work. `start` is a pose of the end effector in the base frame:
+//! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`, and products of poses
+//! do most of the work. `start` is a pose of the end effector in the base frame:
 //!
 //! | wanted | written |
 //! |---|---|
@@ -42,18 +42,18 @@ pub enum NotRigid {
     /// A number is not finite.
     #[error("the number in row {row}, column {column} is not finite")]
     NotFinite {
-        /// Its row, from 1.
+        /// Row of that number, from 1.
         row: usize,
-        /// Its column, from 1.
+        /// Column of that number, from 1.
         column: usize,
     },
-    /// The transpose is a pose: the numbers are row by row.
+    /// The transpose is a pose: the numbers are in row-major order.
     #[error(
         "got the pose row by row, expected it column by column: 0 0 0 1 is in the last column, not in \
          the last row"
     )]
     RowMajor,
-    /// The last row is another.
+    /// The last row is not 0 0 0 1.
     #[error("the last row is not 0 0 0 1, as expected of a pose")]
     LastRow,
     /// The upper left block is scaled, sheared or mirrored.
@@ -64,10 +64,10 @@ pub enum NotRigid {
     Rotation,
 }
 
-/// The pose nearest to a matrix, such as one of the model's.
+/// Returns the pose nearest to a matrix, for example to a matrix of the model.
 ///
 /// # Errors
-/// [`NotRigid`]. Rotations that are less than 1e-3 off are accepted.
+/// [`NotRigid`]. Errors of a rotation below 1e-3 are accepted.
 pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     transform::isometry(matrix).ok_or_else(|| {
         if let Some(index) = matrix.iter().position(|x| !x.is_finite()) {
@@ -84,7 +84,7 @@ pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     })
 }
 
-/// [`from_matrix`] of 16 numbers, column by column, as in `O_T_EE`.
+/// As [`from_matrix`], for 16 numbers in column-major order, as in `O_T_EE`.
 ///
 /// # Errors
 /// As for [`from_matrix`].
@@ -92,9 +92,9 @@ pub fn from_array(column_major: &[f64; 16]) -> Result<Pose, NotRigid> {
     from_matrix(&Matrix4::from_column_slice(column_major))
 }
 
-/// The pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, which is normalised.
+/// Returns the pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, normalised.
 ///
-/// `None` if a number is not finite, or the quaternion is shorter than 1e-6 and so has no
+/// `None` if a number is not finite, or if the quaternion is shorter than 1e-6 and therefore has no
 /// direction.
 pub fn from_xyzw(position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Pose> {
     let rotation = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), SHORTEST)?;
@@ -104,18 +104,18 @@ pub fn from_xyzw(position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Pose> {
     is_finite.then_some(pose)
 }
 
-/// The position, `[m]`, and the quaternion, `[x, y, z, w]`, of length 1.
+/// Returns the position, `[m]`, and the quaternion, `[x, y, z, w]`, of length 1.
 pub fn to_xyzw(pose: &Pose) -> ([f64; 3], [f64; 4]) {
     (pose.translation.vector.into(), pose.rotation.coords.into())
 }
 
-/// The pose turned in place: by `turn` about the axes of the base, through the position of `pose`,
-/// which stays.
+/// Returns the pose rotated in place: by `turn` about the axes of the base, through the position of
+/// `pose`, which stays the same.
 pub fn rotated(pose: &Pose, turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_parts(pose.translation, turn * pose.rotation)
 }
 
-/// Length of a quaternion below which it is taken for zero.
+/// Length of a quaternion below which it counts as zero.
 const SHORTEST: f64 = 1e-6;
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 //! use franka_async::prelude::*;
 //! ```
 //!
-//! `Error` and the conditions of [`condition`](crate::condition) are not in it, for their names are
-//! common words.
+//! `Error` and the conditions of [`condition`](crate::condition) are not in the prelude, because
+//! their names are common words.
 
 #[doc(no_inline)]
 pub use crate::connection::Builder;

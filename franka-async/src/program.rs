@@ -15,7 +15,7 @@ impl Robot {
     /// future stops the robot.
     ///
     /// # Errors
-    /// The cause of an end of the motion before it ran.
+    /// The reason why the motion ended before it ran.
     pub(crate) async fn begin_program(
         &self,
         id: GoalId,

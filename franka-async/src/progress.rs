@@ -11,7 +11,7 @@ use nalgebra::Isometry3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {
-    /// `message_id` of the state that it answered, `[ms]` of the robot's clock.
+    /// `message_id` of the state that the reference answered, `[ms]` of the robot's clock.
     pub time: u64,
     /// Joint positions, `[rad]`.
     pub q: [f64; 7],
@@ -19,9 +19,10 @@ pub struct Reference {
     pub dq: [f64; 7],
     /// Joint accelerations, `[rad/s^2]`.
     pub ddq: [f64; 7],
-    /// The end effector at those positions, base frame.
+    /// Pose of the end effector at those positions, in the base frame.
     pub pose: Isometry3<f64>,
-    /// Guards that have held the arm back within the last 0.1 s, and at most 0.2 s.
+    /// Guards that have held the arm back within the last 0.1 s; a guard stays listed for 0.2 s at
+    /// most.
     pub guards: Bindings,
 }
 
@@ -29,16 +30,16 @@ pub struct Reference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Time since it began, by the robot's clock, pauses included.
+    /// Time since the motion began, by the robot's clock, pauses included.
     pub elapsed: Duration,
-    /// Time until the reference is at the target, if nothing delays it. The arm settles after that,
-    /// a quarter of a second at least.
+    /// Time until the reference is at the target, if nothing delays it. The arm then needs at least
+    /// a quarter of a second to settle.
     pub remaining: Duration,
 }
 
 impl Progress {
-    /// The share of its time that has passed, from 0 to 1. A pause takes the share back a little,
-    /// because the motion brakes and begins again.
+    /// Returns the share of the motion's time that has passed, from 0 to 1. A pause reduces the
+    /// share a little, because the motion brakes and begins again.
     pub fn fraction(&self) -> f64 {
         let all = self.elapsed + self.remaining;
         if all.is_zero() {
@@ -52,7 +53,7 @@ impl Progress {
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     references: ReferenceReader,
-    /// Last target taken, and its name. Locked only to copy it.
+    /// Last accepted target, and its name. Locked only to copy it.
     heading: Arc<Mutex<Option<(GoalId, Target)>>>,
 }
 
@@ -70,25 +71,25 @@ impl Course {
         *noted = heading;
     }
 
-    /// Present target of target control; `None` if it moves nothing.
+    /// Returns the present target of target control; `None` if target control moves nothing.
     pub(crate) fn target(&self) -> Option<Target> {
         let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         noted.map(|(_, target)| target)
     }
 
-    /// Name of the target of target control; `None` if it moves nothing.
+    /// Returns the name of the present goal of target control; `None` if it moves nothing.
     #[cfg(feature = "record")]
     pub(crate) fn goal(&self) -> Option<GoalId> {
         let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         noted.map(|(goal, _)| goal)
     }
 
-    /// The newest reference; `None` if target control has not answered the newest state.
+    /// Returns the newest reference; `None` if target control has not answered the newest state.
     pub(crate) fn reference(&self) -> Option<ReferenceState> {
         self.references.newest()
     }
 
-    /// Progress of the motion `goal`; `None` before it has begun and after its end.
+    /// Returns the progress of the motion `goal`; `None` before it has begun and after its end.
     pub(crate) fn progress(&self, goal: GoalId) -> Option<Progress> {
         // In the first cycle of a session nothing is planned yet.
         let begun = |newest: &ReferenceState| newest.goal == goal && !newest.elapsed.is_zero();

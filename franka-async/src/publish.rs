@@ -12,8 +12,8 @@ use tokio::sync::{broadcast, watch};
 
 use crate::newest_state;
 
-/// Records and states that a slow listener may lag behind before it misses some: two seconds and
-/// one.
+/// Number of items that a slow listener may lag behind before it misses some: two seconds of
+/// records, one second of states.
 const RECORDS: usize = 2048;
 const STATES: usize = 1024;
 
@@ -21,7 +21,7 @@ const STATES: usize = 1024;
 #[derive(Clone, Debug)]
 pub(crate) enum Update {
     State(Arc<RobotState>),
-    /// No state has come for this duration, so that the link counts as lost.
+    /// No state has come for this duration; the link counts as lost.
     Silence(Duration),
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct Publisher {
 /// The silence that was reported last.
 #[derive(Clone, Copy, Debug)]
 struct Silent {
-    /// `message_id` of the state before it.
+    /// `message_id` of the last state before the silence.
     since: u64,
     silence: Duration,
 }
@@ -61,7 +61,7 @@ pub(crate) struct Subscriptions {
 }
 
 impl Publisher {
-    /// All receivers of `states` are subscribers.
+    /// Returns a publisher. All receivers of `states` count as subscribers.
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,
@@ -93,13 +93,13 @@ impl Publisher {
         }
     }
 
-    /// The newest state that was passed on.
+    /// Returns the newest state that was passed on.
     pub(crate) fn state(&self) -> watch::Ref<'_, RobotState> {
         self.listeners.newest.borrow()
     }
 
-    /// Passes on everything that has come. Without subscribers, the thread no longer
-    /// wakes the bridge for every state.
+    /// Passes on everything that has come. If there are no subscribers, the thread stops waking the
+    /// bridge for every state.
     pub(crate) fn publish(&mut self) {
         self.refresh();
         // Counted before the subscribers are: none of these is due to a subscriber that comes
@@ -122,7 +122,7 @@ impl Publisher {
         self.state_wakeups.release(is_wanted);
     }
 
-    /// Makes the thread wake the bridge for every state, or no longer for the bridge itself.
+    /// Sets whether the bridge itself needs a wake-up for every state.
     pub(crate) fn watch(&mut self, every_state: bool) {
         self.is_watched = every_state;
         if every_state {
@@ -130,7 +130,7 @@ impl Publisher {
         }
     }
 
-    /// Passes on the newest state only. Without subscribers, the state that was passed on last may
+    /// Passes on the newest state only. Without subscribers, the last state that was passed on may
     /// be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
@@ -138,7 +138,7 @@ impl Publisher {
         }
     }
 
-    /// Passes on that the robot has been silent for `silence`.
+    /// Reports to listeners that the robot has been silent for `silence`.
     pub(crate) fn tell_silence(&self, silence: Duration) {
         let since = self.state().message_id;
         *lock(&self.silent) = Some(Silent { since, silence });
@@ -156,21 +156,22 @@ impl Listeners {
 }
 
 impl Subscriptions {
-    /// The first ones may be of states that came before.
+    /// Returns a receiver of states from now on. The first ones may be of states that came before.
     pub(crate) fn updates(&self) -> broadcast::Receiver<Update> {
         let updates = subscribe(&self.updates);
         self.state_wakeups.request();
         updates
     }
 
-    /// The silence for which the link was given up, if no state has come since. `newest` is the
-    /// `message_id` of the newest state. Its message is sent once; later subscribers look here.
+    /// Returns the silence for which the link was given up, if no state has come since. `newest` is
+    /// the `message_id` of the newest state. The message of a silence is sent once; later
+    /// subscribers call this.
     pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
         let silent = *lock(&self.silent);
         silent.and_then(|told| (newest <= told.since).then_some(told.silence))
     }
 
-    /// As [`Self::updates`].
+    /// Returns a receiver of records from now on; the first ones may be of earlier cycles.
     pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
         let records = subscribe(&self.records);
         self.state_wakeups.request();

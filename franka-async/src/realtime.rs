@@ -1,5 +1,5 @@
-//! Scheduling of the control thread ([`Realtime`](crate::Realtime) and the options of a
-//! [`Builder`](crate::connection::Builder)), and how punctual it is.
+//! Scheduling of the control thread, and its punctuality: [`Realtime`](crate::Realtime) and the
+//! options of a [`Builder`](crate::connection::Builder).
 
 pub use franka_rt::sched::{Granted, Kernel, Scheduling};
 pub use franka_rt::stats::{

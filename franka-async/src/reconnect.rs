@@ -1,4 +1,4 @@
-//! The task of a supervised robot: it reconnects, recovers the robot, and asks whether it may.
+//! The task of a supervised robot: it reconnects, recovers the robot, and asks for permission.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(crate) struct Reconnector {
     robot: WeakRobot,
     supervisor: Arc<Supervisor>,
     builder: Builder,
-    /// Continues from connection to connection, and ends with this.
+    /// Stays the same from connection to connection, and ends with this value.
     states: Arc<watch::Sender<RobotState>>,
     connecting: OptionFuture<BoxFuture<'static, Result<Opened, ConnectError>>>,
     recovering: OptionFuture<BoxFuture<'static, (u64, Result<(), CommandError>)>>,
@@ -56,8 +56,8 @@ impl Reconnector {
         }
     }
 
-    /// Runs until there is no connection and will be none. `handles` is cancelled when the last
-    /// handle is dropped; `shutdowns` are notified of the end.
+    /// Runs until there is no connection and no further one will come. `handles` is cancelled when
+    /// the last handle is dropped. `shutdowns` are notified of the end.
     pub(crate) async fn run(
         mut self,
         mut shutdowns: mpsc::UnboundedReceiver<oneshot::Sender<()>>,
@@ -204,8 +204,8 @@ impl Reconnector {
         self.supervisor.on_recovery(reflex, answer);
     }
 
-    /// Asks the function of the program, which may take its time. Without one, the answer comes by
-    /// [`Robot::agree`].
+    /// Asks the program's function, which may take its time, for permission. Without a function,
+    /// the answer comes by [`Robot::agree`].
     fn ask(&mut self, reflex: Reflex) {
         let Some(ask) = self.builder.ask.clone() else {
             return;
@@ -243,7 +243,7 @@ impl Reconnector {
     }
 }
 
-/// Also when the runtime drops the task.
+/// Also runs when the runtime drops the task.
 impl Drop for Reconnector {
     fn drop(&mut self) {
         self.supervisor.close(CloseReason::RuntimeEnded);
@@ -258,7 +258,7 @@ fn failure(error: &ConnectError) -> ConnectFailure {
     }
 }
 
-/// Differences of two models, for a person.
+/// Describes the differences of two models for a person.
 fn difference(expected: &Model, got: &Model) -> String {
     if expected.kind() != got.kind() {
         return format!("got {:?}, expected {:?}", got.kind(), expected.kind());

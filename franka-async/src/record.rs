@@ -1,4 +1,4 @@
-//! Records of what every cycle saw and did ([`Robot::records`](crate::Robot::records),
+//! Records of every cycle's inputs and outputs ([`Robot::records`](crate::Robot::records),
 //! [`Robot::cycles`](crate::Robot::cycles), [`Engage::observer`](crate::Engage::observer)), and the
 //! log that an error carries.
 

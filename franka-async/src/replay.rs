@@ -4,7 +4,7 @@
 //! Recording::open --cycles--> Samples --ReplayPlan::new--> plan --Arm::replay--> ReplayReport
 //! ```
 //!
-//! [`ReplayPlan`] decides what is followed and what is refused, before anything moves.
+//! [`ReplayPlan`] decides which targets are followed or refused, before anything moves.
 
 use std::time::Duration;
 
@@ -25,16 +25,15 @@ use crate::robot::Robot;
 pub struct ReplayReport {
     /// Time from the first target to the last.
     pub duration: Duration,
-    /// Distance of the joints from their recorded positions, the joint that was furthest off in
-    /// each state, `[rad]`.
+    /// Largest distance of a joint from its recorded position in each state, `[rad]`.
     pub joints: Spread,
     /// Distance of the end effector from its recorded position, `[m]`.
     pub position: Spread,
-    /// States that were compared.
+    /// Number of states that were compared.
     pub states: usize,
 }
 
-/// Reason why a replay has no report. The arm is braked and then held, unless the session has
+/// Reason why a replay has no report. The arm brakes and is then held, unless the session has
 /// ended.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -42,13 +41,13 @@ pub enum ReplayFailure {
     /// The recorded motion does not suit this arm. Nothing has moved.
     #[error(transparent)]
     Refused(#[from] ReplayError),
-    /// The motion to the first target, or the session, ended otherwise.
+    /// The motion to the first target, or the session, ended early.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The arm did not move as it did in the recording: something holds it, or a guard has braked.
+    /// The arm did not move as in the recording: something holds it, or a guard has braked it.
     #[error("{distance} {after:.3?} after the begin of the replay, expected {most} at most")]
     Off {
-        /// The time in the replay.
+        /// Time in the replay.
         after: Duration,
         /// Measured distance.
         distance: String,
@@ -58,8 +57,8 @@ pub enum ReplayFailure {
 }
 
 impl Robot {
-    /// Moves to the first target of a recorded motion, replays it, and releases the arm: a session
-    /// with the defaults, and [`Arm::replay`] in it.
+    /// Moves to the first target of a recorded motion, replays the motion, and releases the arm.
+    /// Begins a session with the defaults, and calls [`Arm::replay`] in it.
     ///
     /// ```no_run
     /// # async fn run(
@@ -73,8 +72,8 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// As [`Arm::replay`], and [`ReplayFailure::Motion`] if the session does not begin, or does not
-    /// end well.
+    /// As [`Arm::replay`], and [`ReplayFailure::Motion`] if the session does not begin, or ends
+    /// with an error.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm and ends the session, in the background.
@@ -89,18 +88,20 @@ impl Robot {
 
 impl Arm {
     /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, slower by the
-    /// [speed of the plan](ReplayPlan::speed). Then it follows the targets at their times, with all
-    /// guards of the session and the limits of the [plan](ReplayPlan::budget). Resolves when the
-    /// arm rests at the last target, with the distance to the position of the recorded arm.
+    /// [speed of the plan](ReplayPlan::speed). Then the arm follows the targets at their times,
+    /// with all guards of the session and the limits of the [plan](ReplayPlan::budget). Resolves
+    /// when the arm rests at the last target, with the distance to the position of the recorded
+    /// arm.
     ///
-    /// It ends as [`ReplayFailure::Off`] once a joint is further than
-    /// [`ReplayPlan::JOINTS_OFF_MAX`] from there, or, of a replay by poses, the end effector than
-    /// [`ReplayPlan::POSITION_OFF_MAX`]. Any other goal of the session ends it as
-    /// [`MotionError::Superseded`], and [`Robot::stop`] as that or as [`MotionError::Stopped`].
+    /// The replay ends as [`ReplayFailure::Off`] once a joint is further than
+    /// [`ReplayPlan::JOINTS_OFF_MAX`] from its recorded position. A replay by poses compares the
+    /// end effector instead, with [`ReplayPlan::POSITION_OFF_MAX`]. Any other goal of the session
+    /// ends the replay as [`MotionError::Superseded`]; [`Robot::stop`] ends it with the same error
+    /// or as [`MotionError::Stopped`].
     ///
     /// # Errors
-    /// [`ReplayFailure::Refused`] before anything moves; otherwise as above, or the cause of the
-    /// end of the motion to the first target or of the session.
+    /// [`ReplayFailure::Refused`] before anything moves. Otherwise as above, or the error of the
+    /// motion to the first target or of the session.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, and the session holds it.
@@ -159,9 +160,8 @@ impl Arm {
         })
     }
 
-    /// Returns the reason why a replay is over: the cause of the end of the session if it has
-    /// ended, or else `error`. A session that is about to end takes no goals, and has no other
-    /// reason for that.
+    /// Returns the reason why a replay has ended: the cause of the end of the session if it has
+    /// ended, otherwise `error`. A session refuses goals only when it is about to end.
     fn over(&self, error: MotionError) -> MotionError {
         match (self.session_error(), error) {
             (Some(ended), _) => ended,
@@ -170,7 +170,7 @@ impl Arm {
         }
     }
 
-    /// A goal with other limits than the session.
+    /// Returns a goal with other limits than the session's.
     fn goal_within(&self, target: Target, budget: Budget) -> Goal {
         Goal {
             budget,
@@ -189,7 +189,7 @@ struct BrakeOnDrop<'a> {
     arm: &'a Arm,
     /// The goal of its chunks; `None` before the first one, and once there is nothing to brake.
     goal: Option<GoalId>,
-    /// True if the first chunk is known to have been taken.
+    /// True if the session is known to have accepted the first chunk.
     is_taken: bool,
 }
 

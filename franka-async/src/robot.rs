@@ -31,21 +31,22 @@ use crate::states::States;
 use crate::supervisor::{Events, Supervisor};
 use crate::world::{self, Instant, Runtime, timeout_at};
 
-/// Pose of a frame in another, `[m]`. Unless stated otherwise, the pose of the end effector in the
-/// base frame, `O_T_EE`.
+/// Pose of one frame in another, `[m]`. Unless stated otherwise, the pose of the end effector in
+/// the base frame, `O_T_EE`.
 pub type Pose = nalgebra::Isometry3<f64>;
 
 /// A connected robot.
 ///
 /// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes
 /// the current one. Dropping the last handle brakes the arm, ends the motion and closes the
-/// connection, in the background; [`Robot::shutdown`] does the same and can be awaited. Motions in
-/// progress are handles too.
+/// connection, in the background. [`Robot::shutdown`] does the same and can be awaited. Motions in
+/// progress are handles, too.
 ///
-/// A lost connection ends everything that belongs to it, control thread included. The remaining
-/// handles then report why. Handles of a [supervised](crate::connection::Builder::supervise) robot
-/// continue with the next connection. If the runtime ends first, the arm is not braked: the robot
-/// misses its commands and stops with a reflex. Await [`Robot::shutdown`] before the program ends.
+/// When a connection is lost, everything that belongs to it ends, control thread included. The
+/// remaining handles then report the reason. Handles of a
+/// [supervised](crate::connection::Builder::supervise) robot continue with the next connection. If
+/// the runtime ends first, the arm is not braked: the robot misses its commands and stops with a
+/// reflex. Await [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]
@@ -63,7 +64,8 @@ struct Shared {
     /// Held until a setting has its place among the requests, so that no older setting overtakes
     /// it.
     setting: Arc<Mutex<()>>,
-    /// The way into the task that reconnects; `None` without such a task. Closed when it has ended.
+    /// Sender to the task that reconnects; `None` without such a task. Closed when the task has
+    /// ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
     /// Runtime of that task and of the bridges.
     runtime: Runtime,
@@ -75,9 +77,9 @@ struct Shared {
 }
 
 impl Robot {
-    /// Returns the robot of this model and version that `link` connects to. `shutdowns` leads to
-    /// the task that reconnects, if there is one; `handles` notifies that task when the last handle
-    /// is dropped.
+    /// Returns the robot of this model and version that `link` connects to. `shutdowns` is the
+    /// sender to the task that reconnects, if there is one. `handles` notifies that task when the
+    /// last handle is dropped.
     ///
     /// # Panics
     /// Outside a Tokio runtime.
@@ -106,17 +108,17 @@ impl Robot {
         }
     }
 
-    /// The newest state, however old it is: [`Self::health`] reports a silent robot.
+    /// Returns the newest state, which may be old: [`Self::health`] reports a silent robot.
     pub fn state(&self) -> RobotState {
         self.link().newest.state()
     }
 
-    /// The newest state as it changes, in motion or not. Ends when the connection does. For a
-    /// supervised robot it continues with the next connection, and ends when there will be none.
-    /// For every state, see [`Self::state_stream`] and [`Self::read`].
+    /// Returns the newest state as it changes, in motion or not. Ends when the connection does. For
+    /// a supervised robot the stream continues with the next connection, and ends when no further
+    /// one will come. For every state, see [`Self::state_stream`] and [`Self::read`].
     ///
-    /// It begins with the newest state at the call. As long as one of these exists, a task is woken
-    /// for every state; drop it when it is no longer needed.
+    /// The stream begins with the newest state at the call. As long as a [`States`] exists, a task
+    /// is woken for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
         let link = self.link();
         let closing = match &self.shared.shutdowns {
@@ -126,19 +128,19 @@ impl Robot {
         States::new(link.newest.changes(), closing.clone())
     }
 
-    /// Records of every cycle of the control thread, one per state, with what it saw and did. The
-    /// first ones may be of cycles up to 50 ms ago. A listener that lags more than two seconds
-    /// behind receives the number of records that it missed. Closes when the connection does.
+    /// Returns the records of every cycle of the control thread, one per state, with its inputs and
+    /// outputs. The first records may be of cycles up to 50 ms ago. A listener that lags more than
+    /// two seconds behind receives the number of missed records. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.link().subscriptions().records()
     }
 
-    /// Every cycle of the control thread from now on, with record, whole state and time of receipt:
-    /// for a recorder, on a separate thread. No task passes the cycles on, so a busy runtime costs
-    /// none of them. The ring holds `capacity` cycles, usually
-    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); cycles that do
-    /// not fit are counted ([`CycleReader::lost`]). Ends with the connection. Takes a few
-    /// milliseconds for the memory of the ring.
+    /// Returns every cycle of the control thread from now on, with record, whole state and time of
+    /// receipt. For a recorder, on a separate thread: no task passes the cycles on, so a busy
+    /// runtime loses none of them. The ring holds `capacity` cycles, usually
+    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY). Cycles that do
+    /// not fit are counted ([`CycleReader::lost`]). Ends with the connection. The call takes a few
+    /// milliseconds to get the memory of the ring.
     ///
     /// # Errors
     /// [`AttachError`] for a capacity out of range, for too many readers, and without a connection.
@@ -150,21 +152,21 @@ impl Robot {
         link.cycles.attach(capacity)
     }
 
-    /// The measured pose of the end effector, `O_T_EE` of the newest state.
+    /// Returns the measured pose of the end effector, `O_T_EE` of the newest state.
     pub fn pose(&self) -> Pose {
         let state = self.state();
         // An invalid pose is replaced by the pose at the joint positions.
         pose_of(&state).unwrap_or_else(|| pose_at(self.model(), &state, state.q))
     }
 
-    /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end
+    /// Returns the pose of the end effector at the joint positions `q`, `[rad]`, with the end
     /// effector of the newest state. An end effector that is not a rigid transformation counts as
     /// the flange.
     pub fn pose_at(&self, q: [f64; 7]) -> Pose {
         pose_at(self.model(), &self.state(), q)
     }
 
-    /// The reference of target control; `None` while it moves nothing.
+    /// Returns the reference of target control; `None` while target control moves nothing.
     pub fn reference(&self) -> Option<Reference> {
         let newest = self.link().course.reference()?;
         Some(Reference {
@@ -177,54 +179,56 @@ impl Robot {
         })
     }
 
-    /// The model of the connected arm, which control computes with. A Franka Research 3 describes
-    /// itself. Its masses and limits are taken from the description ([`Robot::urdf`]), unless the
-    /// feature `urdf` is off or
+    /// Returns the model of the connected arm, which control computes with. A Franka Research 3
+    /// describes itself. Its masses and limits come from the description ([`Robot::urdf`]), unless
+    /// the feature `urdf` is off or
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
-    /// Emika Robot has no description. Its model has the constants that its own library is known to
-    /// compute with, [`Model::fer`]. In both models, the lengths of upper arm and forearm are the
-    /// lengths that the robot computes its poses with: see [`Self::geometry_check`].
+    /// Emika Robot has no description. Its model, [`Model::fer`], has the constants with which its
+    /// own library is known to compute. In both models, the lengths of upper arm and forearm are
+    /// the lengths with which the robot computes its poses: see [`Self::geometry_check`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }
 
-    /// Comparison of the model with the poses that the robot reported when this connection was
-    /// made, and the lengths that follow from it.
+    /// Returns the comparison of the model with the poses that the robot reported when this
+    /// connection was made, and the resulting lengths.
     pub fn geometry_check(&self) -> GeometryCheck {
         self.link().geometry
     }
 
-    /// [`Self::model`] for control functions: takes states, each with its end effector and load.
+    /// Returns [`Self::model`] for control functions: it accepts states with their end effector and
+    /// load.
     pub fn state_model(&self) -> StateModel {
         StateModel::new(self.shared.model.clone(), self.shared.version)
     }
 
-    /// Returns how far gains are from the first oscillation of an arm like this in its present
-    /// state. A motion whose gains have less than [`Margin::WANTED`] begins with a warning
-    /// (`tracing`). `None` for gains that are out of their bounds, and if the robot's tool is no
-    /// rigid body.
+    /// Returns the stability margin of `gains`: the distance to the first oscillation of an arm
+    /// like this in its present state. A motion whose gains have less than [`Margin::WANTED`]
+    /// begins with a warning (`tracing`). `None` for gains that are out of their bounds, and if the
+    /// robot's tool is not a rigid body.
     pub fn margin(&self, gains: &Gains) -> Option<Margin> {
         Margin::of(gains, self.model(), &self.state(), self.version())
     }
 
-    /// The protocol version that the robot speaks.
+    /// Returns the protocol version of the connection.
     pub fn version(&self) -> Version {
         self.shared.version
     }
 
-    /// Address of the robot.
+    /// Returns the address of the robot.
     pub fn address(&self) -> SocketAddr {
         self.link().address
     }
 
-    /// Returns the lease of the arm, for services whose clients move it. It outlives connections.
+    /// Returns the lease of the arm, for services whose clients move it. The lease outlives
+    /// connections.
     pub fn lease(&self) -> &Lease {
         &self.shared.lease
     }
 
-    /// Counters and histograms of the control thread, its worst cycle and the current motion, live.
-    /// The thread itself writes them, so they can be read while the runtime is busy. Each
-    /// connection has its own thread and counters.
+    /// Returns the counters and histograms of the control thread, its worst cycle and the current
+    /// motion, live. The thread itself writes them, so they are up to date even if the runtime is
+    /// busy. Each connection has its own thread and counters.
     pub fn stats(&self) -> Arc<Stats> {
         self.link().stats.clone()
     }
@@ -236,35 +240,34 @@ impl Robot {
     }
 
     /// Brakes everything that moves. Resolves when the motion has ended and a state shows the arm
-    /// at rest and no motion of the robot; at once if that is so already. The motion itself
-    /// resolves as [`MotionError::Stopped`] as soon as the stop is taken, while the arm still
-    /// brakes.
+    /// at rest and no motion of the robot; at once if nothing moves. The motion itself resolves as
+    /// [`MotionError::Stopped`] as soon as the stop is accepted, while the arm still brakes.
     ///
-    /// Stops of several callers share one brake and its outcome. If a motion was given up and the
-    /// robot still shows it, each call sends the robot another stop request. A stop does not hold:
-    /// a motion that another task begins after it moves the arm again. The stop then resolves as
+    /// Stops of several callers share one braking and its outcome. If a motion was given up and the
+    /// robot still shows it, each call sends the robot another stop request. A stop does not last:
+    /// a motion that another task begins later moves the arm again. The stop then resolves as
     /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
-    /// holds.
+    /// lasts.
     ///
-    /// An arm that hands keep in motion is stopped by the robot. The robot receives the stop
-    /// request after two seconds. It has four seconds to end the motion, and two more to show an
-    /// arm at rest. So a stop resolves within eight seconds, mostly within half a second, while the
+    /// If hands keep the arm in motion, the robot stops it: the driver sends the stop request after
+    /// two seconds. The robot has four seconds to end the motion, and two more to show an arm at
+    /// rest. Therefore a stop resolves within eight seconds, mostly within half a second, while the
     /// link stays up.
     ///
     /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
-    /// meanwhile, the stop waits for the next one, 10 s at most, and stops there as well.
+    /// meanwhile, the stop waits for the next connection, 10 s at most, and stops the robot there.
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex.
     /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds.
-    /// [`MotionError::NotAtRest`] if it shows none and the arm moves, by a hand that guides it.
+    /// [`MotionError::NotAtRest`] if the robot shows no motion and the arm moves, guided by a hand.
     /// [`MotionError::Superseded`], see above. [`MotionError::LinkLost`] if the robot has been
     /// silent for the link timeout, and [`MotionError::ConnectionClosed`] if there is no
     /// connection: in both cases it is unknown whether the arm rests.
     ///
     /// # Cancel safety
-    /// Once polled, the arm is braked even if the future is dropped; a dropped stop does not wait
-    /// for another connection.
+    /// Once polled, the stop still brakes the arm if the future is dropped, but does not wait for
+    /// another connection.
     pub async fn stop(&self) -> Result<(), MotionError> {
         self.brake(false).await
     }
@@ -272,11 +275,12 @@ impl Robot {
     /// Stops as [`Self::stop`] does, and latches the stop. Until [`Self::release_stop`], every
     /// motion, session, control function and goal of any handle is refused as
     /// [`MotionError::NotReady`] with [`Unready::StopLatched`](crate::error::Unready::StopLatched).
-    /// A motion that waits for the robot is taken back. The latch outlives connections, and holds
-    /// regardless of the outcome of the stop. Parameters can be set, and the robot recovered;
-    /// neither moves anything.
+    /// A motion that waits for the robot is cancelled. The latch outlives connections, and stays
+    /// regardless of the outcome of the stop. Parameters can still be set, and the robot can be
+    /// recovered; neither moves anything.
     ///
-    /// It is a latch of this program, and no safety function: it is gone when the program ends.
+    /// The latch belongs to this program, and is no safety function: it is gone when the program
+    /// ends.
     ///
     /// # Errors
     /// As [`Self::stop`], except [`MotionError::Superseded`].
@@ -287,8 +291,8 @@ impl Robot {
         self.brake(true).await
     }
 
-    /// Releases a [latched](Self::latch_stop) stop: motions are admitted again. Nothing moves by
-    /// it. Returns true if a stop was latched.
+    /// Releases a [latched](Self::latch_stop) stop: motions are admitted again. Releasing moves
+    /// nothing. Returns true if a stop was latched.
     pub fn release_stop(&self) -> bool {
         self.shared.supervisor.release_stop()
     }
@@ -317,7 +321,7 @@ impl Robot {
         outcome
     }
 
-    /// Brakes by the newest connection.
+    /// Brakes over the newest connection.
     async fn brake_once(&self, latches: bool) -> Result<(), MotionError> {
         let (ended, outcome) = oneshot::channel();
         let goal = self.next_goal();
@@ -338,11 +342,11 @@ impl Robot {
     }
 
     /// Brakes, ends the motion, ends the control thread and closes the connection. Every other
-    /// handle is then closed. To learn whether the arm was seen to rest, call [`Self::stop`]
-    /// before.
+    /// handle is then closed. Call [`Self::stop`] before, if you need to know whether the arm
+    /// rests.
     ///
     /// # Cancel safety
-    /// Once polled, it continues in the background.
+    /// Once polled, the shutdown continues in the background.
     pub async fn shutdown(&self) {
         let (reply, ended) = oneshot::channel();
         match &self.shared.shutdowns {
@@ -354,9 +358,9 @@ impl Robot {
         let _ = ended.await;
     }
 
-    /// Waits until the connection has ended, and returns why. Every motion has resolved by then or
-    /// is about to. For a supervised robot it waits until there will be no connection, because the
-    /// supervisor has given up or this program has closed it.
+    /// Waits until the connection has ended, and returns the reason. Every motion has resolved by
+    /// then or is about to. For a supervised robot, waits until the supervisor has given up or this
+    /// program has closed the connection.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
@@ -370,16 +374,16 @@ impl Robot {
         }
     }
 
-    /// Events of the robot from now on: connections lost and made, reflexes with their diagnosis,
-    /// recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no connection and
-    /// will be none. A robot that is not supervised has events, too. Changes that only a state
-    /// shows are noticed within 50 ms.
+    /// Returns the events of the robot from now on: connections lost and made, reflexes with their
+    /// diagnosis, recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no
+    /// connection and no further one will come. A robot that is not supervised has events, too.
+    /// Changes that only a state shows are noticed within 50 ms.
     pub fn events(&self) -> Events {
         self.shared.supervisor.events()
     }
 
-    /// Health of the robot, as it changes: whether it takes motions, why not, and how long
-    /// reconnecting and recovering took. Ends as [`Self::events`] does.
+    /// Returns the health of the robot, as it changes: whether it accepts motions, why not, and how
+    /// long reconnecting and recovering took. Ends as [`Self::events`] does.
     pub fn health(&self) -> States<Health> {
         let supervisor = &self.shared.supervisor;
         States::new(supervisor.health(), supervisor.closing().clone())
@@ -387,10 +391,10 @@ impl Robot {
 
     /// Approves or rejects the recovery from the reflex of this number, for a
     /// [`Policy`](crate::supervision::Policy) that asks first. Returns true if the answer was
-    /// awaited. It is not awaited if the robot has left the reflex or another error has come, and
-    /// then nothing happens. The number is in the event, and in [`Health::reflex`].
+    /// awaited. Otherwise nothing happens: the robot has left the reflex, or another error has
+    /// come. The number is in the event, and in [`Health::reflex`].
     ///
-    /// Nothing moves. [`Self::recover`] recovers a robot as well, under any policy.
+    /// Nothing moves. [`Self::recover`] also recovers a robot, under any policy.
     pub fn agree(&self, reflex: u64, agreed: bool) -> bool {
         self.shared.supervisor.agree(reflex, agreed)
     }
@@ -407,7 +411,7 @@ impl Robot {
         WeakRobot(Arc::downgrade(&self.shared))
     }
 
-    /// Replaces the connection, which has ended.
+    /// Replaces the connection, which has ended, by `link`.
     pub(crate) fn set_link(&self, link: Arc<Link>) {
         let newest = self.shared.link.write();
         let mut newest = newest.unwrap_or_else(PoisonError::into_inner);
@@ -416,13 +420,14 @@ impl Robot {
         drop(before);
     }
 
-    /// Counts of the events so far.
+    /// Returns the counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> crate::tally::Tally {
         self.shared.supervisor.tally()
     }
 
-    /// The newest connection. Ask once if you need several things of the same connection.
+    /// Returns the newest connection. Call this once if you need several values of the same
+    /// connection.
     pub(crate) fn link(&self) -> Arc<Link> {
         let link = self.shared.link.read();
         // Nothing can panic while it is held.
@@ -433,7 +438,7 @@ impl Robot {
         self.link().channel.clone()
     }
 
-    /// A name for a goal that was never used before.
+    /// Returns a name for a goal that was never used before.
     pub(crate) fn next_goal(&self) -> GoalId {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
@@ -458,16 +463,15 @@ impl Robot {
         });
     }
 
-    /// Sends to the bridge of the newest connection, or to the motion that waits for one. Returns
-    /// that connection.
+    /// Sends to the bridge of the newest connection, or to the motion that waits for a connection.
+    /// Returns the newest connection.
     pub(crate) fn send(&self, input: Input) -> Arc<Link> {
         self.shared.supervisor.pass(input, || self.link())
     }
 }
 
-/// Waits until there is a connection to the robot with states. It waits at first, so that a
-/// connection that was just lost is shown as lost. Returns false if there is no connection before
-/// `end`.
+/// Waits until there is a connection to the robot with states. First pauses, so that a connection
+/// that was just lost is shown as lost. Returns false if there is no connection before `end`.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
     world::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);
@@ -481,10 +485,10 @@ async fn connected(mut health: States<Health>, end: Instant) -> bool {
 /// Time for which a stop waits for the next connection.
 const RECONNECTED_WITHIN: Duration = Duration::from_secs(10);
 
-/// Time in which the bridge shows that the robot is silent: it looks every 50 ms.
+/// Time in which the bridge reports a silent robot: it checks every 50 ms.
 const SHOWN_WITHIN: Duration = Duration::from_millis(100);
 
-/// A robot without being a handle of it.
+/// A reference to a robot that is not a handle of it.
 #[derive(Clone)]
 pub(crate) struct WeakRobot(Weak<Shared>);
 

@@ -18,11 +18,11 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: KeptTuning,
-    /// Joint positions at the start, `[rad]`: the posture that goals without one keep.
+    /// Joint positions at the start, `[rad]`: the default posture of goals.
     posture: OnceLock<[f64; 7]>,
-    /// Pulse of the deadman that it is bound to.
+    /// Pulse of the deadman that the session is bound to.
     pulse: Option<Arc<Pulse>>,
-    /// Goal that was set without waiting.
+    /// Newest goal that was set without waiting.
     pub(crate) waiting: Waiting,
     ended: watch::Receiver<Option<Outcome>>,
 }
@@ -51,7 +51,7 @@ impl Session {
         &self.robot
     }
 
-    /// The newest connection of its robot: its own, or a later one after its end.
+    /// Returns the newest connection of the session's robot: its own, or a later one after its end.
     pub(crate) fn link(&self) -> Arc<Link> {
         self.robot.link()
     }
@@ -60,19 +60,19 @@ impl Session {
         self.id
     }
 
-    /// Tuning of goals to come.
+    /// Returns the tuning of later goals.
     pub(crate) fn tuning(&self) -> &KeptTuning {
         &self.tuning
     }
 
-    /// Notes the joint positions where it has begun, if known.
+    /// Notes the joint positions at the start of the session, if known.
     pub(crate) fn keep(&self, posture: Option<[f64; 7]>) {
         if let Some(posture) = posture {
             self.posture.get_or_init(|| posture);
         }
     }
 
-    /// Joint positions at the start, `[rad]`, if known.
+    /// Returns the joint positions at the start, `[rad]`, if known.
     pub(crate) fn posture(&self) -> Option<[f64; 7]> {
         self.posture.get().copied()
     }
@@ -90,8 +90,8 @@ impl Session {
         }
     }
 
-    /// As [`Self::check`], and the refusal of a goal while a stop is latched or a deadman holds the
-    /// arm.
+    /// As [`Self::check`]. Also returns the error for a goal while a stop is latched or a deadman
+    /// holds the arm.
     pub(crate) fn check_goal(&self) -> Result<(), MotionError> {
         self.robot.supervisor().check_latch()?;
         self.check()?;
@@ -125,9 +125,9 @@ impl Session {
         reply.map_err(|error| self.explain(error))
     }
 
-    /// Replaces [`MotionError::Disengaged`] by the cause of the end of the session: the lifecycle
-    /// knows only the last session of its connection. Calls after the end of the session and its
-    /// connection return that cause, too.
+    /// Replaces [`MotionError::Disengaged`] by the cause of the end of the session, because the
+    /// lifecycle knows only the last session of its connection. Calls after the end of the session
+    /// and its connection return that cause, too.
     pub(crate) fn explain(&self, error: MotionError) -> MotionError {
         match (&*self.ended.borrow(), error) {
             (Some(Err(ended)), MotionError::Disengaged | MotionError::ConnectionClosed { .. }) => {

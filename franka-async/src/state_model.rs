@@ -1,4 +1,4 @@
-//! The model at the arm, end effector and load of a state.
+//! The model of an arm, evaluated at states with their end effector and load.
 
 use std::sync::Arc;
 
@@ -6,8 +6,8 @@ use franka_model::{Dynamics, EndEffector, Load, Model, RobotKind};
 use franka_proto::{RobotState, Version};
 
 /// The model of one robot, for its states. Each state has the joint positions and velocities, and
-/// the end effector, the load and the gravity that are set on the robot. A control function takes
-/// it along; nothing here allocates or waits.
+/// the end effector, the load and the gravity that are set on the robot. Move a copy into a control
+/// function: no method here allocates or waits.
 ///
 /// ```no_run
 /// # use franka_async::control::Torques;
@@ -37,14 +37,15 @@ impl StateModel {
         Self { model, version }
     }
 
-    /// The constants of the robot that speaks `version`, without a robot: for tests of a law. An
-    /// arm that describes itself has its own, [`Robot::state_model`](crate::Robot::state_model).
+    /// Returns a model with the constants of the kind of robot that has `version`: for tests of a
+    /// law without a robot. An arm that describes itself has its own model,
+    /// [`Robot::state_model`](crate::Robot::state_model).
     pub fn nominal(version: Version) -> Self {
         Self::new(Arc::new(nominal(version)), version)
     }
 
-    /// Pose and Jacobian of the end effector, mass matrix, Coriolis and gravity torques, in one
-    /// pass over the arm.
+    /// Computes pose and Jacobian of the end effector, mass matrix, Coriolis and gravity torques,
+    /// in one pass over the arm.
     pub fn dynamics(&self, state: &RobotState) -> Dynamics {
         self.model.dynamics(
             &state.q.into(),
@@ -55,24 +56,25 @@ impl StateModel {
         )
     }
 
-    /// The end effector and the stiffness frame, for the calls of [`Model`] that take them.
+    /// Returns the end effector and the stiffness frame, for the methods of [`Model`] that need
+    /// them.
     pub fn end_effector(&self, state: &RobotState) -> EndEffector {
         EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
     }
 
-    /// End effector and payload as one load, for the calls of [`Model`] that take it.
+    /// Returns end effector and payload as one load, for the methods of [`Model`] that need it.
     pub fn load(&self, state: &RobotState) -> Load {
         let load = state.total_load(self.version);
         Load::from_arrays(load.m_total, &load.F_x_Ctotal, &load.I_total)
     }
 
-    /// The model that is asked.
+    /// Returns the model behind this value.
     pub fn model(&self) -> &Model {
         &self.model
     }
 }
 
-/// The constants of the robot that speaks `version`: a version belongs to one kind.
+/// Returns the constants of the kind of robot that has `version`: a version belongs to one kind.
 pub(crate) fn nominal(version: Version) -> Model {
     let kind = match version {
         Version::V5 => RobotKind::Fer,

@@ -21,7 +21,7 @@ pub struct Reading {
     /// The state.
     pub state: RobotState,
     /// Number of states that the robot sent between the last state of this stream and this one.
-    /// They never came, were skipped for a newer one by the control thread, or came while the
+    /// Such a state was lost, or skipped by the control thread for a newer one, or came while the
     /// reader lagged too far behind. For the first state of a stream, counts from the creation of
     /// the stream.
     pub missed: u64,
@@ -31,13 +31,13 @@ pub struct Reading {
 #[derive(Debug)]
 pub struct StateStream {
     updates: BroadcastStream<Update>,
-    /// `message_id` of the state given last; at first, of the newest when the stream was made.
+    /// `message_id` of the last state returned; at first, of the newest state at the creation.
     newest: u64,
 }
 
 impl Robot {
-    /// Calls `each` with every state that comes, until it breaks, and returns the value of the
-    /// break. In motion or not.
+    /// Calls `each` with every state that comes, in motion or not, until `each` breaks. Returns the
+    /// value of the break.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
@@ -52,16 +52,16 @@ impl Robot {
     /// # }
     /// ```
     ///
-    /// `each` runs in the task that awaits, not on the control thread, and delays nothing but that
-    /// task. If it takes longer than a millisecond it lags behind, and misses states once it lags
-    /// by more than a second; [`Self::state_stream`] reports how many.
+    /// `each` runs in the task that awaits, not on the control thread, and delays only that task.
+    /// If it takes longer than a millisecond it lags behind, and misses states once it lags by more
+    /// than a second; [`Self::state_stream`] reports their number.
     ///
     /// # Errors
-    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if it
-    /// is silent already; [`ReadError::ConnectionClosed`] when there is no connection any more.
+    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if the
+    /// robot is silent already. [`ReadError::ConnectionClosed`] when the connection has ended.
     ///
     /// # Cancel safety
-    /// Dropping the future ends the reading, and nothing else. No state is kept for a later one.
+    /// Dropping the future only ends the reading. No state is kept for a later call.
     pub async fn read<T>(
         &self,
         mut each: impl FnMut(&RobotState) -> ControlFlow<T>,
@@ -92,12 +92,13 @@ impl Robot {
         }
     }
 
-    /// Every state from now on, each once and in order, with the number of states missed before it;
-    /// in motion or not. A reader may lag about a second behind before it misses any. Ends when the
-    /// connection does, and pauses while the robot is silent. It does not keep the connection.
+    /// Returns every state from now on, each once and in order, with the number of states missed
+    /// before it; in motion or not. A reader may lag about a second behind before it misses states.
+    /// The stream ends when the connection does, pauses while the robot is silent, and does not
+    /// keep the connection open.
     ///
-    /// To read the newest state at any time, see [`Self::states`]; for the commands and records of
-    /// each cycle, [`Self::records`].
+    /// To read the newest state at any time, see [`Self::states`]. For the commands and records of
+    /// each cycle, see [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
         let link = self.link();
         let updates = BroadcastStream::new(link.subscriptions().updates());
@@ -107,10 +108,10 @@ impl Robot {
 }
 
 impl StateStream {
-    /// The next state; `None` once the connection has ended.
+    /// Returns the next state; `None` once the connection has ended.
     ///
     /// # Cancel safety
-    /// Dropping the future loses nothing: the state is given to the next call.
+    /// Dropping the future loses nothing: the next call returns the state.
     pub async fn next(&mut self) -> Option<Reading> {
         StreamExt::next(self).await
     }

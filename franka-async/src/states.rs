@@ -14,8 +14,8 @@ use crate::error::ReadError;
 /// The newest state of a robot or an end effector as it changes: see
 /// [`Robot::states`](crate::Robot::states).
 ///
-/// As a [`Stream`] it yields each change, or the newest of several changes since the last, and ends
-/// when the connection does. A clone begins with the newest state when it is made.
+/// As a [`Stream`] it yields each change, or the newest of several changes since the last item, and
+/// ends when the connection does. A clone begins with the newest state at the time of cloning.
 ///
 /// States are handed out as copies. A borrow would lock out the task that publishes states and
 /// serves `stop`. A borrow held across an await would keep both waiting for each other.
@@ -27,7 +27,7 @@ pub struct States<S = RobotState> {
 }
 
 impl<S: Copy + Send + Sync + 'static> States<S> {
-    /// Yields the changes of `published` from now on; `closing` has the reason of its end.
+    /// Returns the changes of `published` from now on; `closing` has the reason for the end.
     pub(crate) fn new(mut published: watch::Receiver<S>, closing: Closing) -> Self {
         published.mark_unchanged();
         Self {
@@ -42,8 +42,8 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
         *self.published.borrow()
     }
 
-    /// Waits for a change that neither this nor the stream has returned, and returns the newest
-    /// state. [`newest`](Self::newest) may have shown it before.
+    /// Waits for a change that neither this method nor the stream has returned, and returns the
+    /// newest state. [`newest`](Self::newest) may have returned that state before.
     ///
     /// # Errors
     /// [`ReadError::ConnectionClosed`].
@@ -58,9 +58,9 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
     }
 
     /// Waits for a state that satisfies `condition`, including the present one, and returns it.
-    /// States that are replaced by a newer one before this task looks are not tested; for every
-    /// state, see [`Robot::read`](crate::Robot::read). It has no time limit except the end of the
-    /// connection, as only the caller knows when the state should come.
+    /// States that are replaced by a newer one before this task runs are not tested; for every
+    /// state, see [`Robot::read`](crate::Robot::read). Has no time limit except the end of the
+    /// connection, because only the caller knows when the state should come.
     ///
     /// # Errors
     /// [`ReadError::ConnectionClosed`].

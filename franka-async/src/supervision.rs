@@ -1,4 +1,4 @@
-//! Supervised robots: connections that are made again, recovery, events and health.
+//! Supervised robots: automatic reconnects, recovery, events and health.
 
 pub use crate::supervisor::{Events, Notification};
 pub use franka_rt::lifecycle::Differences;

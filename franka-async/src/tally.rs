@@ -4,7 +4,7 @@ use franka_proto::RobotError;
 use franka_rt::lifecycle::{MotionError, Outcome};
 use franka_rt::supervision::EventKind;
 
-/// Counts since the first connection: motions by how they ended, and reflexes by their errors.
+/// Counts since the first connection: motions by outcome, and reflexes by their errors.
 #[derive(Clone, Debug)]
 pub(crate) struct Tally {
     motions: [u64; OUTCOMES.len()],
@@ -37,12 +37,12 @@ impl Tally {
         }
     }
 
-    /// Motions by how they ended: every outcome, with its count.
+    /// Returns the number of motions for each outcome.
     pub(crate) fn motions(&self) -> impl Iterator<Item = (&'static str, u64)> + use<> {
         OUTCOMES.into_iter().zip(self.motions)
     }
 
-    /// Reflexes by error: every error, with its count. A reflex of several errors counts for each.
+    /// Returns the number of reflexes for each error. A reflex with several errors counts for each.
     pub(crate) fn reflexes(&self) -> impl Iterator<Item = (RobotError, u64)> + use<> {
         RobotError::ALL.into_iter().zip(self.reflexes)
     }
@@ -83,7 +83,7 @@ fn name_of_error(error: &MotionError) -> &'static str {
     }
 }
 
-/// Every name of an outcome.
+/// The names of all outcomes.
 const OUTCOMES: [&str; 11] = [
     "done",
     "superseded",

@@ -1,4 +1,4 @@
-//! The external wrench without the offset that the robot reports with nothing attached: see
+//! The external wrench minus the offset that the robot reports with nothing attached: see
 //! [`Robot::tare`].
 
 use std::ops::ControlFlow;
@@ -11,14 +11,14 @@ use crate::robot::Robot;
 
 impl Robot {
     /// Averages the robot's estimate of external forces and torques over half a second of its
-    /// clock, to subtract it later: robots show a newton or two with nothing attached.
-    /// [`Self::tare_over`] takes another time.
+    /// clock, to subtract it later: robots report a newton or two with nothing attached.
+    /// [`Self::tare_over`] has another duration.
     ///
     /// The arm must rest, untouched. A tare belongs to the posture in which it was taken: in
     /// another posture, an undeclared load, cables and errors of the model pull differently, and
     /// friction sticks differently after each motion. [`WrenchTare::turned`] reports how far the
-    /// arm has turned since; beyond [`WrenchTare::NEAR`], take a new one. Nothing is changed at the
-    /// robot, whose own contact and collision thresholds see the wrench as before.
+    /// arm has turned since; beyond [`WrenchTare::NEAR`], take a new tare. Nothing is changed at
+    /// the robot: its own contact and collision thresholds compare with the wrench as before.
     ///
     /// ```no_run
     /// use franka_async::condition::force_z;
@@ -37,19 +37,19 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`TareError::Refused`] if the arm moves, is touched or guided, or the robot has no estimate
-    /// there; [`TareError::Read`] if states no longer come.
+    /// [`TareError::Refused`] if the arm moves, is touched or guided, or if the robot has no
+    /// estimate in this posture. [`TareError::Read`] if states no longer come.
     ///
     /// # Cancel safety
-    /// Nothing moves and nothing is kept: dropping the future takes no tare.
+    /// Dropping the future takes no tare; nothing moves and nothing is kept.
     pub async fn tare(&self) -> Result<WrenchTare, TareError> {
         self.tare_over(WrenchTare::DURATION).await
     }
 
-    /// As [`Self::tare`], over another time: 20 ms to a minute.
+    /// As [`Self::tare`], over another duration: 20 ms to a minute.
     ///
     /// # Errors
-    /// As [`Self::tare`]; a time out of range is refused.
+    /// As [`Self::tare`]; a duration out of range is refused.
     ///
     /// # Cancel safety
     /// As [`Self::tare`].
@@ -66,7 +66,7 @@ impl Robot {
         Ok(tare)
     }
 
-    /// An arm that should move may still stick, while it is pushed against its friction.
+    /// Refuses while the reference moves: friction may still hold an arm that should move.
     fn check_reference(&self) -> Result<(), TareRefused> {
         let moves = |dq: &f64| dq.abs() > 1e-4;
         match self.reference() {

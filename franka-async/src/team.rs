@@ -1,4 +1,5 @@
-//! Several arms as one: motions that begin together, one stop, one outcome for each arm.
+//! Several arms that move together: motions with a common start, one stop, one outcome for each
+//! arm.
 //!
 //! ```text
 //!             +-- Arm 0 --> session, real-time thread 0 <--+
@@ -6,11 +7,11 @@
 //!             +-- Arm 1 --> session, real-time thread 1 <--+
 //! ```
 //!
-//! The real-time threads of the arms share one atomic word, which each looks at once in each cycle.
-//! So the arms begin within a millisecond of each other, and the fault of one brakes the others
-//! within two of their cycles after its thread has seen it, also while the runtime is busy.
-//! [`MemberFault`] lists the faults. An arm that arrives, or whose [condition](crate::condition)
-//! became true, has no fault.
+//! The real-time threads of the arms share one atomic word, which each thread reads once in each
+//! cycle. Therefore the arms begin within a millisecond of each other. A fault of one arm brakes
+//! the others within two of their cycles after its thread has seen the fault, even while the
+//! runtime is busy. [`MemberFault`] lists the faults. An arm that arrives, or whose
+//! [condition](crate::condition) became true, has no fault.
 //!
 //! ```no_run
 //! use franka_async::team::Team;
@@ -52,16 +53,16 @@ use crate::robot::Robot;
 /// Outcome of the motion of one member.
 type Outcome = Result<MotionReport, MotionError>;
 
-/// `N` arms in one session each, with one stop. Members count from 0, in the order in which they
-/// were given.
+/// `N` arms with a session each and one stop for all. Members count from 0, in the order in which
+/// they were given.
 ///
-/// The [`arms`](Self::arms) can also be moved alone: such a motion waits for no other and its end
-/// concerns no other. But every motion of a member, joint or not, brakes when the session of
-/// another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
-/// that comes after that begins as usual.
+/// The [`arms`](Self::arms) can also be moved alone. Such a motion does not wait for other arms,
+/// and its end does not affect them. But every motion of a member, joint or not, brakes when the
+/// session of another member ends otherwise than by [`Arm::disengage`], or when the team is
+/// stopped. A motion that comes after that begins as usual.
 ///
-/// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of
-/// the arms are left.
+/// Dropping the team brakes all arms and ends their sessions, in the background, unless other
+/// handles of the arms are left.
 #[derive(Debug)]
 #[must_use = "dropping the team brakes its arms"]
 pub struct Team<const N: usize> {
@@ -78,7 +79,7 @@ pub struct Team<const N: usize> {
 pub struct NotEngaged {
     /// Member whose arm could not be engaged.
     pub member: usize,
-    /// Reason.
+    /// Reason why the arm could not be engaged.
     #[source]
     pub error: MotionError,
 }
@@ -90,8 +91,8 @@ impl From<NotEngaged> for Error {
 }
 
 impl<const N: usize> Team<N> {
-    /// Begins a session for each robot, as [`Robot::engage`] does; resolves when all have begun. If
-    /// one does not, the others end.
+    /// Begins a session for each robot, as [`Robot::engage`] does; resolves when all sessions have
+    /// begun. If one session does not begin, the others end.
     ///
     /// # Errors
     /// [`NotEngaged`] with the first member that did not begin, and the reason.
@@ -102,9 +103,9 @@ impl<const N: usize> Team<N> {
         Self::engage_tolerating(SILENCE, robots).await
     }
 
-    /// As [`Self::engage`], but the others brake after this silence of a robot instead of
-    /// [`SILENCE`]: for simulators on a machine that is busy with other things. A robot stops on
-    /// its own after 20 ms without commands.
+    /// As [`Self::engage`], with this silence of a robot, instead of [`SILENCE`], after which the
+    /// other robots brake. For simulators on a machine that is busy with other things. A robot
+    /// stops on its own after 20 ms without commands.
     ///
     /// # Errors
     /// As [`Self::engage`].
@@ -132,13 +133,13 @@ impl<const N: usize> Team<N> {
         })
     }
 
-    /// The arms, in the order of the members.
+    /// Returns the arms, in the order of the members.
     pub fn arms(&self) -> &[Arm; N] {
         &self.arms
     }
 
-    /// A motion of all arms, each to its destination; see [`Arm::move_to`]. With other options:
-    /// [`Self::run`].
+    /// Returns a motion of all arms, each to its destination; see [`Arm::move_to`]. For other
+    /// options see [`Self::run`].
     pub fn move_to<D: Into<Destination>>(&self, destinations: [D; N]) -> TeamMotion<N> {
         let mut destinations = destinations.into_iter();
         self.run(|_, arm| {
@@ -147,16 +148,17 @@ impl<const N: usize> Team<N> {
         })
     }
 
-    /// A motion of all arms: `motion` returns the motion of each member, made by its arm. All begin
-    /// together, when the last one's goal is there; an arm that moves continues until then. Where
-    /// some follow targets and others do not, convert each `into` a [`MemberMotion`].
+    /// Returns a motion of all arms; `motion` returns the motion of each member, made by its arm.
+    /// All begin together, when the goals of all are there; until then, an arm that moves
+    /// continues. If some members follow targets and others do not, convert each motion `into` a
+    /// [`MemberMotion`].
     ///
-    /// If one has a fault, the others brake and resolve as [`MotionError::Braked`] with
-    /// [`Lapse::Team`](crate::error::Lapse::Team), which names the member. All of them hold where
-    /// they stop. If one is refused or taken back before the start, none begins.
+    /// If one member has a fault, the others brake and resolve as [`MotionError::Braked`] with
+    /// [`Lapse::Team`](crate::error::Lapse::Team), which names the member with the fault. All arms
+    /// hold where they stop. If one motion is refused or cancelled before the start, no arm begins.
     ///
     /// # Panics
-    /// If a motion is not one of the arm that was given.
+    /// If a motion was not made by the arm that was given for it.
     pub fn run<M: Into<MemberMotion>>(
         &self,
         mut motion: impl FnMut(usize, &Arm) -> M,
@@ -181,15 +183,15 @@ impl<const N: usize> Team<N> {
     /// real-time threads see the stop directly. Motions resolve as [`MotionError::Braked`] with
     /// [`TeamStop::Requested`]. The sessions continue and hold the arms.
     ///
-    /// No newer motion hides the stop. A joint motion that begins before every arm has seen it does
-    /// not start, and resolves in the same way.
+    /// No newer motion hides the stop. A joint motion that begins before every arm has seen the
+    /// stop does not start, and resolves in the same way.
     pub fn stop(&self) {
         self.coordinator.stop();
     }
 
     /// Brakes all arms as [`Self::stop`] does, ends their sessions and latches the stop of each
-    /// robot: see [`Robot::latch_stop`]. Until it is released, joint motions and motions of single
-    /// arms are refused. Returns the outcome of the stop of each arm.
+    /// robot: see [`Robot::latch_stop`]. Until the stop is released, joint motions and motions of
+    /// single arms are refused. Returns the outcome of the stop of each arm.
     ///
     /// # Cancel safety
     /// Once polled, the stops are latched and all arms are braked even if the future is dropped.
@@ -207,18 +209,19 @@ impl<const N: usize> Team<N> {
         self.arms.iter().fold(false, release)
     }
 
-    /// A handle that stops the team from elsewhere.
+    /// Returns a handle that stops the team from elsewhere.
     pub fn stopper(&self) -> Stopper {
         Stopper(self.coordinator.clone())
     }
 
-    /// Reason why the newest joint motion, or a later one, has stopped; `None` if nothing has.
+    /// Returns the reason why the newest joint motion, or a later motion, has stopped; `None`
+    /// without a stop.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
     }
 
-    /// Brakes and releases all arms and ends their sessions; resolves when all have ended, with how
-    /// each did: see [`Arm::disengage`].
+    /// Brakes and releases all arms and ends their sessions. Resolves when all sessions have ended,
+    /// with the outcome of each: see [`Arm::disengage`].
     ///
     /// # Cancel safety
     /// Once the future is polled, the sessions still end.
@@ -228,12 +231,12 @@ impl<const N: usize> Team<N> {
     }
 }
 
-/// Stops a team. It does not count as a handle of the sessions.
+/// Stops a team. A stopper is no handle of the sessions.
 #[derive(Clone, Debug)]
 pub struct Stopper(Coordinator);
 
 impl Stopper {
-    /// See [`Team::stop`]. Never waits: fit for any thread.
+    /// See [`Team::stop`]. Never waits, and may be called on any thread.
     pub fn stop(&self) {
         self.0.stop();
     }
@@ -244,9 +247,10 @@ impl Stopper {
 #[must_use = "a motion does nothing until it is awaited"]
 #[non_exhaustive]
 pub enum MemberMotion {
-    /// It goes to one target.
+    /// The member moves to one target.
     Motion(Motion),
-    /// It follows a stream of targets. Its part in the start is the first of them.
+    /// The member follows a stream of targets. It is ready for the start when the first target is
+    /// there.
     Follow(Follow),
 }
 
@@ -262,7 +266,7 @@ impl From<Follow> for MemberMotion {
     }
 }
 
-/// The motion of one member under way.
+/// The running motion of one member.
 type Running = Pin<Box<dyn Future<Output = Outcome> + Send>>;
 
 impl MemberMotion {
@@ -281,15 +285,15 @@ impl MemberMotion {
     }
 }
 
-/// A motion of all arms of a team as a future. It begins with the first poll and resolves when the
-/// motions of all members have ended, with one outcome for each, in their order.
+/// A motion of all arms of a team as a future. The motion begins with the first poll. The future
+/// resolves when the motions of all members have ended, with one outcome for each, in their order.
 ///
-/// A newer joint motion supersedes it. Its motions that are under way continue until the newer one
-/// begins.
+/// A newer joint motion supersedes this one. Motions of members that are under way continue until
+/// the newer joint motion begins.
 ///
 /// # Cancel safety
-/// Dropping it, at any time, brakes all arms, each within two of its cycles; they hold where they
-/// stop. Dropped before the first poll, nothing has happened.
+/// Dropping the future, at any time, brakes all arms, each within two of its cycles; the arms hold
+/// where they stop. Dropping it before the first poll has no effect.
 ///
 /// # Panics
 /// When polled after it has resolved, as futures may.

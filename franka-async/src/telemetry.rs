@@ -1,5 +1,5 @@
-//! The statistics of the control thread as `tracing` events, which are sent from here and never
-//! from the thread.
+//! The statistics of the control thread as `tracing` events, which this module emits, never the
+//! thread itself.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,21 +12,21 @@ use crate::world::Instant;
 /// Watches the statistics for commands that left too late.
 pub(crate) struct Telemetry {
     stats: Arc<Stats>,
-    /// Overruns reported so far.
+    /// Number of overruns reported so far.
     told: u64,
     warnings: Backoff,
 }
 
-/// Ever longer times between warnings of a lasting condition.
+/// A growing interval between warnings of a lasting condition.
 #[derive(Default)]
 struct Backoff {
     last: Option<Instant>,
-    /// Least time from that warning to the next.
+    /// Shortest time from that warning to the next.
     interval: Duration,
 }
 
 impl Backoff {
-    /// Returns true if a warning is due now, and then counts it as given.
+    /// Returns true if a warning is due now, and then counts it as emitted.
     fn take(&mut self, now: Instant) -> bool {
         let since = self.last.map(|last| now.duration_since(last));
         self.interval = match since {
@@ -48,8 +48,8 @@ impl Telemetry {
         }
     }
 
-    /// Warns of commands that left too late since the last time: at once, and while there are more
-    /// after a second, after two, and so on, finally twice a minute.
+    /// Warns of commands that were sent too late since the last warning: at once, and while more
+    /// follow, after a second, after two, and so on, finally twice a minute.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
         if overruns == self.told {
@@ -77,7 +77,7 @@ impl Telemetry {
     }
 }
 
-/// Logs a summary of a motion that has ended for the thread.
+/// Logs a summary of a motion whose end the thread has reported.
 pub(crate) fn sum_up(ended: &Ended) {
     let (statistics, times) = (&ended.statistics, &ended.times);
     let interval = times.interval.quantiles().unwrap_or_default();

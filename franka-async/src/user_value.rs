@@ -1,17 +1,17 @@
-//! Values of the user's that tasks of the driver free.
+//! Values of the user that tasks of the driver free.
 
 use std::ops::{Deref, DerefMut};
 
 use franka_rt::panic;
 
-/// A function of the user's, with everything that it has captured. The bridge frees it when its
-/// motion has ended or was refused, or another task does.
+/// A function of the user, with everything that it has captured. The bridge or another task frees
+/// it when its motion has ended or was refused.
 ///
-/// A panic of its destructor is logged and goes no further: it must not end the task that frees it,
-/// and with that the connection.
+/// A panic of the function's destructor is logged and caught: it must not end the task that frees
+/// the function, which would end the connection, too.
 #[derive(Debug)]
 pub(crate) struct UserValue<T> {
-    /// `None` only while it is dropped.
+    /// The value; `None` only while it is being dropped.
     value: Option<T>,
     /// Name of the value, for the log.
     what: &'static str,

@@ -11,7 +11,7 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
-/// A connected vacuum gripper. Handles, actions and their ends are as for the
+/// A connected vacuum gripper. Handles and actions behave as for the
 /// [`Gripper`](crate::gripper::Gripper).
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
@@ -19,8 +19,8 @@ pub struct VacuumGripper {
 }
 
 impl VacuumGripper {
-    /// Connects to the gripper at `endpoint`: TCP, handshake, first state; each step may take 1 s.
-    /// The port is 1339 unless given.
+    /// Connects to the gripper at `endpoint`: TCP, handshake, first state. Each step may take 1 s.
+    /// The default port is 1339.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind.
@@ -32,7 +32,7 @@ impl VacuumGripper {
         Ok(Self { connection })
     }
 
-    /// Address of the gripper.
+    /// Returns the address of the gripper.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
     }
@@ -42,17 +42,17 @@ impl VacuumGripper {
         self.connection.journal()
     }
 
-    /// The newest state.
+    /// Returns the newest state.
     pub fn state(&self) -> State {
         self.connection.state()
     }
 
-    /// The newest state as it changes. Ends when the connection does.
+    /// Returns the newest state as it changes. The stream ends when the connection does.
     pub fn states(&self) -> States<State> {
         self.connection.states()
     }
 
-    /// Sucks an object on and holds it. True if the vacuum was reached in time.
+    /// Picks an object up by vacuum and holds it. Returns true if the vacuum was reached in time.
     ///
     /// # Errors
     /// [`VacuumGripperError`].
@@ -64,8 +64,8 @@ impl VacuumGripper {
         self.connection.act(Request::Vacuum(vacuum)).await
     }
 
-    /// Drops the object. True if that was done within `timeout`, which is sent in whole
-    /// milliseconds.
+    /// Drops the object. Returns true if the gripper did so within `timeout`, which is sent in
+    /// whole milliseconds.
     ///
     /// # Errors
     /// [`VacuumGripperError`].
@@ -77,7 +77,7 @@ impl VacuumGripper {
         self.connection.act(Request::DropOff { timeout }).await
     }
 
-    /// Stops the action that runs, which resolves as aborted. True if it succeeded.
+    /// Stops the running action, which resolves as aborted. Returns true on success.
     ///
     /// # Errors
     /// [`VacuumGripperError`].

@@ -1,5 +1,5 @@
-//! The world outside: network, clock, tasks and threads. The crate reaches them only through here,
-//! which `clippy.toml` enforces: a simulated world has one file to replace.
+//! The world outside: network, clock, tasks and threads. `clippy.toml` forbids other ways to reach
+//! them, so a simulated world replaces one file only.
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,
@@ -23,7 +23,7 @@ use tokio::runtime;
 use tokio::task::JoinHandle;
 use tokio::time::error::Elapsed;
 
-/// Bytes in order, both ways: the command connection.
+/// The command connection: bytes in order, in both directions.
 pub(crate) type Stream = Box<dyn ByteStream>;
 
 pub(crate) trait ByteStream: AsyncRead + AsyncWrite + Unpin + Send + fmt::Debug {}
@@ -60,13 +60,13 @@ pub(crate) async fn look_up(
     Ok(found.into_iter())
 }
 
-/// The port that a peer sends its states to.
+/// The UDP port that a peer sends its states to.
 pub(crate) struct StatePort {
     socket: std::net::UdpSocket,
     peer: IpAddr,
 }
 
-/// Datagrams for tasks.
+/// The type of a UDP socket for tasks.
 pub(crate) type Datagrams = tokio::net::UdpSocket;
 
 impl StatePort {
@@ -81,13 +81,13 @@ impl StatePort {
         Ok(self.socket.local_addr()?.port())
     }
 
-    /// Hands the port to tasks.
+    /// Converts the port into a socket for tasks.
     pub(crate) fn datagrams(self) -> io::Result<Datagrams> {
         self.socket.set_nonblocking(true)?;
         Datagrams::from_std(self.socket)
     }
 
-    /// Hands the port to a control thread, which starts.
+    /// Starts a control thread and passes it the port.
     pub(crate) fn control_thread(
         self,
         config: ThreadConfig,
@@ -98,14 +98,14 @@ impl StatePort {
     }
 }
 
-/// Wake-ups by a control thread.
+/// Wake-ups by a control thread, as a future.
 pub(crate) struct Wake(AsyncFd<EventFd>);
 
 impl Wake {
     /// Registers the eventfd of the thread with this runtime.
     ///
     /// # Errors
-    /// If the runtime's poll does not take the descriptor.
+    /// The runtime's poll does not accept the descriptor.
     pub(crate) fn attach(event_fd: EventFd) -> io::Result<Self> {
         // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the
         // descriptor is open, and the same, for as long as the `EventFd` lives, and the `AsyncFd`
@@ -170,7 +170,7 @@ pub(crate) fn spawn_blocking<T: Send + 'static>(
     tokio::task::spawn_blocking(blocking)
 }
 
-/// A runtime, for callers without one.
+/// A runtime that callers without one can use.
 pub(crate) struct Runtime(runtime::Handle);
 
 impl Runtime {

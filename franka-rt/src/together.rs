@@ -178,7 +178,7 @@ pub enum StartFault {
 }
 
 impl StartFault {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Dropped { .. } => "start-dropped",

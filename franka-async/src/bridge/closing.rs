@@ -11,22 +11,22 @@ use super::{Bridge, BridgePhase};
 use crate::input::Input;
 use crate::world;
 
-/// The goal that stops the arm when the last handle is dropped. No handle uses this id: they count
-/// up from 1.
+/// The goal that stops the arm when the last handle is dropped. Handles never use this id, because
+/// they count up from 1.
 pub(super) const CLOSING: GoalId = GoalId(u64::MAX);
 
 /// Time for a motion to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
-/// Time that an arm on its way to a goal has to stop when the connection is lost, before the thread
-/// that brakes it ends.
+/// Time for an arm on its way to a goal to stop when the connection is lost. After that, the thread
+/// that brakes the arm ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Time for the control thread to end, which takes it a cycle.
+/// Time for the control thread to end. One cycle is normally enough.
 const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Bridge {
-    /// Brakes the arm if it moves, and takes no more inputs.
+    /// Brakes the arm if it moves, and accepts no more inputs.
     pub(super) fn begin_closing(&mut self) {
         self.drop_plans(MotionError::Stopped);
         let now = self.now();
@@ -35,9 +35,9 @@ impl Bridge {
         self.phase = BridgePhase::Closing { until };
     }
 
-    /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
-    /// on its way to a goal has been braked: a thread without a connection would continue towards a
-    /// goal that can no longer be taken back.
+    /// Notes that robot or thread is out of reach. The connection then ends, after an arm on its
+    /// way to a goal has been braked: a thread without a connection would continue towards a goal
+    /// that no caller can cancel.
     pub(super) fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
         // Before the motions resolve, so that the next call finds a lost connection.
@@ -126,7 +126,7 @@ impl Bridge {
     }
 }
 
-/// Also when the runtime drops the task.
+/// Also runs when the runtime drops the task.
 impl Drop for Bridge {
     fn drop(&mut self) {
         self.supervisor.on_lost(self.channel.closing().reason());

@@ -113,9 +113,9 @@ impl Bridge {
         }
     }
 
-    /// Reads what the control thread has published. The caller may react to an event that is in the
-    /// queue and not yet read by this task, and without wake-ups per state the state that was
-    /// published last is old.
+    /// Reads the values that the control thread has published. The caller may react to an event
+    /// that is in the queue and not yet read by this task. Without wake-ups per state, the last
+    /// published state is old.
     pub(super) fn catch_up(&mut self) {
         self.publisher.refresh();
         self.observe();
@@ -123,7 +123,7 @@ impl Bridge {
         self.take_notices();
     }
 
-    /// Begins a motion, along this path if it has one, or refuses it.
+    /// Begins a motion, along `path` if given, or refuses it.
     pub(super) fn take_up(&mut self, motion: Beginning, path: Option<Chunk>, replies: Replies) {
         let id = motion.motion.id();
         let compliant = self.lifecycle.compliant_goal(&motion.motion);
@@ -149,7 +149,7 @@ impl Bridge {
         self.callers.insert(id, caller);
     }
 
-    /// Completes a motion by the robot's present position, and begins it.
+    /// Completes the motion with the robot's present position, and begins it.
     fn begin(&mut self, beginning: Beginning, path: Option<Chunk>) -> Result<(), MotionError> {
         let (now, state) = (self.now(), *self.publisher.state());
         let Beginning {

@@ -1,7 +1,7 @@
 //! The bridge: one task between the async world, the command channel and the real-time thread.
 //!
-//! It drives the lifecycle of motions and alone touches the thread's queues and slots. Waking other
-//! tasks takes locks, so it happens here and never on the thread.
+//! The bridge drives the lifecycle of motions, and is the only user of the thread's queues and
+//! slots. Waking other tasks takes locks, so the bridge does it and the thread never does.
 
 mod closing;
 mod inputs;
@@ -55,23 +55,25 @@ pub(crate) struct Bridge {
     /// True if the thread that runs active control reads no states.
     stalled: bool,
     supervisor: Arc<Supervisor>,
-    /// The motions whose paths are being planned, the newest last.
+    /// The motions whose paths are being planned, the newest one last.
     planning: Vec<Planning>,
-    /// State that the supervisor was last shown.
+    /// State that the supervisor has seen last.
     seen: Option<Seen>,
-    /// `message_id` of the newest state when a silence was noticed, until one comes.
+    /// `message_id` of the newest state when a silence was noticed; `None` once a newer state
+    /// comes.
     silent_since: Option<u64>,
     awaited: Option<Awaited>,
 }
 
-/// Phases of the bridge on its way to its end.
+/// Phases of the bridge on the way to its end.
 #[derive(Clone, Copy)]
 enum BridgePhase {
-    /// It takes inputs.
+    /// The bridge accepts inputs.
     Serving,
-    /// It takes none, and ends when nothing moves any more, or at this time.
+    /// The bridge accepts no inputs, and ends when nothing moves any more, at the latest at
+    /// `until`.
     Closing { until: Instant },
-    /// Robot or thread is out of reach, for good: it ends now.
+    /// Robot or thread is out of reach, for good: the bridge ends now.
     Lost,
 }
 
@@ -79,17 +81,17 @@ enum BridgePhase {
 struct Caller {
     replies: Replies,
     span: Span,
-    /// Reason why a target was refused, for which the goal is taken back.
+    /// Reason why a target was refused, for which the goal is cancelled.
     refused: Option<GoalError>,
 }
 
 /// A deadline of the lifecycle.
 struct Awaited {
     deadline: Duration,
-    /// `message_id` of the newest state, and the time since which no newer one has come.
+    /// `message_id` of the newest state, and the time since which no newer state has come.
     newest: u64,
     since: Duration,
-    /// Turns of the control thread when the deadline was set.
+    /// Number of turns of the control thread when the deadline was set.
     turns: u64,
 }
 
@@ -101,8 +103,8 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
-    /// ended: by an input, or by `cancellation`.
+    /// Runs the bridge as a task. The task ends when all its senders are gone, when the connection
+    /// is lost, or on request: by an input, or by `cancellation`.
     pub(crate) fn start(self, cancellation: CancellationToken) {
         let Self {
             bridge,
@@ -155,7 +157,7 @@ impl Bridge {
         }
     }
 
-    /// Returns the way into the bridge, which takes nothing before it is started.
+    /// Returns a sender to the bridge, which accepts nothing before it is started.
     pub(crate) fn prepare(
         self,
         reports: mpsc::UnboundedReceiver<Report>,
@@ -238,7 +240,7 @@ impl Bridge {
         world::now() - self.started
     }
 
-    /// Notes the time since which a deadline is waited for.
+    /// Notes the time since when a deadline has been awaited.
     fn note_deadline(&mut self) {
         let deadline = self.lifecycle.deadline();
         if deadline == self.awaited.as_ref().map(|it| it.deadline) {
@@ -256,7 +258,7 @@ impl Bridge {
         });
     }
 
-    /// Reason why no state could show the awaited change, if none has come since.
+    /// Returns the reason why no state could show the awaited change, if no state has come since.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
         if self.publisher.state().message_id != awaited.newest {

@@ -1,7 +1,7 @@
 //! Paths, which are planned before they begin. Planning takes up to a hundred milliseconds, so it
-//! runs on threads for blocking work, and the bridge serves stops meanwhile. A newer goal
-//! supersedes older ones once it begins; a path begins when it is planned. If the path is refused,
-//! the goals before it stay as they were.
+//! runs on threads for blocking work, and the bridge serves stops meanwhile. A path begins when it
+//! is planned, and only then supersedes older goals. If the path is refused, the older goals stay
+//! as they were.
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -28,21 +28,21 @@ pub(super) struct Planning {
     task: JoinHandle<Result<Chunk, PathError>>,
 }
 
-/// Distance of a joint from the start of a path, `[rad]`, beyond which the path is planned anew.
-/// Where the arm moves, the path is entered in motion: a joint at half of its speed goes so far in
+/// Distance of a joint from the start of a path, `[rad]`, beyond which the path is planned anew. If
+/// the arm moves, the path begins in motion: a joint at half of its speed moves by this distance in
 /// a hundred milliseconds.
 const LEFT_START: f64 = 0.1;
 
-/// Number of plans after the first until a path is refused, because the arm moves on too fast.
+/// Number of plans after the first one. Then the path is refused, because the arm moves too fast.
 pub(super) const PLANS: u32 = 4;
 
-/// Most paths that are being planned. One more supersedes the oldest.
+/// Largest number of paths that are being planned. One more supersedes the oldest one.
 const PENDING_MAX: usize = 4;
 
-/// The newest path, once it is planned. Without one, it waits forever.
+/// Returns the newest path, once it is planned. Without pending paths, waits forever.
 ///
 /// # Cancel safety
-/// Nothing is lost if it is dropped.
+/// Nothing is lost if the future is dropped.
 pub(super) async fn planned(pending: &mut [Planning]) -> Result<Chunk, PathError> {
     let Some(planning) = pending.last_mut() else {
         return std::future::pending().await;
@@ -75,7 +75,7 @@ fn session_of(motion: &NewMotion) -> Option<GoalId> {
 }
 
 impl Bridge {
-    /// Plans the path of a motion, which begins after that.
+    /// Plans the path of a motion. The motion begins after that.
     pub(super) fn plan(
         &mut self,
         motion: Beginning,
@@ -134,13 +134,13 @@ impl Bridge {
         }
     }
 
-    /// Start of a path that begins now: joint positions, `[rad]`.
+    /// Returns the start of a path that begins now: joint positions, `[rad]`.
     fn start_of_a_path(&self) -> [f64; 7] {
         let reference = self.course.reference().map(|reference| reference.q);
         reference.unwrap_or_else(|| self.publisher.state().q)
     }
 
-    /// Checks that `motion` may supersede pending paths, by the rules for a path under way.
+    /// Checks that `motion` may supersede pending paths, by the rules for a running path.
     pub(super) fn check_turn_of_plan(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let supersedes = matches!(motion, NewMotion::Goal { ticket: None, .. });
         match self.planning.is_empty() || supersedes {
@@ -149,22 +149,23 @@ impl Bridge {
         }
     }
 
-    /// Takes note that a goal of this session, or outside of one, was taken.
+    /// Supersedes the pending paths, because a goal of this session, or outside of one, was
+    /// accepted.
     pub(super) fn supersede_plans(&mut self, session: Option<GoalId>) {
         self.take_back_plans(MotionError::Superseded, |plan| plan.session() == session);
     }
 
-    /// Takes back the path of this goal. Returns true if there is one.
+    /// Cancels the path of this goal. Returns true if there is one.
     pub(super) fn cancel_plan(&mut self, goal: GoalId) -> bool {
         self.take_back_plans(MotionError::Stopped, |plan| plan.id() == goal)
     }
 
-    /// Takes back the paths of a session that have not begun.
+    /// Cancels the paths of a session that have not begun.
     pub(super) fn end_plans_of(&mut self, session: GoalId) {
         self.take_back_plans(MotionError::Stopped, |plan| plan.session() == Some(session));
     }
 
-    /// Takes back all pending paths, for `reason`.
+    /// Cancels all pending paths, for `reason`.
     pub(super) fn drop_plans(&mut self, reason: MotionError) {
         self.take_back_plans(reason, |_| true);
     }
@@ -191,8 +192,7 @@ impl Bridge {
         }
     }
 
-    /// Changes how the paths of a session will be pursued; plans them anew if its limits or posture
-    /// change.
+    /// Changes the tuning of the paths of a session. Plans them anew if limits or posture change.
     pub(super) fn tune_plans(&mut self, session: GoalId, tuning: &Tuning) {
         let is_planned_anew = tuning.budget.is_some() || tuning.posture.is_some();
         for mut planning in std::mem::take(&mut self.planning) {

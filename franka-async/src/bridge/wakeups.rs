@@ -10,7 +10,7 @@ use super::Bridge;
 use crate::{telemetry, world};
 
 impl Bridge {
-    /// Takes everything that the thread has published.
+    /// Reads everything that the thread has published.
     pub(super) fn on_wakeup(&mut self) {
         self.publisher.publish();
         // Before a motion resolves, so that the next call finds a robot that is in a reflex.
@@ -54,7 +54,8 @@ impl Bridge {
         }
     }
 
-    /// Takes note that the thread that runs active control reads no states, or that it does again.
+    /// Notes whether the thread that runs active control has stopped reading states, or reads
+    /// again.
     pub(super) fn look_for_a_stall(&mut self) {
         let stalled = self.thread.as_ref().and_then(Thread::stalled);
         if stalled.is_some() != self.stalled {
@@ -71,7 +72,7 @@ impl Bridge {
         self.thread.as_ref().is_none_or(Thread::has_ended)
     }
 
-    /// Shows the supervisor the newest state, if it shows anything new of the robot as a whole.
+    /// Shows the supervisor the newest state, if that state has news about the robot as a whole.
     pub(super) fn observe(&mut self) {
         let (newest, mode, seen) = {
             let state = self.publisher.state();

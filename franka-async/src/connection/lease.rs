@@ -1,4 +1,5 @@
-//! The lease of an arm: one holder at a time commands it, by name, for as long as heartbeats come.
+//! The lease of an arm: the right of one client at a time to command it. The client has a name, and
+//! keeps the lease by heartbeats.
 //!
 //! ```text
 //!             take                    keep_alive in time
@@ -8,20 +9,20 @@
 //! ```
 //!
 //! A service that passes a robot on to clients takes the lease of [`Robot::lease`] for each client
-//! that should move the arm. It binds the client's session to the lease by [`Holder::deadman`]. All
-//! services of a process that share the robot share its lease: a dashboard, a teleoperation. A
-//! second client is refused with the name of the first.
+//! that should move the arm. The service binds the client's session to the lease by
+//! [`Holder::deadman`]. All services of a process that share the robot share its lease, for example
+//! a dashboard and a teleoperation. A second client is refused with the name of the first one.
 //!
-//! Silence counts, not the connection: only messages of the client's own program should call
-//! [`Holder::keep_alive`]. When they stop, two clocks notice. The control thread brakes the arm by
-//! the robot's clock, also when the rest of the process hangs. The lease is free by the host's
-//! clock, and later requests of the former holder are refused.
+//! An open connection alone does not keep the lease: only messages of the client's own program
+//! should call [`Holder::keep_alive`]. When these calls stop, two clocks notice. By the robot's
+//! clock, the control thread brakes the arm, even if the rest of the process hangs. By the host's
+//! clock, the lease becomes free, and later requests of the former holder are refused.
 //!
-//! The lease binds services, not the program itself: a motion that the program begins needs none.
-//! Neither does a stop: [`Robot::stop`] is open to every client.
+//! The lease binds services, not the program itself: a motion that the program begins needs no
+//! lease. [`Robot::stop`] needs none either: it is open to every client.
 //!
-//! Time is an argument, so that a test needs no clock. A time before the newest one counts as that
-//! one.
+//! Time is an argument, so that a test needs no clock. A time before the newest time counts as the
+//! newest time.
 //!
 //! # Example
 //!

@@ -1,4 +1,4 @@
-//! One error for all calls.
+//! One error type for all calls.
 
 use franka_proto::{gripper, vacuum};
 use franka_rt::lifecycle::{ControlError, MotionError, Party};
@@ -21,7 +21,7 @@ pub enum Error {
     /// A command other than a motion was not carried out.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// The robot ended a motion: a reflex, a stop. The error has the log of the motion's last
+    /// The robot ended a motion: by a reflex or a stop. The error has the log of the motion's last
     /// cycles.
     #[error(transparent)]
     Control(Box<ControlError>),
@@ -31,13 +31,13 @@ pub enum Error {
     /// Active control could not continue.
     #[error(transparent)]
     Active(ActiveError),
-    /// An arm was not identified, for another reason than a motion.
+    /// The identification of an arm failed, for another reason than a motion.
     #[error(transparent)]
     Identify(IdentifyError),
-    /// States could not be read any further.
+    /// No more states could be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// No tare was taken, for another reason than a lost link.
+    /// The tare failed, for another reason than a lost link.
     #[error(transparent)]
     Tare(TareError),
     /// There is no connection to the Franka Hand.
@@ -95,8 +95,8 @@ impl From<TareError> for Error {
 }
 
 impl Error {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`, which explains
-    /// what to do. Every error of a call has it.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`, which
+    /// explains what to do. Every error of a call has a row.
     ///
     /// ```
     /// # use franka_async::{Error, MotionError};
@@ -125,7 +125,7 @@ impl Error {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Connect(error) => error.party(),

@@ -15,30 +15,30 @@ use franka_rt::thread::{BorrowError, WriteFault};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
-    /// Robot: it refused, or gave up.
+    /// Robot: it refused the command, or gave it up.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Caller: the robot takes no such number. Nothing has changed. A load that no rigid body has
-    /// is refused in the same way, and not sent.
+    /// Caller: the robot does not accept this number. Nothing has changed. A load that is
+    /// impossible for a rigid body is refused in the same way, before it is sent.
     #[error("{refusal} ({why})")]
     InvalidArgument {
-        /// The robot's answer, or the one it would have given.
+        /// The robot's answer, or the answer that it would have given.
         refusal: Refusal,
         /// Value that was given, and the documented range.
         why: String,
     },
-    /// Caller: the protocol version has no such command. Nothing was sent.
+    /// Caller: the protocol version does not have this command. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
     /// Caller: a number is not finite. Nothing was sent.
     #[error("number {number} of {what} is not finite")]
     NotFinite {
-        /// Thing that is counted.
+        /// Name of the argument with the number.
         what: &'static str,
-        /// Its number, from 1.
+        /// Position of the number in the argument, from 1.
         number: usize,
     },
-    /// Robot or link: no answer in time. The robot may still carry the command out.
+    /// Robot or link: no answer came in time. The robot may still carry the command out.
     #[error("no answer to {command} within {} ms", .deadline.as_millis())]
     Timeout {
         /// Command without an answer.
@@ -46,17 +46,17 @@ pub enum CommandError {
         /// Time for which the answer was awaited.
         deadline: Duration,
     },
-    /// Link: no robot state comes, so it is unknown whether the command was carried out.
+    /// Link: no robot state comes. It is unknown whether the command was carried out.
     #[error("no robot state for {} ms: the command may have taken effect, read the state when the \
         robot is back", .silence.as_millis())]
     LinkLost {
-        /// The silence so far, at least.
+        /// The silence so far; its end may be later.
         silence: Duration,
     },
-    /// Peer: its answer cannot be read.
+    /// Peer: the robot's answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
-    /// The connection has ended. The party that can act on it depends on the reason.
+    /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// Cause of the end.
@@ -65,7 +65,7 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(refusal) | Self::InvalidArgument { refusal, .. } => refusal.entry(),
@@ -78,7 +78,7 @@ impl CommandError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Refused(_) => Party::Robot,
@@ -97,7 +97,7 @@ impl CommandError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActionError<C: ServiceCommand> {
-    /// Device: it failed, or something ended the action: a stop, or a newer action.
+    /// Device: the action failed, or a stop or a newer action ended it.
     #[error(transparent)]
     Failure(#[from] Failure<C>),
     /// Caller: the device cannot carry out the request, because the request is out of its range.
@@ -111,10 +111,10 @@ pub enum ActionError<C: ServiceCommand> {
     /// Caller: too many requests wait for their answers. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
-    /// Peer: its answer cannot be read.
+    /// Peer: the device's answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation<C>),
-    /// The connection has ended. The party that can act on it depends on the reason.
+    /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// Cause of the end.
@@ -123,7 +123,7 @@ pub enum ActionError<C: ServiceCommand> {
 }
 
 impl<C: ServiceCommand> ActionError<C> {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Failure(_) => "action-failure",
@@ -134,7 +134,7 @@ impl<C: ServiceCommand> ActionError<C> {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Failure(_) => Party::Robot,
@@ -155,7 +155,7 @@ pub enum ReadError {
         /// The silence so far.
         silence: Duration,
     },
-    /// The connection has ended. The party that can act on it depends on the reason.
+    /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// Cause of the end.
@@ -164,7 +164,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::LinkLost { .. } => "read-link-lost",
@@ -172,7 +172,7 @@ impl ReadError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::LinkLost { .. } => Party::Link,
@@ -181,29 +181,29 @@ impl ReadError {
     }
 }
 
-/// Reason why a state could not be read or a command not written.
+/// Reason why a state could not be read or a command could not be written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActiveError {
     /// The motion has ended, with this error.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The motion has ended otherwise than asked, as an earlier call has returned.
+    /// The motion has ended otherwise than asked. An earlier call has returned the same error.
     #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
     Ended(MotionError),
-    /// The motion has ended as asked: its last command was written earlier.
+    /// The motion has ended as asked: the last command was written earlier.
     #[error("the motion has finished and accepts no more reads or commands: begin a new motion")]
     Finished,
     /// The command was not sent; the motion continues.
     #[error(transparent)]
     Write(#[from] WriteFault),
-    /// The cycle cannot be had.
+    /// The control cycle is not available to this thread.
     #[error(transparent)]
     Borrow(#[from] BorrowError),
 }
 
 impl ActiveError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Motion(error) => error.entry(),
@@ -214,7 +214,7 @@ impl ActiveError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Motion(error) => error.party(),
@@ -231,11 +231,11 @@ fn needs_recovery(error: &MotionError) -> bool {
 
 const RECOVER: &str = " (call `recover` before the next motion)";
 
-/// Reason why an arm was not identified.
+/// Reason why the identification of an arm failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
-    /// Caller: the arm has moved since its motions were planned. Nothing has moved it since.
+    /// Caller: the arm has moved since its motions were planned. Identification has not moved it.
     #[error(
         "joint {joint} is at {got:.3} rad, expected {expected:.3} rad, the start of the planned \
          motions: move the arm back, or plan again"
@@ -251,13 +251,13 @@ pub enum IdentifyError {
     /// A motion did not arrive. The arm stays where it is.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Robot: something held or pushed the arm, so that its torques show nothing.
+    /// Robot: something held or pushed the arm, so its torques are no measurement.
     #[error(transparent)]
     Fit(#[from] FitError),
 }
 
 impl IdentifyError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Moved { .. } => "identify-moved",
@@ -266,7 +266,7 @@ impl IdentifyError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Moved { .. } => Party::Caller,
@@ -276,20 +276,20 @@ impl IdentifyError {
     }
 }
 
-/// Reason why no tare was taken.
+/// Reason why a tare failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TareError {
     /// Caller: the arm moves, is touched or guided, or is near a singularity.
     #[error(transparent)]
     Refused(#[from] TareRefused),
-    /// States could not be read any further.
+    /// No more states could be read.
     #[error(transparent)]
     Read(#[from] ReadError),
 }
 
 impl TareError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(_) => "tare-refused",
@@ -297,7 +297,7 @@ impl TareError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Refused(_) => Party::Caller,
@@ -311,17 +311,17 @@ impl TareError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelLibraryError {
-    /// The robot was asked for it and did not send it.
+    /// The robot did not send the library.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// It cannot be loaded.
+    /// The library cannot be loaded.
     #[error(transparent)]
     Library(#[from] LibraryError),
 }
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),
@@ -329,7 +329,7 @@ impl ModelLibraryError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Command(error) => error.party(),

@@ -18,15 +18,15 @@ use franka_rt::thread::{LinkFault, StartError};
 use super::CommandError;
 use crate::endpoint::EndpointError;
 
-/// Hint for a program without an arm.
+/// Hint for a program that connects to a simulator.
 const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
 
 /// Reason why there is no connection: to a robot, unless `P` names another device. Nothing is left
-/// behind; connecting again is always possible.
+/// behind, and the program may connect again.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: it does not grant the requests of real-time control, see
+    /// Host: the operating system does not grant the requests of real-time control, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
@@ -47,22 +47,22 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Cycles asked for.
         got: usize,
     },
-    /// Caller: a function would be asked before recoveries, and no policy supervises the robot, see
-    /// [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery). Nothing
-    /// was sent.
+    /// Caller: a function should be asked before recoveries, but no policy supervises the robot.
+    /// See [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery).
+    /// Nothing was sent.
     #[error(
         "got ask_before_recovery without supervise, expected both: add supervise with a policy \
          that recovers"
     )]
     Unsupervised,
-    /// Caller: the known values of the arm belong to another kind of robot, or have numbers that no
-    /// arm has, see [`Builder::known`](crate::connection::Builder::known).
+    /// Caller: the known values are of another kind of robot, or are impossible for an arm. See
+    /// [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
-    /// Host: no thread, socket or descriptor.
+    /// Host: no thread, socket or file descriptor is available.
     #[error("cannot set up the connection: {0}")]
     System(#[from] io::Error),
-    /// Robot: it takes no connection. FCI is off, or it is another machine.
+    /// Robot: it accepts no connection. FCI is off, or the address is of another machine.
     #[error(
         "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. ({address})"
     )]
@@ -70,7 +70,7 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Address tried.
         address: SocketAddr,
     },
-    /// Link: no answer.
+    /// Link: the address did not answer.
     #[error(
         "libfranka: Connection timeout. Please check your network connection or settings. ({address})"
     )]
@@ -84,23 +84,22 @@ pub enum ConnectError<P: Protocol = Version> {
         /// The class of the failure.
         reason: String,
     },
-    /// Robot or link: the host name has several addresses, and there is no connection to any of
-    /// them.
+    /// Robot or link: the host name has several addresses, and connecting to each of them failed.
     #[error("{}", list(.attempts))]
     NoAddress {
         /// Result of each attempt, in the order tried.
         attempts: Vec<Attempt<P>>,
     },
-    /// Robot: its system has a protocol version that this driver does not speak. Caller: the given
-    /// version is another, see [`VersionPolicy`](crate::connection::VersionPolicy). The text names
-    /// the system and the remedy, where libfranka's text names versions of libfranka.
+    /// Robot: its system has a protocol version that this driver does not support. Caller: the
+    /// requested version is not the robot's, see
+    /// [`VersionPolicy`](crate::connection::VersionPolicy). The text names the system and the
+    /// remedy, where libfranka's text names versions of libfranka.
     #[error(
         "libfranka: Incompatible library version (server version: {}, library version: {}): {}",
         .0.server_version, .0.library_version.number(), .0.explanation()
     )]
     IncompatibleVersion(IncompatibleVersion<P>),
-    /// The connection ended during the handshake. The party that can act on it depends on the
-    /// reason.
+    /// The connection ended during the handshake. Who can act depends on the reason.
     #[error("{reason}{}", likely(.reason))]
     ConnectionClosed {
         /// Cause of the end.
@@ -112,10 +111,10 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Fault of the link.
         fault: LinkFault,
     },
-    /// Peer: it left the protocol.
+    /// Peer: a message breaks the protocol.
     #[error(transparent)]
     Violation(#[from] Violation<P::Command>),
-    /// Peer: its stream cannot be cut into messages.
+    /// Peer: the stream cannot be split into messages.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// Link: the handshake was not answered in time.
@@ -124,15 +123,15 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Address tried.
         address: SocketAddr,
     },
-    /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual
-    /// cause.
+    /// Link: the handshake succeeded and no state came. The usual cause is a firewall that blocks
+    /// UDP.
     #[error("libfranka: UDP receive: Timeout ({address})")]
     NoState {
         /// Address where the handshake succeeded.
         address: SocketAddr,
     },
-    /// Robot: it computes the poses that it reports with another geometry than its description, or
-    /// than the constants of its kind. That geometry is not a known one. See
+    /// Robot: the poses that it reports are of another geometry than its description, or than the
+    /// constants of its kind. That geometry is not a known one. See
     /// [`Builder::accept_geometry_error`](crate::connection::Builder::accept_geometry_error).
     #[error(
         "the robot's pose is {:.1} µm from the pose of its model at the same joint positions, expected {:.0} µm at most: check the address and the robot's description, or connect with accept_geometry_error",
@@ -140,11 +139,11 @@ pub enum ConnectError<P: Protocol = Version> {
         RESIDUAL_MAX * 1e6
     )]
     Geometry {
-        /// Distance, `[m]`, or the largest difference of an element of the rotation matrices times
-        /// 0.1 m, whichever is greater.
+        /// Distance of the reported pose from the pose of the model, `[m]`, or the largest
+        /// difference of an element of the rotation matrices times 0.1 m, whichever is greater.
         residual: f64,
     },
-    /// Robot, link or peer: there is no model of the arm. See
+    /// Robot, link or peer: the arm has no model. See
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model).
     #[cfg(feature = "urdf")]
     #[error(transparent)]
@@ -152,7 +151,7 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Realtime(error) => error.entry(),
@@ -179,7 +178,7 @@ impl<P: Protocol> ConnectError<P> {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Endpoint(_)
@@ -215,7 +214,7 @@ impl<P: Protocol> ConnectError<P> {
     }
 }
 
-/// One of a host's addresses, and why there is no connection to it.
+/// One of a host's addresses, and the reason why connecting to it failed.
 #[derive(Debug)]
 pub struct Attempt<P: Protocol = Version> {
     /// The address.
@@ -224,7 +223,7 @@ pub struct Attempt<P: Protocol = Version> {
     pub error: ConnectError<P>,
 }
 
-/// Usual cause of the end of a connection before the robot has answered.
+/// Returns the usual cause of the end of a connection before the robot has answered.
 fn likely(reason: &CloseReason) -> &'static str {
     match reason {
         CloseReason::ClosedByPeer
@@ -257,7 +256,7 @@ impl From<StartError> for ConnectError {
     }
 }
 
-/// Written by hand, as the refusal is no source: its own text is libfranka's.
+/// Written by hand: the refusal is not an error source, because its own text is libfranka's.
 impl<P: Protocol> From<IncompatibleVersion<P>> for ConnectError<P> {
     fn from(refusal: IncompatibleVersion<P>) -> Self {
         Self::IncompatibleVersion(refusal)
@@ -270,9 +269,8 @@ impl From<LinkFault> for ConnectError {
     }
 }
 
-/// Reason why there is no model of the connected arm.
-/// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) does without its
-/// description.
+/// Reason why the connected arm has no model.
+/// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) needs no description.
 #[cfg(feature = "urdf")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -280,14 +278,14 @@ pub enum ModelError {
     /// The robot was asked for its description and did not send it.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// Robot: its description does not fit an arm that this driver knows.
+    /// Robot: its description does not fit any arm that this driver knows.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
 }
 
 #[cfg(feature = "urdf")]
 impl ModelError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),
@@ -295,7 +293,7 @@ impl ModelError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::Command(error) => error.party(),

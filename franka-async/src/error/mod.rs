@@ -1,6 +1,6 @@
 //! Errors, grouped by the party that can act on them. Texts follow the reference client where it
-//! has one. [`Error`](crate::Error) holds any of them; [`MotionError`](crate::MotionError) is the
-//! reason why a motion ended short of its goal.
+//! has the same error. [`Error`](crate::Error) holds any of them.
+//! [`MotionError`](crate::MotionError) is the reason why a motion ended short of its goal.
 
 pub(crate) mod any;
 mod calls;

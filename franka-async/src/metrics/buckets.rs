@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use franka_rt::stats::Histogram;
 
-/// A histogram of the thread in the buckets of the text, in seconds.
+/// A histogram of the control thread in the buckets of the text, in seconds.
 #[derive(Debug, PartialEq)]
 pub(super) struct Buckets {
     /// The bound of each bucket, and the number of durations between it and the previous bound.
@@ -32,12 +32,12 @@ impl Buckets {
     }
 }
 
-/// Upper bounds of the buckets, `[s]`: around the millisecond that a cycle has.
+/// Upper bounds of the buckets, `[s]`: close together around the millisecond of a cycle.
 const BOUNDS: [f64; 11] = [
     5e-5, 1e-4, 2e-4, 3e-4, 5e-4, 7.5e-4, 1e-3, 1.25e-3, 2e-3, 5e-3, 1e-2,
 ];
 
-/// The middle of a bucket of the thread, as a share of its longest duration.
+/// The middle of a bucket of the control thread, as a share of its longest duration.
 const MIDDLE: f64 = 1.0 - 1.0 / 32.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The metric families, each with its samples of every robot: a family must not come twice.
+//! The metric families, each with its samples of every robot, because a family must not come twice.
 
 use std::fmt;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ impl<'a, 'e> Families<'a, 'e> {
         self.thread()
     }
 
-    /// Health of the robot.
+    /// Writes the health of the robot.
     fn robot(&mut self) -> fmt::Result {
         let help = "1 while the robot is connected, otherwise 0.";
         self.gauges("franka_connected", help, None, |scrape| {
@@ -100,7 +100,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// Mishaps of the robot.
+    /// Writes the mishaps of the robot.
     fn mishaps(&mut self) -> fmt::Result {
         let help = "Motions that have ended.";
         self.counters("franka_motions", help, |scrape| {
@@ -132,7 +132,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// Punctuality of control.
+    /// Writes the punctuality of control.
     fn thread(&mut self) -> fmt::Result {
         let help = "1 for each real-time request of the control thread that the operating system \
             granted, otherwise 0.";
@@ -175,8 +175,8 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// A family of gauges: for each robot, some samples with labels in addition to the robot's
-    /// label.
+    /// Writes a family of gauges: for each robot, some samples with labels in addition to the
+    /// robot's label.
     fn gauges<L, V, S>(
         &mut self,
         name: &str,
@@ -202,7 +202,7 @@ impl<'a, 'e> Families<'a, 'e> {
         Ok(())
     }
 
-    /// A family of counters, as [`Self::gauges`].
+    /// Writes a family of counters, as [`Self::gauges`].
     fn counters<L, S>(
         &mut self,
         name: &str,
@@ -226,7 +226,7 @@ impl<'a, 'e> Families<'a, 'e> {
         Ok(())
     }
 
-    /// A family with a histogram per robot, in seconds.
+    /// Writes a family with a histogram per robot, in seconds.
     fn histogram(
         &mut self,
         name: &str,
@@ -262,7 +262,7 @@ const ALONE: [(&str, &str); 0] = [];
 
 const SECONDS: Option<&Unit> = Some(&Unit::Seconds);
 
-/// A name without `_total`, the text of help, and where the count is.
+/// A name without `_total`, the help text, and the getter of the count.
 type CounterOf = (&'static str, &'static str, fn(&Stats) -> u64);
 
 const COUNTERS: [CounterOf; 6] = [

@@ -1,11 +1,11 @@
-//! Counts and measurements of connections, as [OpenMetrics] text: for Prometheus and any other
-//! reader of its format.
+//! Counts and measurements of connections, as [OpenMetrics] text: for Prometheus and other readers
+//! of that format.
 //!
-//! [`Robot::metrics`] is one robot's text. [`Exporter`] is the text of several robots, or a
-//! collector for the program's own registry. When called, both read the counters that the control
-//! thread keeps anyway ([`Robot::stats`]), the newest state, [`Robot::health`], [`Robot::granted`],
-//! and how motions ended. The thread does nothing for them. The thread's counts begin anew with
-//! each connection of a supervised robot.
+//! [`Robot::metrics`] returns one robot's text. [`Exporter`] returns the text of several robots, or
+//! is a collector for the program's own registry. When called, both read the counters that the
+//! control thread keeps anyway ([`Robot::stats`]), the newest state, [`Robot::health`],
+//! [`Robot::granted`], and how motions ended. The thread does no work for them. Its counts begin
+//! anew with each connection of a supervised robot.
 //!
 //! | metric | type | labels besides `robot` |
 //! |---|---|---|
@@ -28,9 +28,10 @@
 //! | `franka_state_interval_seconds`, `franka_cycle_turnaround_seconds` | histogram | |
 //! | `franka_cycle_slack_seconds` | gauge, the least so far; negative for an overrun | |
 //!
-//! The thread's buckets are finer than these histograms' and do not end where theirs do. A bucket
-//! counts all durations up to 15/16 of its bound, some of the durations up to the bound, and none
-//! above. The sum is computed from the middles of the thread's buckets, within 1/32.
+//! The thread's own buckets are finer than the buckets of these histograms, and their bounds
+//! differ. A bucket counts all durations up to 15/16 of its bound, some of the durations up to the
+//! bound, and none above. The sum is computed from the middles of the thread's buckets, within
+//! 1/32.
 //!
 //! [OpenMetrics]: https://prometheus.io/docs/specs/om/open_metrics_spec/
 
@@ -46,14 +47,14 @@ use prometheus_client::registry::Registry;
 use crate::robot::Robot;
 use families::{Families, Scrape};
 
-/// The library that [`Exporter`] is a collector of.
+/// The library whose registry accepts an [`Exporter`].
 pub use prometheus_client;
 
-/// The content type of the text, for the answer to a scrape.
+/// The content type of the text, for the HTTP response to a scrape.
 pub const CONTENT_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 impl Robot {
-    /// The metrics of this robot as OpenMetrics text; the label `robot` is its address. See
+    /// Returns the metrics of this robot as OpenMetrics text; the label `robot` is its address. See
     /// [`metrics`](crate::metrics). The content type is
     /// [`CONTENT_TYPE`](crate::metrics::CONTENT_TYPE).
     pub fn metrics(&self) -> String {
@@ -61,16 +62,16 @@ impl Robot {
     }
 }
 
-/// The metrics of some robots. It holds a handle of each: a connection ends with the exporter, or
-/// by [`Robot::shutdown`], if no other handle is left.
+/// The metrics of some robots. An exporter holds a handle of each robot. Without other handles, a
+/// connection ends when the exporter is dropped, or by [`Robot::shutdown`].
 #[derive(Clone, Debug)]
 pub struct Exporter {
     robots: Vec<(String, Robot)>,
 }
 
 impl Exporter {
-    /// Metrics of these robots, each with its value of the label `robot`: no two the same, and the
-    /// same whenever the program runs.
+    /// Returns the metrics of these robots, each with its value of the label `robot`. The values
+    /// must be distinct, and should be the same in every run of the program.
     pub fn new<L: Into<String>>(robots: impl IntoIterator<Item = (L, Robot)>) -> Self {
         let robots = robots.into_iter();
         Self {
@@ -78,7 +79,7 @@ impl Exporter {
         }
     }
 
-    /// The text, which ends with `# EOF`.
+    /// Returns the text, which ends with `# EOF`.
     pub fn text(&self) -> String {
         let mut registry = Registry::default();
         registry.register_collector(Box::new(self.clone()));

@@ -12,7 +12,7 @@ use super::{Track, words};
 use crate::journal::{Entry, EntryReceiver, EntrySender, Journal, Reader, What, entry_queue};
 use crate::world;
 
-/// Entries that may wait for the thread.
+/// Number of entries that may wait for the thread.
 const ENTRIES: usize = 4096;
 
 /// The robots of a recording, by track.
@@ -25,8 +25,8 @@ pub(super) struct Recorded {
     pub(super) track: Track,
 }
 
-/// The way to the thread. Dropping it ends the thread once the waiting entries are passed on; the
-/// drop does not wait for that.
+/// Sender of entries to the thread. Dropping it ends the thread once the waiting entries are passed
+/// on; the drop does not wait for that.
 #[derive(Debug)]
 pub(super) struct EntryQueue {
     entries: EntrySender,
@@ -55,8 +55,8 @@ impl EntryQueue {
         })
     }
 
-    /// Sends everything that is written to `journal` from now on to the track `id`, and the cycles
-    /// of new connections, of which `cycles` may wait.
+    /// Sends everything that is written to `journal` from now on to the track `id`, with the cycles
+    /// of new connections. At most `cycles` cycles may wait.
     pub(super) fn read(&self, journal: &Journal, id: usize, cycles: Option<usize>) {
         journal.read(Reader {
             track: id,
@@ -66,8 +66,8 @@ impl EntryQueue {
     }
 
     /// Begins the track `id` with this state, and sends everything that is written to `journal`
-    /// from now on there. States may be a tenth of a second apart; with this state, entries before
-    /// the next one have a state, too. Returns true if the track is new.
+    /// from now on there. States may be a tenth of a second apart. With the first state, entries
+    /// before the next state have a state, too. Returns true if the track is new.
     pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) -> bool {
         if journal.is_read(id, &self.entries) {
             return false;
@@ -77,13 +77,13 @@ impl EntryQueue {
         true
     }
 
-    /// Looks at the tracks or changes them. The thread waits meanwhile.
+    /// Reads or changes the tracks. The thread waits meanwhile.
     pub(super) fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
         self.shared.with(act)
     }
 
-    /// Records `event`, after the journal entries from before the call: for the robot of this name,
-    /// or for all robots.
+    /// Records `event` for the robot of this name, or for all robots, after the journal entries
+    /// from before the call.
     pub(super) fn tell(&self, name: Option<&str>, event: &EventKind) {
         let wanted = |(id, recorded): (&usize, &Recorded)| {
             let is_wanted = name.is_none_or(|name| name == recorded.track.name);
@@ -96,7 +96,7 @@ impl EntryQueue {
         }
     }
 
-    /// Entries for which there was no room.
+    /// Returns the number of entries for which there was no room.
     pub(super) fn lost(&self) -> u64 {
         self.entries.lost()
     }
@@ -126,7 +126,7 @@ impl Shared {
         act(&mut self.tracks.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Passes entries on until the end of them.
+    /// Passes entries on until the queue ends.
     fn write(&self, queue: &EntryReceiver) {
         while let Some((id, entry)) = queue.next() {
             if matches!(entry.what, What::End) {

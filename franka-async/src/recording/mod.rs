@@ -20,8 +20,8 @@
 //! # }
 //! ```
 //!
-//! No task of a runtime is on the way of a cycle into the file, and nothing that the recorder does
-//! can delay one. Cycles without room are dropped and counted, and the count is recorded.
+//! No task of a runtime handles a cycle on its way into the file, and the recorder cannot delay a
+//! cycle. Cycles without room are dropped and counted, and the count is recorded.
 
 mod entries;
 mod words;
@@ -57,9 +57,10 @@ use entries::{EntryQueue, Recorded};
 
 /// Records robots to files, or the last seconds before an incident, or both.
 ///
-/// It records the robots that are [attached](Self::attach), until it is finished or dropped or they
-/// are gone; a supervised robot also after it was reconnected to. Dropping it ends the recording in
-/// the background, perhaps without the newest events; a motion under way continues.
+/// A recorder records the robots that are [attached](Self::attach), until it is finished or dropped
+/// or the robots are gone. It records a supervised robot after a reconnect, too. Dropping the
+/// recorder ends the recording in the background, perhaps without the newest events. A motion under
+/// way continues.
 #[derive(Debug)]
 pub struct Recorder {
     entries: EntryQueue,
@@ -70,13 +71,13 @@ pub struct Recorder {
 /// Options for the recording of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
-    /// Its name in the recording: letters, digits, `-` and `_`; empty by default, which does for
-    /// the only robot of a recording.
+    /// Name of the robot in the recording: letters, digits, `-` and `_`. Empty by default, which is
+    /// enough for the only robot of a recording.
     pub name: String,
-    /// True if the metadata has the robot's network address; off by default, as recordings are
-    /// passed on.
+    /// True if the metadata has the robot's network address; off by default, because recordings are
+    /// often passed on.
     pub with_address: bool,
-    /// Cycles that may wait for the recorder: 4 s of them by default.
+    /// Number of cycles that may wait for the recorder; 4 s of cycles by default.
     pub capacity: usize,
 }
 
@@ -91,7 +92,7 @@ impl Default for Track {
 }
 
 impl Track {
-    /// The default, called `name`.
+    /// Returns the default options with this name.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -107,7 +108,7 @@ pub enum TrackError {
     /// The control thread provides no cycles.
     #[error(transparent)]
     Cycles(#[from] AttachError),
-    /// The recorder does not take it.
+    /// The recorder does not accept the robot or the end effector.
     #[error(transparent)]
     Record(#[from] RecordError),
     /// An end effector belongs to a robot that is not attached.
@@ -116,7 +117,7 @@ pub enum TrackError {
         /// The name that was given.
         name: String,
     },
-    /// An end effector is recorded with this robot already.
+    /// This robot has such an end effector in the recording already.
     #[error("this end effector is already recorded with the robot {name:?}")]
     Attached {
         /// The robot's name.
@@ -128,8 +129,8 @@ impl Recorder {
     /// Begins a recording in a new file at `path`.
     ///
     /// # Errors
-    /// [`RecordError`]: there is such a file, its folder is missing or read-only, an option is out
-    /// of range, no thread can be started.
+    /// [`RecordError`]: the file exists already, its folder is missing or read-only, an option is
+    /// out of range, or no thread can be started.
     pub fn to_file(path: impl AsRef<Path>, options: RecordOptions) -> Result<Self, RecordError> {
         Self::around(recorder::Recorder::to_file(path, options)?)
     }
@@ -143,8 +144,8 @@ impl Recorder {
         Self::around(recorder::Recorder::black_box(black_box)?)
     }
 
-    /// Writes no file, and serves the content of a recording to Foxglove: see [`Self::serve`]. Also
-    /// returns the address of the server.
+    /// Returns a recorder that writes no file and serves the content of a recording to Foxglove:
+    /// see [`Self::serve`]. Also returns the address of the server.
     ///
     /// # Errors
     /// As [`Self::serve`].
@@ -155,13 +156,13 @@ impl Recorder {
     }
 
     /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
-    /// connection", "Foxglove WebSocket"), and returns the address at which it does. A viewer that
-    /// is too slow loses messages; the recording loses none for it. Blocks until the server
+    /// connection", "Foxglove WebSocket"). Returns the address of the server. A viewer that is too
+    /// slow loses messages; the recording loses none because of it. Blocks until the server
     /// listens.
     ///
     /// # Errors
-    /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`] for an option out
-    /// of range, [`RecordError::Ended`].
+    /// [`RecordError::Live`] if the server cannot listen there, [`RecordError::Option`] for an
+    /// option out of range, [`RecordError::Ended`].
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
         self.inner.serve(live)
@@ -175,13 +176,13 @@ impl Recorder {
         })
     }
 
-    /// Records this robot from now on: every cycle, goals and how they end, with the diagnosis of a
-    /// reflex, events of its supervision, and requests from all of its handles. The description of
-    /// a Franka Research 3 is requested and attached to the file.
+    /// Records this robot from now on. The recording has every cycle, goals and their ends, with
+    /// the diagnosis of a reflex, events of the supervision, and requests from all of the robot's
+    /// handles. The description of a Franka Research 3 is requested and attached to the file.
     ///
     /// # Errors
-    /// [`TrackError`]: there is a robot of that name, the recording has ended, the robot has as
-    /// many readers as it can have or no connection.
+    /// [`TrackError`]: the recording has a robot of that name, the recording has ended, or the
+    /// robot has no connection or its full number of readers.
     ///
     /// # Cancel safety
     /// Nothing is recorded if the future is dropped.
@@ -219,7 +220,7 @@ impl Recorder {
         })
     }
 
-    /// Records the arms of a team, each as [`Self::attach`] does, and which member each is.
+    /// Records the arms of a team, each as [`Self::attach`] does, and the member number of each.
     ///
     /// # Errors
     /// As [`Self::attach`]. Members before the failed one are attached.
@@ -305,19 +306,19 @@ impl Recorder {
         self.entries.tell(None, &EventKind::EpisodeEnd { success });
     }
 
-    /// Amount recorded so far, and failures.
+    /// Returns the amount recorded so far, and failures.
     pub fn status(&self) -> RecordStatus {
         let mut status = self.inner.status();
         status.events_dropped += self.entries.lost();
         status
     }
 
-    /// Ends the recording and waits, 10 s at most, until all of it is on the disk, with everything
-    /// that happened before the call. Blocks: from async code, call it by
-    /// [`tokio::task::spawn_blocking`] where other tasks must not wait.
+    /// Ends the recording and waits, 10 s at most, until everything that happened before the call
+    /// is on the disk. Blocks: in async code, call it by [`tokio::task::spawn_blocking`] where
+    /// other tasks must not wait.
     ///
     /// # Errors
-    /// [`RecordError`] if the files could not be written to their end. The part that was written is
+    /// [`RecordError`] if the files could not be written to their end. The written part is
     /// readable.
     pub fn finish(self) -> Result<RecordStatus, RecordError> {
         let Self { entries, inner, .. } = self;

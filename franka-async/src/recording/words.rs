@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::destination::Destination;
 use crate::journal::{ActionEnd, Given};
 
-/// A goal that was given.
+/// Returns the event of a goal that was requested.
 pub(super) fn goal(given: &Given) -> EventKind {
     let Given {
         id,
@@ -73,7 +73,7 @@ fn options(goal: &Goal, destination: Option<Destination>) -> String {
     )
 }
 
-/// Outcome of a goal, a session or a program.
+/// Returns the event of the end of a goal, a session or a program.
 pub(super) fn outcome(goal: GoalId, outcome: &Outcome) -> EventKind {
     let (ending, text, duration) = match outcome {
         Ok(report) => {
@@ -132,7 +132,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
     }
 }
 
-/// Reason why the robot ended a motion by a reflex, if it did.
+/// Returns the diagnosis of a motion that the robot ended by a reflex, if it did.
 pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     #[expect(
         clippy::disallowed_methods,
@@ -146,7 +146,7 @@ pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     }))
 }
 
-/// Something that happened to the robot; `None` for events with separate entries.
+/// Returns the recorded form of an event of the robot; `None` for events with separate entries.
 pub(super) fn happening(event: &supervision::Event) -> Option<EventKind> {
     use supervision::EventKind as Kind;
     let level = match &event.kind {
@@ -171,7 +171,7 @@ pub(super) fn note(level: Level, source: &str, text: String) -> EventKind {
     })
 }
 
-/// A request to the robot, and the reason if it was not done.
+/// Returns the event of a request to the robot, with the reason if it was not carried out.
 pub(super) fn request(request: &Request, error: Option<String>) -> EventKind {
     let none = String::new();
     let (name, arguments) = match request {
@@ -194,7 +194,7 @@ pub(super) fn request(request: &Request, error: Option<String>) -> EventKind {
     answered(name, arguments, error)
 }
 
-/// An action of the Hand that has ended.
+/// Returns the event of an action of the Hand that has ended.
 pub(super) fn hand(request: &gripper::Request, ended: ActionEnd) -> EventKind {
     let (name, arguments) = match request {
         gripper::Request::Homing => ("gripper.homing", String::new()),
@@ -206,7 +206,7 @@ pub(super) fn hand(request: &gripper::Request, ended: ActionEnd) -> EventKind {
     answered(name, arguments, failure(ended))
 }
 
-/// An action of a vacuum gripper that has ended.
+/// Returns the event of an action of a vacuum gripper that has ended.
 pub(super) fn vacuum(request: &vacuum::Request, ended: ActionEnd) -> EventKind {
     let (name, arguments) = match request {
         vacuum::Request::Vacuum(vacuum) => ("vacuum.vacuum", json(vacuum)),
@@ -233,7 +233,7 @@ fn answered(name: &str, arguments: String, error: Option<String>) -> EventKind {
     })
 }
 
-/// The value as JSON.
+/// Returns the value as JSON.
 fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("no map in it has keys that are no text")
 }

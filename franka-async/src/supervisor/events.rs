@@ -9,7 +9,7 @@ use tokio::sync::broadcast;
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 
-/// Events that a slow listener may lag behind before it misses some.
+/// Number of events that a slow listener may lag behind before it misses some.
 pub(crate) const CAPACITY: usize = 256;
 
 /// An event, and the number of events that are missing before it.
@@ -19,7 +19,7 @@ pub struct Notification {
     /// The event.
     pub event: Event,
     /// Number of events that were dropped between the last event of this stream and this one,
-    /// because no reader took them: a listener may lag 256 behind.
+    /// because the listener was too slow: it may lag 256 events behind.
     pub missed: u64,
 }
 
@@ -39,10 +39,10 @@ impl Events {
         }
     }
 
-    /// The next event; `None` after the last one, when there is no connection and will be none.
+    /// Returns the next event; `None` after the last one, when no further connection will come.
     ///
     /// # Cancel safety
-    /// Dropping the future loses nothing: the event is given to the next call.
+    /// Dropping the future loses nothing: the next call returns the event.
     pub async fn next(&mut self) -> Option<Notification> {
         StreamExt::next(self).await
     }

@@ -1,8 +1,8 @@
-//! Supervision of a robot: `franka_rt::supervision` between the handles, the bridge of the newest
-//! connection, and the task that reconnects and recovers.
+//! Supervision of a robot: connects the state machine `franka_rt::supervision` to the handles, to
+//! the bridge of the newest connection, and to the task that reconnects and recovers.
 //!
-//! Handles and bridge call it, so that it knows of a mishap before a motion resolves for it. Its
-//! lock is held for some microseconds, and never on the control thread.
+//! Handles and bridge call the supervisor. It therefore knows of a mishap before a motion resolves
+//! for it. Its lock is held for some microseconds, and never on the control thread.
 
 mod events;
 
@@ -41,13 +41,13 @@ pub(crate) enum Job {
     Ask(Reflex),
 }
 
-/// Watches over a robot.
+/// Watches a robot, and decides when to reconnect and recover.
 pub(crate) struct Supervisor {
     begun: Instant,
     is_supervised: bool,
     inner: Mutex<Inner>,
     health: watch::Receiver<Health>,
-    /// Reason why there will be no connection any more.
+    /// Reason why no further connection will come.
     closing: Closing,
     /// Notified when there is a job, or the deadline has changed.
     work: Notify,
@@ -55,13 +55,13 @@ pub(crate) struct Supervisor {
 
 struct Inner {
     core: Supervision,
-    /// Connection on which a motion that waited begins. Weak, because a waiting motion does not
-    /// keep the connection.
+    /// Connection on which a waiting motion begins. Weak, because a waiting motion does not keep
+    /// the connection open.
     link: Weak<Link>,
     waiting: Option<Waiting>,
     refused: Vec<Refused>,
     jobs: VecDeque<Job>,
-    /// `None` once closed, like the next field.
+    /// Sender of events; `None` once closed, like the next field.
     events: Option<broadcast::Sender<Event>>,
     health: Option<watch::Sender<Health>>,
     #[cfg(feature = "metrics")]
@@ -78,7 +78,7 @@ struct Waiting {
     is_closed: bool,
 }
 
-/// A motion that does not begin. It is dropped without the lock: it may own anything of the user's.
+/// A motion that is refused. Dropped without the lock held, because it may own values of the user.
 struct Refused {
     motion: Beginning,
     replies: Replies,
@@ -86,8 +86,8 @@ struct Refused {
 }
 
 impl Supervisor {
-    /// Watches over a robot that is about to be connected to, by `policy`; only watches without a
-    /// policy.
+    /// Returns a supervisor for a robot that is about to be connected to. Without a policy, it only
+    /// watches.
     pub(crate) fn new(policy: Option<Policy>) -> Self {
         let core = Supervision::new(policy);
         let (health, shown) = watch::channel(core.health());
@@ -113,7 +113,7 @@ impl Supervisor {
         }
     }
 
-    /// True if there is no connection and will be none.
+    /// True if there is no connection and no further one will come.
     pub(crate) fn is_closed(&self) -> bool {
         self.lock().core.health().condition == Condition::Closed
     }
@@ -123,7 +123,7 @@ impl Supervisor {
         self.lock().core.has_connection()
     }
 
-    /// True if lost connections and reflexes are handled, and not only reported.
+    /// True if lost connections and reflexes are handled, not only reported.
     pub(crate) fn is_supervised(&self) -> bool {
         self.is_supervised
     }
@@ -145,19 +145,20 @@ impl Supervisor {
         self.health.clone()
     }
 
-    /// Journal of requests to the robot and of its events.
+    /// Returns the journal of requests to the robot and of its events.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> Journal {
         self.lock().journal.clone()
     }
 
-    /// Counts of the events so far.
+    /// Returns the counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> Tally {
         self.lock().tally.clone()
     }
 
-    /// Takes over a connection that has just been made. Returns false if none is wanted any more.
+    /// Accepts a connection that has just been made. Returns false if no connection is wanted any
+    /// more.
     pub(crate) fn on_connected(
         &self,
         link: &Arc<Link>,
@@ -179,7 +180,7 @@ impl Supervisor {
         self.with(|inner, now| inner.core.on_connect_failed(failure, now));
     }
 
-    /// Looks at the newest state, as everything else in here does first.
+    /// Reads the newest state, as all other methods do first.
     pub(crate) fn observe(&self) {
         self.with(|_, _| ());
     }
@@ -200,8 +201,8 @@ impl Supervisor {
         self.with(|inner, now| inner.core.on_recovery(reflex, answer, now));
     }
 
-    /// Takes note of a setting that is about to be sent over the connection that `newest` looks up.
-    /// Returns that connection, and the name for [`Self::on_set`].
+    /// Notes a setting that is about to be sent over the connection that `newest` returns. Returns
+    /// that connection, and the name for [`Self::on_set`].
     pub(crate) fn declare(
         &self,
         request: Request,
@@ -237,7 +238,7 @@ impl Supervisor {
         });
     }
 
-    /// Writes down the end of something that the supervision does not follow.
+    /// Writes the end of a goal or program that the supervision does not follow to the journal.
     #[cfg(feature = "record")]
     pub(crate) fn write_down(&self, goal: GoalId, outcome: &Outcome) {
         self.with(|inner, _| inner.journal.ended(goal, outcome));
@@ -268,8 +269,8 @@ impl Supervisor {
         self.lock().core.check_latch()
     }
 
-    /// Time at which [`Self::on_time`] must be called; `None` also for events that no clock can
-    /// show.
+    /// Returns the time at which [`Self::on_time`] must be called; `None` also for a time that no
+    /// clock can show.
     pub(crate) fn deadline(&self) -> Option<Instant> {
         let after = self.lock().core.deadline()?;
         self.begun.checked_add(after)
@@ -287,9 +288,9 @@ impl Supervisor {
         self.work.notified().await;
     }
 
-    /// Passes an input on to the bridge of the newest connection, or keeps it back with the waiting
-    /// motion. Returns that connection, which `newest` looks up under the lock. A waiting motion
-    /// begins under it, too, so a cancel or a stop never goes to an older connection.
+    /// Passes an input to the bridge of the newest connection, or keeps it with the waiting motion.
+    /// Returns that connection, which `newest` looks up under the lock. A waiting motion also
+    /// begins under the lock, so a cancel or a stop never goes to an older connection.
     pub(crate) fn pass(&self, input: Input, newest: impl FnOnce() -> Arc<Link>) -> Arc<Link> {
         self.with(|inner, now| {
             let link = newest();
@@ -327,8 +328,8 @@ impl Supervisor {
 }
 
 impl Inner {
-    /// Shows the core the newest state: a motion that is asked for right after a reflex finds a
-    /// robot that is in it.
+    /// Shows the state machine the newest state. A motion that is requested right after a reflex
+    /// then finds the robot in the reflex.
     fn observe(&mut self, now: Duration) {
         if let Some(link) = self.link.upgrade() {
             self.core.on_state(&link.newest.state(), now);
@@ -443,8 +444,8 @@ impl Inner {
         link.send(input);
     }
 
-    /// Answers an input that would move the arm while a stop is latched, and returns everything
-    /// else. Motions that begin are refused where they are submitted.
+    /// Answers an input that would move the arm while a stop is latched, and returns all other
+    /// inputs. Motions that begin are refused where they are submitted.
     fn check_latch(&mut self, input: Input) -> Option<Input> {
         let Err(error) = self.core.check_latch() else {
             return Some(input);
@@ -471,7 +472,7 @@ impl Inner {
         None
     }
 
-    /// Notes a goal that its session does not get.
+    /// Notes a goal that its session does not receive.
     fn note_refused(&self, goal: GoalId, error: &MotionError) {
         tracing::info!(goal = goal.0, %error, "goal refused");
         #[cfg(feature = "record")]
@@ -501,7 +502,7 @@ impl Inner {
         });
     }
 
-    /// Carries out the decisions of the core, in its order, and publishes the health of the robot.
+    /// Carries out the decisions of the state machine, in order, and publishes the robot's health.
     fn carry_out(&mut self, closing: &Closing, now: Duration) {
         // A receiver of the event finds the robot as it is after that event.
         let health = self.core.health();

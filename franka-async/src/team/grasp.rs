@@ -8,39 +8,40 @@ use super::{Team, TeamMotion};
 use crate::move_to::Motion;
 use crate::robot::Pose;
 
-/// An object that all arms of a team hold, each in its hand. Motions have a pose of the object as
-/// their target, and the poses of the hands relative to each other stay. Made by [`Team::grasp`].
+/// An object that all arms of a team hold, each in its hand. The targets of motions are poses of
+/// the object; the poses of the hands relative to each other stay. Made by [`Team::grasp`].
 ///
-/// Every real-time thread plans the same way of the object, with the same limits, and follows it
-/// with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its
-/// hand. So, except for inertia, the cap of an arm bounds the force between it and the object, and
-/// the force with which two arms pull at each other.
+/// Every real-time thread plans the same path of the object, with the same limits, and follows the
+/// path with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its
+/// hand. Except for inertia, the cap of an arm therefore bounds the force between the arm and the
+/// object, and the force with which two arms pull at each other.
 ///
 /// An arm that is held back, by an obstacle or by its own limits, delays the others. While it is 15
-/// mm behind its reference, the references of all halt on their line, with 2.5 m/s^2. Turns count
-/// as 0.2 m per radian. A reference that is more than 2 mm ahead of another one halts until the
-/// other has followed. An arm that does not catch up within 5 s stops and ends as
-/// [`MotionError::TargetNotReached`], and so the motion of each ends with an error.
+/// mm behind its reference, all references halt on their line, with 2.5 m/s^2. Rotations count as
+/// 0.2 m per radian. A reference that is more than 2 mm ahead of another reference halts until the
+/// other one has caught up. An arm that does not catch up within 5 s stops and ends as
+/// [`MotionError::TargetNotReached`]. The motions of the other arms then end with an error, too.
 ///
-/// No arm knows exactly where its hand is, so an object in several hands keeps them from their
-/// targets. An arm that stops within 5 mm and 10 mrad of its target has arrived, with the distance
-/// in [`MotionReport::final_error`](crate::MotionReport::final_error), unless the motion sets a
+/// No arm knows exactly where its hand is, so the arms hold each other slightly off their targets.
+/// An arm that stops within 5 mm and 10 mrad of its target has arrived, with the distance in
+/// [`MotionReport::final_error`](crate::MotionReport::final_error), unless the motion sets a
 /// tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct Grasp<'a, const N: usize> {
     team: &'a Team<N>,
     bases: [Pose; N],
-    /// The object in the frame of each end effector.
+    /// Pose of the object in the frame of each end effector.
     hands: [Pose; N],
 }
 
 impl<const N: usize> Team<N> {
-    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
-    /// frames and `object` is the object's frame, all in one frame of the program's choice. The
-    /// present positions of the arms define the place of the object in each hand. Nothing moves.
+    /// Defines an object that all arms hold from now on, at its present place. `bases` are the
+    /// robots' base frames and `object` is the object's frame, all in one frame of the program's
+    /// choice. The present positions of the arms define the pose of the object in each hand.
+    /// Nothing moves.
     ///
-    /// Weight that is not declared ([`Robot::set_load`](crate::Robot::set_load)) is carried by the
-    /// springs: each arm's share of it, for a load that several hold.
+    /// The springs carry weight that is not declared ([`Robot::set_load`](crate::Robot::set_load)).
+    /// If several arms hold a load, declare each arm's share of it.
     ///
     /// # Errors
     /// The cause of the end of the session of an arm.
@@ -52,8 +53,8 @@ impl<const N: usize> Team<N> {
         Ok(self.grasp_at(bases, hands))
     }
 
-    /// Takes an object as held by all arms, each of whose end effectors has it at this pose in its
-    /// own frame. The poses come from an earlier [`Grasp::hands`], or are known from elsewhere.
+    /// Defines an object that all arms hold; `hands` are its poses in the frames of the end
+    /// effectors. These poses come from an earlier [`Grasp::hands`], or are known from elsewhere.
     /// Nothing moves.
     pub fn grasp_at(&self, bases: [Pose; N], hands: [Pose; N]) -> Grasp<'_, N> {
         let team = self;
@@ -62,20 +63,21 @@ impl<const N: usize> Team<N> {
 }
 
 impl<const N: usize> Grasp<'_, N> {
-    /// The object in the frame of each end effector.
+    /// Returns the pose of the object in the frame of each end effector.
     pub fn hands(&self) -> &[Pose; N] {
         &self.hands
     }
 
-    /// A motion of the object to this pose, in the frame of the bases: a straight line and a
-    /// rotation about one axis, if it begins at rest. See [`Team::run`] for how it begins and ends.
+    /// Returns a motion of the object to this pose, in the frame of the bases. A motion that begins
+    /// at rest is a straight line and a rotation about one axis. See [`Team::run`] for start and
+    /// end.
     pub fn move_to(&self, object: Pose) -> TeamMotion<N> {
         self.move_with(object, |motion| motion)
     }
 
-    /// [`Self::move_to`] with options, which must be the same for each arm. Example:
-    /// `grasp.move_with(pose, |motion| motion.speed(0.3).force_cap(15.0))`. The limits of the
-    /// translation and the rotation, at the origin of the object, are the least of all arms.
+    /// As [`Self::move_to`], with options, which must be the same for each arm. Example:
+    /// `grasp.move_with(pose, |motion| motion.speed(0.3).force_cap(15.0))`. The limits of
+    /// translation and rotation, at the origin of the object, are the smallest of all arms.
     pub fn move_with(&self, object: Pose, options: impl Fn(Motion) -> Motion) -> TeamMotion<N> {
         let budgets = self.team.arms.each_ref().map(|arm| {
             let limits = arm.robot().model().joint_limits();
@@ -93,8 +95,8 @@ impl<const N: usize> Grasp<'_, N> {
         })
     }
 
-    /// Pose of the object by the newest state of each arm, in the frame of the bases. The poses
-    /// differ by how far the arms and the grasps yield.
+    /// Returns the pose of the object according to the newest state of each arm, in the frame of
+    /// the bases. The poses differ by the compliance of the arms and the grasps.
     pub fn measured(&self) -> [Pose; N] {
         core::array::from_fn(|member| {
             let hand = self.team.arms[member].robot().pose();
@@ -103,7 +105,7 @@ impl<const N: usize> Grasp<'_, N> {
     }
 }
 
-/// The least limits of translation and rotation.
+/// Returns the smallest limits of translation and rotation.
 fn slowest<const N: usize>(budgets: &[Budget; N]) -> Budget {
     let mut least = budgets[0];
     for budget in budgets {

@@ -70,7 +70,7 @@ impl CloseReason {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::ClosedByUs => "closed-by-us",
@@ -85,7 +85,7 @@ impl CloseReason {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             Self::ClosedByUs | Self::RuntimeEnded => Party::Caller,

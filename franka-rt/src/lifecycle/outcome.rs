@@ -301,7 +301,7 @@ impl MotionError {
         }
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Goal(error) => error.entry(),
@@ -331,7 +331,7 @@ impl MotionError {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
         match self {
             // A person at the robot pushed the arm.
@@ -460,8 +460,8 @@ impl ControlError {
         self.failure.refusal
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`: the row for the
-    /// first error that stopped the robot, or for the robot's answer.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`: the row
+    /// of the first error that stopped the robot, or of the robot's answer.
     pub fn entry(&self) -> &'static str {
         let first = self.failure.reflex_reason.iter().next();
         match first.filter(|_| self.is_reflex()) {

@@ -63,7 +63,7 @@ impl Unready {
         )
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Disconnected => "unready-disconnected",
@@ -81,7 +81,7 @@ impl Unready {
         }
     }
 
-    /// Returns the party that can act on it.
+    /// Returns the party that can act on this error.
     pub fn party(self) -> Party {
         match self {
             Self::Disconnected | Self::Silent => Party::Link,

@@ -60,7 +60,7 @@ pub enum SchedError {
 }
 
 impl SchedError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::MaximumPriority(_) => "sched-maximum-priority",

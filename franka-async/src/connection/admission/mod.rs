@@ -58,18 +58,19 @@ pub struct Admission {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refused {
-    /// It names no host, several hosts, or something that is no host.
+    /// The request names no host, several hosts, or something that is no host.
     #[error("the Host header is missing, repeated or invalid, expected exactly one")]
     NoHost,
-    /// The name is not one of the service's. A page of another site may have rebound it.
+    /// The host name is not a name of the service. A page of another site may have rebound the
+    /// name.
     #[error(
         "the Host header is {got:?}, expected localhost, an IP address or a name of the service"
     )]
     Host {
-        /// The name.
+        /// The host name in the request.
         got: String,
     },
-    /// A page of another origin makes the request.
+    /// The request comes from a page of another origin.
     #[error("the request comes from a web page of another origin, expected a page of this service")]
     Origin,
     /// Only requests from this computer are answered without a token.
@@ -78,7 +79,7 @@ pub enum Refused {
          service with a token to admit others"
     )]
     NeedsToken {
-        /// Sign that the request is from elsewhere.
+        /// Sign that the request comes from another computer.
         why: Elsewhere,
     },
     /// The token is missing or wrong.
@@ -99,10 +100,10 @@ pub enum Elsewhere {
          into_make_service_with_connect_info::<SocketAddr>()"
     )]
     UnknownPeer,
-    /// `Host`, `:authority` and `Origin` name something other than this computer.
+    /// `Host`, `:authority` or `Origin` names something other than this computer.
     #[error("the Host header is not a loopback address")]
     Host,
-    /// A proxy has passed it on.
+    /// A proxy has forwarded the request.
     #[error("a proxy forwarded the request")]
     Forwarded,
 }
@@ -133,7 +134,8 @@ impl Admission {
         self
     }
 
-    /// Allows this name as a `Host`, besides `localhost` and IP addresses. It needs the token.
+    /// Allows this name as a `Host`, besides `localhost` and IP addresses. Requests with it need
+    /// the token.
     pub fn host(mut self, name: impl Into<String>) -> Self {
         self.hosts.push(name.into());
         self
@@ -147,7 +149,7 @@ impl Admission {
     /// Checks the address on which a service is about to listen.
     ///
     /// # Errors
-    /// [`NoToken`] if it is not a loopback address, and no token is set.
+    /// [`NoToken`] if the address is not a loopback address, and no token is set.
     pub fn check_listener(&self, address: SocketAddr) -> Result<(), NoToken> {
         match is_loopback(address.ip()) || self.token.is_some() {
             true => Ok(()),
@@ -155,9 +157,9 @@ impl Admission {
         }
     }
 
-    /// Checks a request for something that is no secret and changes nothing, such as the files of
-    /// a page. Links of other sites may lead there, and a page without a token can then ask for it:
-    /// `Origin` and token are not checked.
+    /// Checks a request for a resource that is not secret, and that changes nothing, such as the
+    /// files of a page. `Origin` and token are not checked: links of other sites may lead there,
+    /// and a page without a token can then ask for it.
     ///
     /// # Errors
     /// [`Refused`], except [`Refused::Origin`] and [`Refused::Token`].
@@ -220,8 +222,8 @@ fn hosts<B>(request: &Request<B>) -> Option<Vec<Authority>> {
     (hosts.len() <= 2 && hosts.iter().all(|host| host == first && is_plain(host))).then_some(hosts)
 }
 
-/// Browsers send the origin with every request that changes something, and with every WebSocket.
-/// Other programs send none.
+/// Checks the origin. Browsers send it with every request that changes something, and with every
+/// WebSocket. Other programs send none.
 fn check_origin(headers: &HeaderMap, hosts: &[Authority]) -> Result<(), Refused> {
     let is_own = |origin: &[u8]| {
         let origin = std::str::from_utf8(origin).unwrap_or_default();
@@ -239,8 +241,8 @@ fn check_origin(headers: &HeaderMap, hosts: &[Authority]) -> Result<(), Refused>
     is_fine.then_some(()).ok_or(Refused::Origin)
 }
 
-/// Returns the first sign that a request is from another computer. The origin is not among them:
-/// [`check_origin`] has found it to be the host.
+/// Returns the first sign that a request is from another computer. Ignores the origin, which
+/// [`check_origin`] has found to equal the host.
 fn elsewhere(
     headers: &HeaderMap,
     hosts: &[Authority],

@@ -11,23 +11,23 @@ use subtle::ConstantTimeEq as _;
 #[derive(Clone)]
 pub struct Token(String);
 
-/// Reason why something cannot be a token.
+/// Reason why a text or a source cannot be a token.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TokenError {
-    /// It is empty.
+    /// The text is empty.
     #[error("the token is empty, expected {TOKEN_MIN} characters or more")]
     Empty,
-    /// It is short enough to be guessed.
+    /// The text is so short that it can be guessed.
     #[error("the token has {got} characters, expected {TOKEN_MIN} or more")]
     Short {
-        /// Number of its characters.
+        /// Number of characters of the text.
         got: usize,
     },
-    /// It has a character that addresses and headers do not carry unchanged.
+    /// The text has a character that addresses and headers do not carry unchanged.
     #[error("the token has the character {got:?}, expected letters, digits and - _ . ~")]
     Character {
-        /// First such character.
+        /// First such character of the text.
         got: char,
     },
     /// The file cannot be read.
@@ -122,7 +122,7 @@ impl Token {
         &self.0
     }
 
-    /// Compares in a time that depends on the lengths only.
+    /// Compares with `offered`, in a time that depends on the lengths only.
     pub(super) fn is(&self, offered: &str) -> bool {
         self.0.as_bytes().ct_eq(offered.as_bytes()).into()
     }
