@@ -1,9 +1,9 @@
-//! The eventfd by which the thread wakes the receiver of its reports: any reactor can poll it.
-//! Elsewhere than on Linux, a pair of sockets takes its place.
+//! The eventfd with which the thread wakes the receiver of its reports. Any reactor can poll it. On
+//! other systems than Linux, a pair of sockets replaces it.
 //!
 //! Notifying is one non-blocking `write`, without a lock and without knowledge of the listener.
-//! Notifications add up until the listener drains them, so a slow listener is woken once and then
-//! looks at the slot and the queues.
+//! Notifications add up until the listener drains them. A slow listener is therefore woken once,
+//! and then reads the slot and the queues.
 
 use std::io;
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, RawFd};
@@ -11,11 +11,11 @@ use std::sync::Arc;
 
 use crate::sys;
 
-/// An eventfd. Clones are the same one.
+/// An eventfd. Clones share one descriptor.
 ///
-/// For Tokio: `AsyncFd::new(event_fd)`, await `readable()`, [`EventFd::drain`], then the guard's
-/// `clear_ready`, then look. A notification that comes between is not lost: it makes the descriptor
-/// readable again.
+/// With Tokio: `AsyncFd::new(event_fd)`, await `readable()`, call [`EventFd::drain`], then the
+/// guard's `clear_ready`, then read the queues. A notification in between is not lost: it makes the
+/// descriptor readable again.
 #[derive(Clone, Debug)]
 pub struct EventFd(Arc<sys::Wake>);
 
@@ -23,13 +23,13 @@ impl EventFd {
     /// Opens an eventfd without a notification.
     ///
     /// # Errors
-    /// If the process or the system has no descriptor left.
+    /// The process or the system has no descriptor left.
     pub fn new() -> io::Result<Self> {
         Ok(Self(Arc::new(sys::Wake::new()?)))
     }
 
-    /// Makes the descriptor readable. Never blocks and cannot fail in a relevant way: if
-    /// notifications that were not drained leave no room, the descriptor is readable anyway.
+    /// Makes the descriptor readable. Never blocks, and cannot fail in a relevant way: if pending
+    /// notifications leave no room, the descriptor is readable anyway.
     pub fn notify(&self) {
         self.0.notify();
     }

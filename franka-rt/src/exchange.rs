@@ -1,11 +1,12 @@
-//! The UDP side of a connection: the robot's newest state in (those that a newer one has overtaken
-//! and duplicates are dropped and counted), one command back to where that state came from.
+//! The UDP side of a connection: receives the robot's newest state, and sends one command back to
+//! the sender of that state. Duplicates and states that a newer state has overtaken are dropped and
+//! counted.
 //!
-//! The robot sends one state per millisecond, and a host that was delayed finds several of them
-//! waiting. The newest one wins. [`Exchange::receive`] waits for a datagram, then takes all that
-//! are there. It keeps the state with the highest `message_id`, if that is above the last one kept
-//! and not impossibly far ahead of it. Datagrams from other addresses than the robot's are dropped
-//! and counted. Nothing here allocates after [`Exchange::new`].
+//! The robot sends one state per millisecond, and a delayed host finds several of them waiting. The
+//! newest state wins. [`Exchange::receive`] waits for a datagram, then reads all that are there. It
+//! keeps the state with the highest `message_id`, if that is above the last one kept and not
+//! impossibly far ahead of it. Datagrams from other addresses than the robot's are dropped and
+//! counted. Nothing here allocates after [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -16,11 +17,11 @@ use socket2::{SockAddr, Socket};
 use crate::sys;
 
 /// Opens the socket that `robot` sends its states to: any address of the robot's family, IPv4 or
-/// IPv6, and a free port (the one to announce in `Connect`). States that arrive before the thread
+/// IPv6, and a free port, which `Connect` must announce. States that arrive before the thread
 /// starts wait in the kernel.
 ///
 /// # Errors
-/// If the system refuses a socket or a port.
+/// The system refuses a socket or a port.
 pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
     // IPv4-mapped IPv6 counts as IPv4.
     match robot.to_canonical() {
@@ -29,20 +30,20 @@ pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
     }
 }
 
-/// Time that [`Exchange::receive`] waits at most, and therefore the longest time until the thread
-/// sees an order, or the wish that it stop, while the robot is silent.
+/// Longest wait of [`Exchange::receive`]. While the robot is silent, the thread therefore sees an
+/// order or a request to stop within this time.
 pub const TICK: Duration = Duration::from_millis(20);
 
-/// Time to wait for a state where silences of `link_timeout` must be noticed: a quarter of it, a
-/// [`TICK`] at most.
+/// Returns the time to wait for a state so that a silence of `link_timeout` is noticed: a quarter
+/// of it, and at most a [`TICK`].
 ///
-/// So a loss shows late by a quarter, and by two of the kernel's clock ticks (4 ms at 250 Hz), in
-/// which it counts such waits.
+/// A loss is noticed late by at most a quarter, and by two of the kernel's clock ticks (4 ms at 250
+/// Hz), in which the kernel counts such waits.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
 
-/// The shortest wait: a wait that rounds to zero would be no wait, or last forever.
+/// The shortest wait. A wait that rounds to zero would be no wait, or last forever.
 const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// Receives states and sends commands.
@@ -52,15 +53,15 @@ pub struct Exchange {
     robot: IpAddr,
     /// The newest state, in its first `state_size` bytes.
     newest: Box<[u8]>,
-    /// Buffer of the next datagram; changes places with `newest` if it is newer.
+    /// Buffer of the next datagram; swapped with `newest` if the datagram is newer.
     incoming: Box<[u8]>,
     /// `message_id` of `newest`.
     message_id: Option<u64>,
-    /// Sender of `newest`, to which a command is sent.
+    /// Sender of `newest`, to which commands are sent.
     reply_to: Option<SockAddr>,
-    /// Time that each receive waits for a datagram.
+    /// Longest time that each receive waits for a datagram.
     wait: Duration,
-    /// True if the last receive failed, rather than found nothing.
+    /// True if the last receive failed. Finding nothing is no failure.
     failed: bool,
 }
 
@@ -69,32 +70,32 @@ pub struct Exchange {
 pub struct Reception {
     /// True if there is a newer state than before; [`Exchange::state`] has it.
     pub fresh: bool,
-    /// States that were newer than before and were skipped for a still newer one.
+    /// Number of states that were newer than before and were skipped for a still newer one.
     pub skipped: u64,
-    /// States not newer than the newest: overtaken or duplicate ones.
+    /// Number of states that are not newer than the newest: overtaken or duplicate ones.
     pub stale: u64,
-    /// Datagrams from elsewhere than the robot.
+    /// Number of datagrams from other addresses than the robot's.
     pub foreign: u64,
-    /// Datagrams of the robot too short for a state.
+    /// Number of datagrams of the robot that are too short for a state.
     pub short: u64,
-    /// Length in bytes of the last of these; 0 without one.
+    /// Length in bytes of the last short datagram; 0 without one.
     pub short_length: usize,
-    /// `message_id` of the last state that was dropped for being more than [`LEAP_MAX`] above the
-    /// newest; `None` without one.
+    /// `message_id` of the last state that was dropped because it was more than [`LEAP_MAX`] above
+    /// the newest; `None` without such a state.
     pub leap: Option<u64>,
-    /// The wait, if it passed in full without a datagram; zero otherwise.
+    /// Length of the wait, if no datagram came; zero otherwise.
     pub waited: Duration,
-    /// errno value of a receive that failed otherwise than by finding nothing.
+    /// errno value of a receive that failed. Finding nothing is no failure.
     pub error: Option<i32>,
 }
 
 impl Exchange {
-    /// Takes the bound `socket`, the robot's address and the size of a state in bytes, which
-    /// includes the `message_id` (8 bytes, little-endian) that it begins with in every protocol
-    /// version.
+    /// Returns an exchange on the bound `socket`. `robot` is the robot's address. `state_size` is
+    /// the size of a state in bytes, including its leading `message_id` (8 bytes, little-endian),
+    /// which is the same in every protocol version.
     ///
     /// # Errors
-    /// If the system refuses the options of the socket.
+    /// The system refuses the options of the socket.
     ///
     /// # Panics
     /// If `state_size` has no room for a `message_id`.
@@ -118,37 +119,37 @@ impl Exchange {
         })
     }
 
-    /// Waits for `wait` in each [`receive`](Self::receive), a millisecond at least, in place of a
-    /// [`TICK`].
+    /// Makes each [`receive`](Self::receive) wait for `wait` at most, a millisecond or more,
+    /// instead of a [`TICK`].
     ///
     /// # Errors
-    /// If the system refuses the option.
+    /// The system refuses the option.
     pub fn with_wait(mut self, wait: Duration) -> io::Result<Self> {
         self.wait = wait.max(MIN_WAIT);
         self.socket.set_read_timeout(Some(self.wait))?;
         Ok(self)
     }
 
-    /// Socket from which states come, for its options.
+    /// Returns the socket from which states come, for its options.
     pub(crate) fn socket(&self) -> &Socket {
         &self.socket
     }
 
-    /// The newest state's bytes; zeros before the first one.
+    /// Returns the newest state's bytes; zeros before the first state.
     pub fn state(&self) -> &[u8] {
         &self.newest
     }
 
-    /// `message_id` of the newest state, `[ms]` of the robot's clock.
+    /// Returns the `message_id` of the newest state, `[ms]` of the robot's clock.
     pub fn message_id(&self) -> Option<u64> {
         self.message_id
     }
 
     /// Waits for a datagram, up to [`TICK`] or the time given to [`with_wait`](Self::with_wait).
-    /// Then takes the waiting datagrams, up to [`DRAIN_MAX`] in all.
+    /// Then reads the waiting datagrams, up to [`DRAIN_MAX`] in all.
     ///
-    /// A receive that fails does not wait. After a failed receive, this sleeps for a millisecond
-    /// first, so that a lasting error does not keep the processor busy.
+    /// A receive that fails does not wait. After a failure, the next call therefore first sleeps
+    /// for a millisecond, so that a lasting error does not keep the processor busy.
     pub fn receive(&mut self) -> Reception {
         if self.failed {
             sys::sleep_a_millisecond();
@@ -184,7 +185,7 @@ impl Exchange {
         reception
     }
 
-    /// Decides about the datagram of `length` bytes in `incoming`.
+    /// Decides whether to keep the datagram of `length` bytes in `incoming`.
     fn sort(&mut self, length: usize, sender: Option<SocketAddr>, reception: &mut Reception) {
         let Some(sender) = sender.filter(|sender| sender.ip().to_canonical() == self.robot) else {
             reception.foreign += 1;
@@ -236,19 +237,19 @@ impl Exchange {
     }
 }
 
-/// Reason why a command did not leave.
+/// Reason why a command was not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SendError {
     /// No state has been received, so there is no address to answer.
     #[error("libfranka: could not send UDP data")]
     NobodyToAnswer,
-    /// The system took only a part. The text is libfranka's.
+    /// The system sent only a part. The text is libfranka's.
     #[error("libfranka: could not send UDP data")]
     Short {
-        /// Bytes taken.
+        /// Number of bytes sent.
         sent: usize,
-        /// Bytes of the command.
+        /// Number of bytes of the command.
         length: usize,
     },
     /// The system refused; an errno value.
@@ -256,12 +257,12 @@ pub enum SendError {
     Refused(i32),
 }
 
-/// Datagrams taken in one call at most, so that a flood cannot delay the cycle. The default receive
-/// buffer of Linux (212992 bytes) holds fewer states than that.
+/// Largest number of datagrams that one call reads, so that a flood cannot delay the cycle. The
+/// default receive buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
 
 /// Largest step of a state's `message_id` above the newest one, `[ms]` of the robot's clock: 49
-/// days. No connection outlives such a silence, so a number further ahead is not a state's.
+/// days. No connection outlives such a silence, so a number further ahead cannot be genuine.
 pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.

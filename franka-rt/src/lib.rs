@@ -14,18 +14,18 @@
 //! * [`identify`]: friction, bias and load of an arm, from the records of some motions. Pure.
 //! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
 //! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
-//!   Pure.
-//! * [`supervision`]: connections lost and made again, reflexes and recovery. Pure.
+//!   Without I/O.
+//! * [`supervision`]: lost connections, reconnects, reflexes and recovery. Without I/O.
 //! * [`together`]: motions of several robots that begin at the same time. [`team`]: sessions of
 //!   several robots whose motions begin together, and brake together for a fault of one.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: the
 //!   parts of the loop. [`stats`] defines when a state is late.
 //!
-//! Modules with a socket or a thread need Unix; all else builds everywhere, also for WebAssembly.
+//! Modules with a socket or a thread need Unix; all others build everywhere, also for WebAssembly.
 //!
-//! This crate knows no async runtime, opens no TCP connection and reads no files except those about
-//! a real-time kernel.
+//! This crate uses no async runtime, opens no TCP connection, and reads only the files that
+//! identify a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // Items that only the thread uses.

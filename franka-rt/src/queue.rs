@@ -1,5 +1,5 @@
-//! One sender, one receiver, every value in order: how orders and chunks enter the thread, and how
-//! notices, records, states and chunks leave it.
+//! One sender, one receiver, every value in order. Orders and chunks enter the thread by such
+//! queues; events, records, states and chunks leave it by them.
 //!
 //! ```
 //! use franka_rt::queue::{self, Full};
@@ -13,16 +13,16 @@
 //! # Ok::<(), Full<i32>>(())
 //! ```
 //!
-//! The ring is rtrb's: neither end ever waits for the other. Crossbeam's `ArrayQueue` does not
-//! suit: there, an end that finds the other in the middle of an operation spins until that is done.
-//! If the control thread has preempted the other end, on the only processor that it may run on,
-//! that never happens.
+//! The ring is rtrb's: neither end ever waits for the other. Crossbeam's `ArrayQueue` is not
+//! suitable, because an end that finds the other in the middle of an operation spins until that is
+//! done. If the control thread has preempted the other end on the only processor available to both,
+//! it would spin forever.
 
 use core::hint::black_box;
 use core::mem::MaybeUninit;
 
-/// A queue for `capacity` values, or one if that is zero. Its memory has been written to, so that
-/// no cycle meets a page of it for the first time.
+/// Returns a queue for `capacity` values, or one if that is zero. Its memory has been written to,
+/// so that no cycle causes a page fault in it.
 pub fn queue<T>(capacity: usize) -> (Sender<T>, Receiver<T>) {
     let capacity = capacity.max(1);
     let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);
@@ -36,15 +36,15 @@ pub fn queue<T>(capacity: usize) -> (Sender<T>, Receiver<T>) {
     (Sender(producer), Receiver(consumer))
 }
 
-/// The end that values go into. Dropping it leaves them to the receiver.
+/// The sending end of a queue. Dropping it leaves the values to the receiver.
 #[derive(Debug)]
 pub struct Sender<T>(rtrb::Producer<T>);
 
-/// The end that values come out of.
+/// The receiving end of a queue.
 #[derive(Debug)]
 pub struct Receiver<T>(rtrb::Consumer<T>);
 
-/// A queue has no room for this value.
+/// A queue has no room for a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the queue is full")]
 pub struct Full<T>(
@@ -63,8 +63,8 @@ impl<T> Sender<T> {
             .map_err(|rtrb::PushError::Full(value)| Full(value))
     }
 
-    /// Appends the results of `next`, up to `count` values, while there is room. `next` is not
-    /// called without room for its result. Returns how many came.
+    /// Appends the results of `next`, up to `count` values, while there is room. Calls `next` only
+    /// if there is room for its result. Returns the number of values appended.
     pub fn push_from(&mut self, count: usize, next: impl FnMut() -> Option<T>) -> usize {
         let count = count.min(self.free());
         match self.0.write_chunk_uninit(count) {
@@ -78,24 +78,24 @@ impl<T> Sender<T> {
         self.0.is_abandoned()
     }
 
-    /// Number of values that there is room for, at least.
+    /// Returns the least number of values for which there is room.
     pub fn free(&self) -> usize {
         self.0.slots()
     }
 }
 
 impl<T> Receiver<T> {
-    /// The oldest value. Never waits.
+    /// Removes and returns the oldest value. Never waits.
     pub fn pop(&mut self) -> Option<T> {
         self.0.pop().ok()
     }
 
-    /// Number of values that are waiting, at least.
+    /// Returns the least number of values that are waiting.
     pub fn waiting(&self) -> usize {
         self.0.slots()
     }
 
-    /// Drops the oldest `count` values, or as many as are waiting.
+    /// Drops the oldest `count` values, or all that are waiting if there are fewer.
     pub fn skip(&mut self, count: usize) {
         if let Ok(chunk) = self.0.read_chunk(count.min(self.waiting())) {
             chunk.commit_all();

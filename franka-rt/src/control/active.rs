@@ -1,10 +1,10 @@
-//! Active control: a thread of the program reads a state, and writes the command that answers it.
+//! Active control: a thread of the program reads states and writes a command in answer to each.
 
 use super::{Command, Misfit};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// The program of a motion whose commands are written from outside.
+/// The program of a motion whose commands a thread of the user writes.
 ///
 /// Commands pass no filter and no limiter, as with libfranka's `ActiveControl`.
 #[derive(Clone, Copy, Debug)]
@@ -15,34 +15,35 @@ pub struct ActiveControl;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// No motion runs that takes it: its last command was written, or the robot has ended it.
+    /// No motion runs that accepts the command: its last command was written, or the robot has
+    /// ended it.
     #[error("writeOnce must not be called after the motion has finished.")]
     NotRunning,
-    /// Torques together with a motion command, under the robot's own controller.
+    /// Torques came with a motion command, but the robot's own controller runs.
     #[error("Torques can only be commanded in kExternalController mode.")]
     TorquesUnwanted,
-    /// A motion command without the torques that the motion requires with it.
+    /// A motion command came without the torques that the motion requires.
     #[error(
         "Torque command missing, please use writeOnce(const MotionGeneratorType& motion_generator_input, const Torques& \
          control_input) for external controllers. (here `write_motion_and_torques`)"
     )]
     TorquesMissing,
-    /// A command of a kind that the motion does not take.
+    /// The motion does not accept this kind of command.
     #[error("Wrong writeOnce method called for currently active control!")]
     WrongKind,
-    /// The last torques, while a motion generator runs whose own last command is missing.
+    /// The last torques came while a motion generator runs whose own last command is missing.
     #[error("libfranka robot: Motion generator is still running! Can't stop external control")]
     GeneratorRunning,
     /// The command does not fit the motion.
     #[error(transparent)]
     Misfit(#[from] Misfit),
-    /// A number of it cannot be sent.
+    /// A number of the command cannot be sent.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
 }
 
 impl ActiveControl {
-    /// Checks that a motion in `modes` takes `command`, in the order of the reference client.
+    /// Checks that a motion in `modes` accepts `command`, in the order of the reference client.
     pub(crate) fn check(
         &self,
         command: &Command,

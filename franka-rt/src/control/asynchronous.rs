@@ -12,12 +12,12 @@ pub struct AsynchronousPositions {
     targets: Reader<AsynchronousTarget>,
 }
 
-/// One target.
+/// A target as it is passed through the slot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
-    /// Positions to go to and hold, `[rad]`.
+    /// Joint positions to move to and hold, `[rad]`.
     pub q: [f64; 7],
-    /// True if this ends the motion.
+    /// True if this target ends the motion.
     pub finished: bool,
 }
 
@@ -28,8 +28,8 @@ impl AsynchronousPositions {
         (Self { targets }, writer)
     }
 
-    /// The request for such a motion; the robot keeps each joint below `maximum_velocities`,
-    /// `[rad/s]`.
+    /// Returns the request for such a motion; the robot keeps each joint below
+    /// `maximum_velocities`, `[rad/s]`.
     pub fn request(maximum_velocities: [f64; 7]) -> MoveRequest {
         MoveRequest {
             asynchronous: Some(maximum_velocities),
@@ -40,7 +40,7 @@ impl AsynchronousPositions {
         }
     }
 
-    /// The command for a target that has not been sent yet, and whether it is the last.
+    /// Returns the command for a target that has not been sent yet, and whether it is the last.
     pub(crate) fn step(&mut self) -> Option<(Command, bool)> {
         let AsynchronousTarget { q, finished } = self.targets.read_newer()?;
         let command = Command {
@@ -56,11 +56,11 @@ impl AsynchronousPositions {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TargetStatus {
-    /// There is no target, or the robot does something else.
+    /// There is no target, or the robot runs something else.
     Idle,
-    /// The robot is on its way.
+    /// The robot moves to the target.
     Executing,
-    /// It rests at the target.
+    /// The arm rests at the target.
     TargetReached,
     /// The motion has ended.
     Aborted(AbortReason),
@@ -78,22 +78,21 @@ pub enum AbortReason {
     /// The user stop was pressed.
     #[error("Control aborted due to user stop.")]
     UserStop,
-    /// The motion had ended before.
+    /// The motion had ended before the target was set.
     #[error("Control interface is in aborted state.")]
     Ended,
 }
 
 impl TargetStatus {
-    /// Distance of the desired joint positions from the target that counts as reached unless asked
-    /// otherwise, as Euclidean norm, `[rad]`. Source: libfranka 0.21,
-    /// `async_position_control_handler.hpp`.
+    /// Default distance of the desired joint positions from the target that counts as reached, as
+    /// Euclidean norm, `[rad]`. Source: libfranka 0.21, `async_position_control_handler.hpp`.
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
     /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
-    /// Source: as above.
+    /// Source: as for [`Self::GOAL_TOLERANCE`].
     pub const REST: f64 = 0.01;
 
-    /// The status of the newest target in a state of the motion.
+    /// Returns the status of the newest target in a state of the motion.
     pub fn of(state: &RobotState, target: Option<&[f64; 7]>, goal_tolerance: f64) -> Self {
         let Some(target) = target else {
             return Self::Idle;

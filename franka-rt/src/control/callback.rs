@@ -9,18 +9,18 @@ use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
 use super::{Command, GeneratorCommand, MotionCommand, Next, Torques};
 use crate::control::{Failure, Shaper};
 
-/// A control function, boxed: from a state, and the robot's time since the previous state, to a
-/// command.
+/// A boxed control function. Its arguments are a state and the robot's time since the previous
+/// state; it returns a command.
 type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
-/// One or two control functions, called with every state of a motion.
+/// The program of a motion that calls one or two control functions with every state.
 ///
-/// As in libfranka's control loops: a function gets a state and the robot's time since the state
-/// before, which is zero at first and more than a millisecond after a loss. The returned command
-/// passes the low-pass filter, the limiter and the checks. Two functions see the same state and
-/// step. Once one finishes, the other is not called any more, and its command of the previous cycle
-/// leaves with the last command. In protocol 10 the torque function is called first, in protocol 5
-/// the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
+/// The rules are those of libfranka's control loops. A function receives a state and the robot's
+/// time since the previous state: zero at first, and more than a millisecond after a loss. The
+/// returned command passes the low-pass filter, the limiter and the checks. Two functions see the
+/// same state and step. Once one function finishes, the other is not called any more; its command
+/// of the previous cycle is part of the last command. In protocol 10 the torque function is called
+/// first, in protocol 5 the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
     generator_first: bool,
@@ -28,19 +28,19 @@ pub struct Callback {
     torques: Option<Source<Torques>>,
     /// `message_id` of the previous state.
     previous: Option<u64>,
-    /// True if the arm has been held, so that the newest command holds it.
+    /// True if the newest command holds the arm.
     held: bool,
 }
 
-/// A function, and the newest command made of its answer.
+/// A function, and the newest command from its answer.
 struct Source<T> {
     function: Function<T>,
     newest: T,
 }
 
 impl Callback {
-    /// Torques alone, shaped as by default. In a version without such motions, a motion generator
-    /// runs too, with commands to stand still.
+    /// Returns a program with torques alone and the default shaping. In a version without such
+    /// motions, a motion generator runs too, with commands to stand still.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -53,8 +53,8 @@ impl Callback {
         Self::new(version, stand).with_torques(torques)
     }
 
-    /// Commands to a motion generator, shaped as by default, for one of the robot's own
-    /// controllers.
+    /// Returns a program with commands to a motion generator, for one of the robot's own
+    /// controllers, and with the default shaping.
     pub fn motion<C: GeneratorCommand, R: Into<Next<C>>>(
         version: Version,
         mut motion: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -63,8 +63,7 @@ impl Callback {
         Self::new(version, Some(Source::new(motion, C::ZERO.into())))
     }
 
-    /// Adds torques to the commands to a motion generator, in the place of the robot's own
-    /// controller.
+    /// Adds torques to the commands to a motion generator; they replace the robot's own controller.
     #[must_use]
     pub fn with_torques<R: Into<Next<Torques>>>(
         self,
@@ -93,12 +92,13 @@ impl Callback {
         }
     }
 
-    /// True if it commands torques.
+    /// True if the program commands torques.
     pub fn commands_torques(&self) -> bool {
         self.torques.is_some()
     }
 
-    /// The request for a motion that it can run. `controller` is used where it commands no torques.
+    /// Returns the request for a motion of this program. `controller` applies if it commands no
+    /// torques.
     pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
         let controller = match &self.torques {
             Some(_) => MoveControllerMode::ExternalController,
@@ -111,7 +111,7 @@ impl Callback {
         MoveRequest::new(controller, generator)
     }
 
-    /// The command that answers a state, and whether it is the last.
+    /// Returns the command that answers a state, and whether it is the last.
     pub(crate) fn step(&mut self, state: &RobotState) -> Result<(Command, bool), Failure> {
         let first = self.previous.is_none();
         let previous = self.previous.replace(state.message_id);
@@ -126,9 +126,9 @@ impl Callback {
         Ok((self.newest(), finished))
     }
 
-    /// The command that holds the arm where it was first held: the robot's desired position, no
-    /// velocity, no torque. No function is called, and the first call afterwards is still the
-    /// first.
+    /// Returns the command that holds the arm where it was first held: the robot's desired
+    /// position, no velocity, no torque. Calls no function; the next call of a function still
+    /// counts as the first.
     pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
         if let Some(source) = &mut self.motion
             && !self.held
@@ -146,7 +146,7 @@ impl Callback {
         }
     }
 
-    /// Returns true if the motion function has finished.
+    /// Calls the motion function. Returns true if it has finished.
     fn step_motion(
         &mut self,
         state: &RobotState,
@@ -184,8 +184,7 @@ impl<T> Source<T> {
         }
     }
 
-    /// Returns the function's command, and whether it is the last. A panic of the function is
-    /// caught.
+    /// Returns the function's command, and whether it is the last. Catches a panic of the function.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
         // A function that has panicked is never called again, so nothing reads its half-finished
         // state.

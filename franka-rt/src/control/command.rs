@@ -32,27 +32,27 @@ pub struct CartesianPose {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
 pub struct CartesianVelocities {
-    /// Linear `[m/s]`, then angular velocity `[rad/s]`.
+    /// Linear velocity `[m/s]`, then angular velocity `[rad/s]`.
     pub O_dP_EE: [f64; 6],
-    /// As in [`CartesianPose::elbow`].
+    /// Elbow, as in [`CartesianPose::elbow`].
     pub elbow: Option<[f64; 2]>,
 }
 
 /// A command to one of the robot's motion generators.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionCommand {
-    /// To the joint position generator.
+    /// Command to the joint position generator.
     JointPositions(JointPositions),
-    /// To the joint velocity generator.
+    /// Command to the joint velocity generator.
     JointVelocities(JointVelocities),
-    /// To the Cartesian position generator.
+    /// Command to the Cartesian position generator.
     CartesianPose(CartesianPose),
-    /// To the Cartesian velocity generator.
+    /// Command to the Cartesian velocity generator.
     CartesianVelocities(CartesianVelocities),
 }
 
 impl MotionCommand {
-    /// The generator that takes it.
+    /// Returns the generator that accepts the command.
     pub fn generator(&self) -> MoveGeneratorMode {
         match self {
             Self::JointPositions(_) => MoveGeneratorMode::JointPosition,
@@ -62,8 +62,8 @@ impl MotionCommand {
         }
     }
 
-    /// The command to the same generator that changes nothing: the robot's desired position, at no
-    /// velocity. The robot expects it at the start of a motion.
+    /// Returns the command to the same generator that changes nothing: the robot's desired
+    /// position, or zero velocity. The robot expects such a command at the start of a motion.
     pub(super) fn holding(&self, state: &RobotState) -> Self {
         match self {
             Self::JointPositions(_) => JointPositions(state.q_d).into(),
@@ -77,10 +77,10 @@ impl MotionCommand {
         }
     }
 
-    /// Checks that the robot can take its numbers.
+    /// Checks that the robot can use the numbers of the command.
     ///
     /// # Errors
-    /// [`InvalidCommand`], the first that applies.
+    /// The first [`InvalidCommand`] that applies.
     pub fn validate(&self) -> Result<(), InvalidCommand> {
         let elbow = match self {
             Self::JointPositions(JointPositions(values))
@@ -99,7 +99,7 @@ impl MotionCommand {
         elbow.as_ref().map_or(Ok(()), check::elbow)
     }
 
-    /// Passes the command through the shaper; `first` if it is the first of its motion.
+    /// Passes the command through the shaper; `first` is true for the first command of its motion.
     pub(crate) fn shaped(
         &self,
         shaper: &Shaper,
@@ -116,7 +116,7 @@ impl MotionCommand {
         }
     }
 
-    /// Writes the command into the fields of its generator; all others stay as they are.
+    /// Writes the command into the fields of its generator; all other fields stay as they are.
     pub(crate) fn write_to(&self, command: &mut RobotCommand) {
         match *self {
             Self::JointPositions(JointPositions(q)) => command.q_c = q,
@@ -135,7 +135,7 @@ impl MotionCommand {
 
 /// Commands of one kind, for one motion generator.
 pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
-    /// All numbers zero, without an elbow; sent while there is no command.
+    /// Zero in all numbers, without an elbow; sent while there is no command.
     const ZERO: Self;
 }
 

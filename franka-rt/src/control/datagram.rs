@@ -10,9 +10,9 @@ use crate::shaping::{InvalidCommand, check};
 /// motion requires.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
-    /// For the motion generator.
+    /// Command for the motion generator.
     pub motion: Option<MotionCommand>,
-    /// For the joints.
+    /// Torques for the joints.
     pub torques: Option<Torques>,
 }
 
@@ -21,20 +21,20 @@ pub struct Command {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Misfit {
-    /// A motion command, and no motion generator runs.
+    /// A motion command came, but no motion generator runs.
     #[error("libfranka robot: Trying to send motion command, but no motion generator running!")]
     NoGenerator,
-    /// Torques, and the robot's own controller runs.
+    /// Torques came, but the robot's own controller runs.
     #[error("libfranka robot: Trying to send control command, but no controller running!")]
     NoController,
-    /// One of two commands that the motion requires together.
+    /// One of two commands came, but the motion requires both.
     #[error("libfranka robot: Trying to send partial robot command!")]
     Partial,
 }
 
 impl Command {
-    /// Torques of a motion without commands to a generator. In a version without such motions, a
-    /// motion generator runs too, with commands to stand still.
+    /// Returns torques for a motion without commands to a generator. In a version without such
+    /// motions, a motion generator runs too, with commands to stand still.
     pub fn torques(version: Version, torques: Torques) -> Self {
         let idle = JointVelocities::ZERO.into();
         Self {
@@ -43,7 +43,7 @@ impl Command {
         }
     }
 
-    /// A setpoint for the robot's own controller.
+    /// Returns a setpoint for the robot's own controller.
     pub(crate) fn setpoint(setpoint: MotionCommand) -> Self {
         Self {
             motion: Some(setpoint),
@@ -51,10 +51,10 @@ impl Command {
         }
     }
 
-    /// Checks that a motion in `modes` takes it.
+    /// Checks that a motion in `modes` accepts the command.
     ///
     /// # Errors
-    /// [`Misfit`], the first that applies in its order.
+    /// The first [`Misfit`] that applies, in order.
     pub fn check(&self, modes: Modes) -> Result<(), Misfit> {
         let (generator, external) = (modes.has_generator(), modes.is_external());
         match (self.motion.is_some(), self.torques.is_some()) {
@@ -65,14 +65,14 @@ impl Command {
         }
     }
 
-    /// The datagram that answers the state `message_id`. Values that are not commanded are zero.
-    /// The finishing flag is the flag of the motion generator where there is a command to it, and
-    /// the flag of the torques otherwise.
+    /// Returns the datagram that answers the state `message_id`. Values that are not commanded are
+    /// zero. `finished` sets the finishing flag of the motion generator if there is a motion
+    /// command, otherwise the finishing flag of the torques.
     ///
-    /// Every command that leaves is made here, for all kinds of programs.
+    /// Every command of every kind of program is built here.
     ///
     /// # Errors
-    /// [`InvalidCommand::NotFinite`] if any of its values is non-finite.
+    /// [`InvalidCommand::NotFinite`] if any value of the command is not finite.
     pub fn datagram(
         &self,
         message_id: u64,

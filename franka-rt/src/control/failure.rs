@@ -4,14 +4,14 @@ use core::any::Any;
 
 use crate::shaping::InvalidCommand;
 
-/// Reason why a program could not continue. The motion then gets no more commands; the owner of the
-/// thread must stop the robot.
+/// Reason why a program could not continue. The thread sends no more commands to the motion; the
+/// owner of the thread must stop the robot.
 #[derive(Debug)]
 pub enum Failure {
-    /// Its command cannot be sent.
+    /// The program's command cannot be sent.
     Invalid(InvalidCommand),
-    /// It gave up, with its own code.
+    /// The program gave up, with its own code.
     GivenUp(i32),
-    /// It panicked. The payload leaves with the failure, to be freed outside the thread.
+    /// The program panicked. The payload is part of the failure, to be freed outside the thread.
     Panicked(Box<dyn Any + Send>),
 }

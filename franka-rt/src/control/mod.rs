@@ -4,13 +4,12 @@
 //! * [`Next`]: the answer of a control function to a state.
 //! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter
 //!   of the reference client.
-//! * [`Shaper`]: filter, limiter and check of each kind of command, as libfranka's control loops
-//!   take them.
-//! * [`ActiveControl`]: a motion whose commands are written from outside.
+//! * [`Shaper`]: filter, limiter and check of each kind of command, as in libfranka's control
+//!   loops.
+//! * [`ActiveControl`]: a motion whose commands a thread of the user writes.
 //! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and their
 //!   results.
-//! * [`Command`]: content of one datagram, which knows whether a motion in given [`Modes`] takes
-//!   it.
+//! * [`Command`]: content of one datagram; checks whether a motion in given [`Modes`] accepts it.
 //! * [`Failure`]: the reason why a program could not continue.
 
 mod active;

@@ -12,7 +12,7 @@ pub struct Modes {
 }
 
 impl Modes {
-    /// The modes of the motion that `request` asks for.
+    /// Returns the modes of the motion that `request` asks for.
     pub fn of(request: &MoveRequest) -> Self {
         Self {
             generator: request.generator.in_state(),
@@ -20,7 +20,7 @@ impl Modes {
         }
     }
 
-    /// True if a motion generator takes commands.
+    /// True if a motion generator expects commands.
     pub fn has_generator(self) -> bool {
         !matches!(
             self.generator,
@@ -28,12 +28,12 @@ impl Modes {
         )
     }
 
-    /// True if the joints take torques.
+    /// True if the joints expect torques.
     pub fn is_external(self) -> bool {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// True if `state` shows both modes. `robot_mode` is not compared: it may change later than the
+    /// True if `state` shows both modes. Ignores `robot_mode`, which may change later than the
     /// modes at the start.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller

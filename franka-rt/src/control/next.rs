@@ -2,23 +2,23 @@
 
 use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques};
 
-/// A command, and whether it is the last.
+/// A command, with the decision whether the motion continues, finishes or is given up.
 ///
 /// Control functions may return the bare command to continue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Next<T> {
-    /// Send it; the function is called again with the next state.
+    /// Send the command, and call the function again with the next state.
     Continue(T),
-    /// Send it, repeated until the robot has ended the motion; the function is not called again.
-    /// The robot refuses to end a motion that still moves.
+    /// Send the command, repeated until the robot has ended the motion; do not call the function
+    /// again. The robot refuses to end a motion of an arm that still moves.
     Finish(T),
-    /// Send nothing more, and stop the robot: the motion fails with this code, which is the
-    /// function's own.
+    /// Send nothing more, and stop the robot. The motion fails with this code, which the function
+    /// chooses.
     GiveUp(i32),
 }
 
 impl<T> Next<T> {
-    /// The command, and whether it is the last.
+    /// Returns the command, and whether it is the last.
     ///
     /// # Errors
     /// The code of [`Self::GiveUp`].
@@ -30,7 +30,7 @@ impl<T> Next<T> {
         }
     }
 
-    /// The same with another command made of this one.
+    /// Returns the same decision with the command changed by `change`.
     pub fn map<U>(self, change: impl FnOnce(T) -> U) -> Next<U> {
         match self {
             Self::Continue(command) => Next::Continue(change(command)),
@@ -39,7 +39,7 @@ impl<T> Next<T> {
         }
     }
 
-    /// Both commands: the last ones if either is, given up if either is.
+    /// Returns both commands: finished if either is, given up if either is.
     pub fn zip<U>(self, other: Next<U>) -> Next<(T, U)> {
         match (self.into_parts(), other.into_parts()) {
             (Ok((first, last)), Ok((second, also_last))) => {
@@ -56,14 +56,14 @@ impl<T> From<T> for Next<T> {
     }
 }
 
-/// `command.finish()`, for the last command of a motion.
+/// Adds `command.finish()`, for the last command of a motion.
 pub trait Finish: Sized {
-    /// This command as the last one of its motion.
+    /// Returns this command as the last one of its motion.
     fn finish(self) -> Next<Self> {
         Next::Finish(self)
     }
 
-    /// This command, as the last one of its motion if `over`.
+    /// Returns this command, as the last one of its motion if `over`.
     fn finish_if(self, over: bool) -> Next<Self> {
         if over {
             Next::Finish(self)

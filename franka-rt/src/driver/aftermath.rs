@@ -7,8 +7,9 @@ use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
-    /// Does the rest of the work for a state, once [`Self::on_state`] has taken it and the command
-    /// has left (or none was due). `sent` has the known times of the command, if one left.
+    /// Does the rest of the work for a state, once [`Self::on_state`] has read the state and the
+    /// command has left (or none was due). `sent` has the known times of the command, if a command
+    /// left.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
         self.references.write(&self.record);
         self.record.late = arrival.late;
@@ -32,7 +33,7 @@ impl Driver {
     }
 
     /// Computes the parts of the next answer that do not need the next state: the program's next
-    /// goal, plan and reference. To be called once everything that waits for this cycle is done.
+    /// goal, plan and reference. Call it once everything that waits for this cycle is done.
     pub fn prepare(&mut self) {
         if let Some(motion) = &mut self.motion
             && motion.phase == Phase::Running
@@ -42,7 +43,7 @@ impl Driver {
     }
 
     /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
-    /// counts of the current motion; `None` if none runs.
+    /// counts of the current motion; `None` without a running motion.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         let motion = self.motion.as_ref().filter(|motion| motion.has_begun())?;
         self.statistics.note_cycle(cycle);
@@ -50,7 +51,7 @@ impl Driver {
         Some(&self.statistics)
     }
 
-    /// Counts of the motion that runs; `None` if none does.
+    /// Returns the counts of the running motion; `None` without a running motion.
     pub fn statistics(&self) -> Option<&MotionStatistics> {
         let begun = self.motion.as_ref().is_some_and(Execution::has_begun);
         begun.then_some(&self.statistics)

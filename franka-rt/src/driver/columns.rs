@@ -9,58 +9,58 @@ use crate::session::Guard;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Column {
-    /// Its name, in most cases the name of the field of the state or record.
+    /// Name of the column, in most cases the name of the field of the state or record.
     pub name: &'static str,
-    /// Its unit, or the meaning of its numbers where it has none.
+    /// Unit of the column, or the meaning of its numbers if they have no unit.
     pub unit: &'static str,
-    /// Its shape in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
+    /// Shape of the column in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
     pub shape: &'static [usize],
-    /// Meaning of its numbers.
+    /// Meaning of the column's numbers.
     pub kind: ColumnKind,
-    /// Source of its numbers.
+    /// Source of the column's numbers.
     pub source: ColumnSource,
 }
 
 /// Meaning of the numbers of a column.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnKind {
-    /// A measure.
+    /// A measured or computed quantity.
     Float,
     /// A whole number.
     Count,
-    /// 0 or 1.
+    /// A truth value, 0 or 1.
     Flag,
-    /// The place of a name in this list; no name if it is beyond the end.
+    /// An index into this list of names; no name if it is beyond the end.
     Name(&'static [&'static str]),
 }
 
 /// Source of a column: appends its numbers in a cycle to a row.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnSource {
-    /// The robot's state.
+    /// The column is computed from the robot's state.
     State(fn(&RobotState, &mut Vec<f64>)),
-    /// The control thread's record.
+    /// The column is computed from the control thread's record.
     Record(fn(&Record, &mut Vec<f64>)),
 }
 
 impl Column {
-    /// All columns. The time of a cycle, the `message_id` of its state, is not among them: every
-    /// recording has it.
+    /// Returns all columns. The time of a cycle, the `message_id` of its state, is not among them,
+    /// because every recording has it anyway.
     pub fn all() -> &'static [Self] {
         &COLUMNS
     }
 
-    /// The column of this name.
+    /// Returns the column of this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
     }
 
-    /// Count of its numbers in one cycle.
+    /// Returns how many numbers the column has in one cycle.
     pub fn width(&self) -> usize {
         self.shape.iter().product()
     }
 
-    /// Appends its numbers in this cycle to `row`.
+    /// Appends the column's numbers in this cycle to `row`.
     pub fn append(&self, state: &RobotState, record: &Record, row: &mut Vec<f64>) {
         match self.source {
             ColumnSource::State(read) => read(state, row),
@@ -85,7 +85,7 @@ const fn column(
     }
 }
 
-/// A field of the state that is a vector.
+/// Column of a vector field of the state.
 macro_rules! vector {
     ($name:ident, $size:literal, $unit:literal) => {
         column(
@@ -98,7 +98,7 @@ macro_rules! vector {
     };
 }
 
-/// A field of the state that is a matrix, column-major there and row-major here.
+/// Column of a matrix field of the state, column-major there and row-major here.
 macro_rules! matrix {
     ($name:ident, $size:literal, $unit:literal) => {
         column(
@@ -114,7 +114,7 @@ macro_rules! matrix {
     };
 }
 
-/// A number of the state.
+/// Column of a single number of the state.
 macro_rules! number {
     ($name:ident, $unit:literal) => {
         column(
@@ -127,7 +127,7 @@ macro_rules! number {
     };
 }
 
-/// The accelerometers of a side.
+/// Column of the accelerometers of one side.
 macro_rules! accelerometers {
     ($name:ident) => {
         column(
@@ -149,7 +149,7 @@ macro_rules! cycle {
     };
 }
 
-/// Column of the reference, which is zero throughout without one.
+/// Column of the reference, which is zero throughout outside target control.
 macro_rules! reference {
     ($name:ident, $unit:literal) => {
         cycle!(
@@ -165,7 +165,7 @@ macro_rules! reference {
     };
 }
 
-/// Column that is true while a guard binds.
+/// Column that is true while a guard bounds the command.
 macro_rules! binds {
     ($name:literal, $guard:ident) => {
         cycle!($name, &[], "", ColumnKind::Flag, |cycle, row| {

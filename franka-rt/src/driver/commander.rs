@@ -2,25 +2,25 @@
 
 use super::Program;
 
-/// Source of the commands of a motion. It decides the meaning of the commands and which settings
-/// there are to change.
+/// Source of the commands of a motion. The source decides the meaning of the commands, and which
+/// settings exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Commander {
-    /// Target control: this driver, on the way to goals.
+    /// Target control: this driver computes commands on the way to goals.
     Goals,
-    /// A control function of the user's.
+    /// A control function of the user.
     Function,
-    /// A thread of the user's, by reading and writing.
+    /// A thread of the user that reads states and writes commands.
     Active,
     /// Sparse joint targets between which the robot plans.
     Asynchronous,
 }
 
 impl Commander {
-    /// True if a command is the position one cycle later, so that differences of commands are the
-    /// motion that the joints should make. Targets between which the robot plans are not such
-    /// commands, and only new targets are sent.
+    /// True if each command is the position one cycle later, so that differences of commands are
+    /// the intended motion of the joints. False for targets between which the robot plans: only new
+    /// targets are sent.
     pub fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }

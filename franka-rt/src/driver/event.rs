@@ -11,17 +11,17 @@ use crate::session::SessionEvent;
 use crate::stats::{MotionStatistics, MotionTimes};
 use crate::together::{StartFault, StartTicket};
 
-/// Something that happened in the thread. Events cross in order and none is dropped.
+/// Something that happened in the thread. Events arrive in order and none is dropped.
 #[derive(Debug)]
 pub enum Event {
-    /// The robot shows the modes of the motion; the first command answers that state.
+    /// The robot shows the modes of the motion. The first command answers that state.
     Started {
         /// The motion.
         motion: MotionId,
         /// `message_id` of that state, `[ms]` of the robot's clock.
         time: u64,
     },
-    /// The motion's program reports.
+    /// The motion's program reports an event.
     Program {
         /// The motion.
         motion: MotionId,
@@ -30,29 +30,29 @@ pub enum Event {
         /// Counts so far.
         statistics: MotionStatistics,
     },
-    /// The finishing command is out for the first time; it is repeated until the robot leaves the
+    /// The finishing command is sent for the first time. It is repeated until the robot leaves the
     /// motion's modes.
     Finishing {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion's program could not continue. No command leaves any more; the robot must be
-    /// stopped.
+    /// The motion's program could not continue. The thread sends no more commands; the robot must
+    /// be stopped.
     Failed {
         /// The motion.
         motion: MotionId,
         /// Cause.
         failure: Failure,
     },
-    /// The motion's observer has panicked, and sees no more of it.
+    /// The motion's observer has panicked, and is not called again in this motion.
     Unobserved {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion is over for the thread. Its program comes along to be freed.
+    /// The motion has ended for the thread. The event carries its program, to be freed.
     Ended(Ended),
-    /// No state has come for the link timeout, so that the link counts as lost. A later state
-    /// revives it.
+    /// No state has come for the link timeout, so the link counts as lost. A later state revives
+    /// it.
     LinkLost {
         /// The silence so far.
         silence: Duration,
@@ -68,21 +68,21 @@ pub struct Ended {
     pub ending: Ending,
     /// `robot_mode` of the newest state.
     pub robot_mode: RobotMode,
-    /// Errors that hold now.
+    /// Errors that are active at the end.
     pub errors: Errors,
-    /// Errors that aborted the motion, if the robot did.
+    /// Errors that aborted the motion, if the robot aborted it.
     pub reflex_reason: Errors,
     /// Counts over the motion.
     pub statistics: MotionStatistics,
-    /// Times of its cycles.
+    /// Times of the motion's cycles.
     pub times: Arc<MotionTimes>,
     /// The program, with everything that it learned.
     pub program: Program,
-    /// Its last cycles.
+    /// The motion's last cycles.
     pub log: ControlLog,
-    /// Its ticket, if it was part of a common start.
+    /// The motion's ticket, if it was part of a common start of several robots.
     pub ticket: Option<StartTicket>,
-    /// The observer of its cycles.
+    /// The observer of the motion's cycles.
     pub observer: Option<Observer>,
 }
 
@@ -93,31 +93,31 @@ impl Ended {
     }
 }
 
-/// End of a motion, as the thread saw it. The robot's own word on it is its last reply to the
-/// `Move`.
+/// End of a motion, as the thread saw it. The robot's own report of the end is its last reply to
+/// the `Move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The finishing command was sent and the robot left the motion's modes.
     Finished,
     /// The robot left the motion's modes on its own: a reflex, a stop, a preemption.
     Aborted,
-    /// Disarmed before it ran.
+    /// The motion was disarmed before it ran.
     Disarmed,
-    /// Another motion was armed or running; this one never was.
+    /// Another motion was armed or running, so this one never was.
     Refused,
     /// The robot fell silent.
     LinkLost {
-        /// Length of the silence when it was given up.
+        /// Length of the silence when the motion was given up.
         silence: Duration,
     },
 }
 
-/// Events that wait for the thread to carry them out.
+/// Queue of events that wait for the thread to publish them.
 ///
 /// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and
 /// `LinkLost`, and needs orders from outside. The thread empties the queue every cycle unless the
-/// world outside has stopped listening altogether. A link that comes and goes meanwhile fills one
-/// slot and no more, so that there is room for the end of a motion.
+/// receiver has stopped listening altogether. A link that comes and goes meanwhile fills only one
+/// slot. The queue therefore has room for the end of a motion.
 #[derive(Debug, Default)]
 pub(super) struct EventQueue {
     slots: [Option<Event>; EventQueue::CAPACITY],
@@ -128,8 +128,8 @@ pub(super) struct EventQueue {
 impl EventQueue {
     const CAPACITY: usize = 16;
 
-    /// Appends. A full queue leaks the event, because its memory must not be freed on the thread,
-    /// and no motion can start without a listener outside.
+    /// Appends an event. A full queue leaks the event, because its memory must not be freed on the
+    /// thread. No motion can start without a listener outside.
     pub(super) fn push(&mut self, event: Event) {
         let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
         if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =

@@ -1,9 +1,9 @@
 //! Longest silence of a robot; `Driver::on_silence` then ends the motion. Late states are handled
-//! in `exchange` (overtaken ones) and `stats::arrivals`.
+//! in `exchange` (overtaken states) and `stats::arrivals`.
 
 use core::time::Duration;
 
-/// Silence of the robot after which the link counts as lost, unless stated otherwise.
+/// Default silence of the robot after which the link counts as lost.
 ///
 /// Source: the UDP receive timeout of libfranka, `network.h`.
 pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
@@ -14,18 +14,18 @@ pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 pub struct LinkTimeout(Duration);
 
 impl LinkTimeout {
-    /// 20 ms: a robot that misses as many commands in a row stops on its own, and before that it
-    /// bridges the gap.
+    /// 20 ms: a robot that misses as many commands in a row stops on its own. It bridges shorter
+    /// gaps.
     pub const MIN: Duration = Duration::from_millis(20);
 
-    /// 10 s: more than [`LINK_TIMEOUT`] is for a simulated robot on a busy host, which delays it
-    /// for longer. A silent robot has stopped on its own long before.
+    /// 10 s. A timeout of more than [`LINK_TIMEOUT`] is for a simulated robot on a busy host, which
+    /// delays states for longer. A silent real robot has stopped on its own long before.
     pub const MAX: Duration = Duration::from_secs(10);
 
-    /// A timeout.
+    /// Returns a timeout of this length.
     ///
     /// # Errors
-    /// [`LinkTimeoutError`] for one out of range.
+    /// [`LinkTimeoutError`] for a length out of range.
     pub fn new(timeout: Duration) -> Result<Self, LinkTimeoutError> {
         if (Self::MIN..=Self::MAX).contains(&timeout) {
             Ok(Self(timeout))
@@ -34,20 +34,20 @@ impl LinkTimeout {
         }
     }
 
-    /// The silence.
+    /// Returns the length of the silence.
     pub fn get(self) -> Duration {
         self.0
     }
 }
 
 impl Default for LinkTimeout {
-    /// [`LINK_TIMEOUT`].
+    /// Returns [`LINK_TIMEOUT`].
     fn default() -> Self {
         Self(LINK_TIMEOUT)
     }
 }
 
-/// Caller: no such timeout.
+/// Caller: the timeout is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the link timeout is {got:?}, expected {:?} to {:?}",

@@ -6,16 +6,16 @@ use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
 
 /// One cycle of a motion: a state, and the command that left before it came.
 ///
-/// As in libfranka 0.21 (`logger.h`), so that each entry shows what a command did: the state
-/// carries the number `n + 1` if the command answered the state `n`. The first entry of a motion
-/// has a command of zeros.
+/// Entries are as in libfranka 0.21 (`logger.h`), so that each entry shows the effect of a command:
+/// the state has the number `n + 1` if the command answered the state `n`. The first entry of a
+/// motion has a command of zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct LogEntry {
     /// The state.
     pub state: RobotState,
-    /// The newest command before the state, as sent; zeros before the first.
+    /// The newest command before the state, as sent; zeros before the first command.
     pub command: RobotCommand,
 }
 
@@ -28,26 +28,26 @@ impl LogEntry {
 
 /// The last cycles of one motion, oldest first, up to a capacity.
 ///
-/// Its memory is laid out when it is made: writing to it neither allocates nor frees.
+/// The memory is allocated when the log is made: writing to the log neither allocates nor frees.
 #[derive(Clone, Default)]
 pub struct ControlLog {
-    /// One more than the capacity, or none at all.
+    /// Entries of the log: one more than the capacity, or none at all.
     entries: Box<[LogEntry]>,
-    /// The entry that waits for its state. Its command is there already.
+    /// Index of the entry that has its command and waits for its state.
     next: usize,
     len: usize,
     rounded: bool,
 }
 
 impl ControlLog {
-    /// Cycles kept unless asked otherwise. Source: `log_size` of libfranka 0.21, `robot.h`.
+    /// Default number of cycles. Source: `log_size` of libfranka 0.21, `robot.h`.
     pub const DEFAULT_CAPACITY: usize = 50;
 
-    /// Most cycles that a motion of a connected robot may ask for: ten seconds. Such a log takes 30
-    /// MB, and is laid out anew for each motion.
+    /// Largest number of cycles that a connected robot may log per motion: ten seconds. Such a log
+    /// needs 30 MB, and is allocated anew for each motion.
     pub const CAPACITY_MAX: usize = 10_000;
 
-    /// An empty log of the newest `capacity` cycles; 0 keeps none.
+    /// Returns an empty log of the newest `capacity` cycles; 0 keeps none.
     pub fn with_capacity(capacity: usize) -> Self {
         let entries = if capacity == 0 { 0 } else { capacity + 1 };
         Self {
@@ -59,7 +59,7 @@ impl ControlLog {
     }
 
     /// Marks the numbers as rounded to six significant digits, as in a table of libfranka. A
-    /// diagnosis then ignores differences that rounding may have made.
+    /// diagnosis then ignores differences that may come from rounding.
     #[must_use]
     pub fn rounded(self) -> Self {
         Self {
@@ -73,22 +73,22 @@ impl ControlLog {
         self.rounded
     }
 
-    /// Number of cycles that it keeps.
+    /// Returns the number of cycles that the log can keep.
     pub fn capacity(&self) -> usize {
         self.entries.len().saturating_sub(1)
     }
 
-    /// Number of cycles that it holds.
+    /// Returns the number of cycles in the log.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// True if it holds none.
+    /// True if the log has no cycles.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The cycles, oldest first.
+    /// Iterates over the cycles, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &LogEntry> {
         let (newer, rest) = self.entries.split_at(self.next);
         let full = self.len == self.capacity();
@@ -100,8 +100,8 @@ impl ControlLog {
         older.iter().chain(newer)
     }
 
-    /// The success rate at the end, as libfranka 0.21 reports it. The last state always shows 0, so
-    /// the previous state is taken. `None` with fewer than two entries.
+    /// Returns the success rate at the end, as libfranka 0.21 reports it: the rate of the previous
+    /// state, because the last state always shows 0. `None` with fewer than two entries.
     pub fn success_rate(&self) -> Option<SuccessRate> {
         let mut newest = self.iter().rev();
         let (last, before) = (newest.next()?, newest.next()?);
@@ -112,8 +112,8 @@ impl ControlLog {
         ))
     }
 
-    /// The log as a table with one row per cycle, times in milliseconds, columns named and numbers
-    /// printed as by `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
+    /// Returns the log as a table with one row per cycle, and times in milliseconds. Column names
+    /// and number format are as in `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
         if !self.is_empty() {
@@ -122,7 +122,7 @@ impl ControlLog {
         text
     }
 
-    /// Notes a state, in the place of the oldest one if it is full.
+    /// Notes a state; replaces the oldest entry of a full log.
     pub(super) fn note_state(&mut self, state: &RobotState) {
         let Some(entry) = self.entries.get_mut(self.next) else {
             return; // No capacity.
@@ -132,8 +132,8 @@ impl ControlLog {
         self.len = (self.len + 1).min(self.capacity());
     }
 
-    /// Notes the newest command, for the state that comes next. To be called after each state: the
-    /// entry may still hold an older command.
+    /// Notes the newest command, for the state that comes next. Call it after each state, because
+    /// the entry may still hold an older command.
     pub(super) fn note_command(&mut self, command: &RobotCommand) {
         if let Some(entry) = self.entries.get_mut(self.next) {
             entry.command = *command;
@@ -141,7 +141,7 @@ impl ControlLog {
     }
 }
 
-/// A log with room for no more.
+/// Collects the entries into a log without room for more.
 impl FromIterator<LogEntry> for ControlLog {
     fn from_iter<T: IntoIterator<Item = LogEntry>>(entries: T) -> Self {
         let mut entries: Vec<LogEntry> = entries.into_iter().collect();
@@ -165,7 +165,7 @@ impl PartialEq for ControlLog {
 }
 
 impl fmt::Debug for ControlLog {
-    /// Entries are pages of numbers; this names the cycles.
+    /// Prints the times of the cycles only, because entries are pages of numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let times = |entry: &LogEntry| entry.state.message_id;
         f.debug_struct("ControlLog")
@@ -178,7 +178,7 @@ impl fmt::Debug for ControlLog {
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for ControlLog {
-    /// A sequence of the entries, oldest first.
+    /// Serializes the entries as a sequence, oldest first.
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(self.iter())
     }
@@ -201,7 +201,7 @@ impl<'de> serde::Deserialize<'de> for ControlLog {
     }
 }
 
-/// A group of columns: its name, and the access to its numbers.
+/// A group of columns: its name, and a function that returns its numbers.
 type Columns = (&'static str, fn(&LogEntry) -> &[f64]);
 
 const COLUMNS: [Columns; 11] = [

@@ -1,8 +1,8 @@
-//! The state machine that returns the command for each robot state; the real-time thread runs it.
+//! The state machine that returns the command for each robot state. The real-time thread runs it.
 //!
-//! Late states are answered like others ([`stats::arrivals`](crate::stats)), unless a newer one has
-//! overtaken them (`exchange`). Lost ones are counted in [`Driver::on_state`]; a silent robot ends
-//! the motion in [`Driver::on_silence`].
+//! Late states are answered like others ([`stats::arrivals`](crate::stats)), unless a newer state
+//! has overtaken them (`exchange`). Lost states are counted in [`Driver::on_state`]. A silent robot
+//! ends the motion in [`Driver::on_silence`].
 //!
 //! ```text
 //!              Order::Arm            first state in the motion's modes
@@ -14,21 +14,22 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
-//! A motion with a ticket (see [`together`](crate::together)) first holds the arm until all robots
-//! of the common start are ready. If one withdraws, the motion finishes without its program.
+//! A motion with a ticket for a common start of several robots (see [`together`](crate::together))
+//! first holds the arm until all robots are ready. If one robot withdraws, the motion finishes
+//! without its program.
 //!
-//! Two phases are not in the picture. `Silent`: no command is sent until the robot leaves the
-//! motion's modes, because the program failed, a command was not finite, or a program that does not
-//! brake was abandoned (`Order::Abandon`). `Unwanted`: an armed motion was abandoned; it ends when
-//! the states show that the robot did not begin it.
+//! Two phases are not in the picture. In `Silent`, no command is sent until the robot leaves the
+//! motion's modes: the program failed, a command was not finite, or a program that does not brake
+//! was abandoned (`Order::Abandon`). In `Unwanted`, an armed motion was abandoned; it ends when the
+//! states show that the robot did not begin it.
 //!
-//! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
+//! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]. Outputs are
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. Work that
 //! can wait until the command has left is done in [`Driver::after_send`], once for each state, and
-//! [`Driver::note_cycle`]; work that needs no new state, in [`Driver::prepare`]. No clock, socket,
-//! allocation or log: the thread, and the lockstep tests, supply the time and carry out the
-//! effects. A program that has ended leaves inside an [`Event`], so that its memory is freed
-//! elsewhere.
+//! [`Driver::note_cycle`]. Work that needs no new state is done in [`Driver::prepare`]. The driver
+//! has no clock, socket, allocation or log: the thread, or a lockstep test, supplies the time and
+//! carries out the effects. A program that has ended is returned inside an [`Event`], so that its
+//! memory is freed elsewhere.
 
 mod aftermath;
 mod columns;
@@ -76,14 +77,14 @@ pub struct Driver {
     version: Version,
     /// The motion under way, in its phase; `None` while the driver watches.
     motion: Option<Execution>,
-    /// `message_id` of the newest state, once there was one.
+    /// `message_id` of the newest state; `None` before the first state.
     newest: Option<u64>,
     /// The silence at which the link was given up, until a state revives it.
     lost: Option<Duration>,
     link_timeout: LinkTimeout,
-    /// Number of states that were skipped for the next one.
+    /// Number of states that were skipped for the next state.
     skipped: u64,
-    /// Counts of the present motion, from arming on.
+    /// Counts of the present motion, from its arming.
     statistics: MotionStatistics,
     record: Record,
     references: ReferenceWriter,
@@ -92,7 +93,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// A driver that watches the states of a robot speaking `version`.
+    /// Returns a driver that watches the states of a robot with protocol `version`.
     pub fn new(version: Version) -> Self {
         let (references, reference_reader) = ReferenceWriter::new();
         Self {
@@ -117,7 +118,7 @@ impl Driver {
         self
     }
 
-    /// The silence after which the link counts as lost.
+    /// Returns the silence after which the link counts as lost.
     pub fn link_timeout(&self) -> LinkTimeout {
         self.link_timeout
     }
@@ -127,22 +128,22 @@ impl Driver {
         self.motion.is_none()
     }
 
-    /// Record of the last cycle.
+    /// Returns the record of the last cycle.
     pub fn record(&self) -> &Record {
         &self.record
     }
 
-    /// A reader of the newest reference, for another thread.
+    /// Returns a reader of the newest reference, for another thread.
     pub fn references(&self) -> ReferenceReader {
         self.reference_reader.clone()
     }
 
-    /// The oldest event that has not been taken.
+    /// Returns and removes the oldest event.
     pub fn take_event(&mut self) -> Option<Event> {
         self.events.pop()
     }
 
-    /// Takes an order. An order that does not fit the phase is answered with an event, never
+    /// Carries out an order. An order that does not fit the phase is answered with an event, never
     /// ignored.
     pub fn on_order(&mut self, order: Order) {
         match order {
@@ -198,12 +199,12 @@ impl Driver {
         self.skipped = states;
     }
 
-    /// Takes a newly received state and returns the command that answers it, if one is due.
+    /// Processes a newly received state and returns the command that answers it, if one is due.
     ///
-    /// Bounded work: at most one step of the program. A state that is not newer than the newest so
-    /// far is ignored, as the robot numbers its cycles strictly upwards. A motion does not answer a
-    /// state in which a value that its program computes with is non-finite: the robot bridges the
-    /// gap, or stops on its own if more of them follow.
+    /// The work is bounded: at most one step of the program. A state that is not newer than the
+    /// newest state so far is ignored, because the robot numbers its cycles strictly upwards. A
+    /// motion does not answer a state with a non-finite value that its program needs. The robot
+    /// bridges the gap, or stops on its own if more such states follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -275,12 +276,12 @@ impl Driver {
         }
     }
 
-    /// Writes a command for the newest state of a motion under [`Program::Active`], to be sent at
-    /// once. The last one is `finished`; it is then repeated with every state until the robot has
-    /// left the motion's modes.
+    /// Returns a command for the newest state of a motion under [`Program::Active`], to be sent at
+    /// once. The last command is `finished`; the driver then repeats it with every state until the
+    /// robot has left the motion's modes.
     ///
     /// # Errors
-    /// [`WriteError`]; nothing must be sent then, and the motion continues.
+    /// [`WriteError`]; send nothing then. The motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
         let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);
@@ -301,7 +302,8 @@ impl Driver {
     }
 
     /// Reports that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
-    /// the others of a team brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
+    /// the other robots of a team brake. At the link timeout a motion ends with
+    /// [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
             begun.program.on_silence(silence);
@@ -350,7 +352,7 @@ impl Driver {
         }
     }
 
-    /// Leaves the motion without commands from now on, as its program cannot continue.
+    /// Sends no more commands to the motion, because its program cannot continue.
     fn fail(&mut self, failure: Failure) -> Option<RobotCommand> {
         let motion = self.motion.as_mut()?;
         motion.program.fail_team(MemberFault::Failed);
@@ -362,8 +364,8 @@ impl Driver {
         None
     }
 
-    /// Ends the motion with the state that shows its end. There is nothing to answer then, so its
-    /// log takes the state at once.
+    /// Ends the motion with the state that shows its end. That state needs no answer, so the log
+    /// notes it at once.
     fn end_at(&mut self, state: &RobotState, ending: Ending) -> Option<RobotCommand> {
         self.motion.as_mut()?.log.note_state(state);
         self.end(ending);

@@ -13,21 +13,22 @@ use crate::together::{Gate, StartTicket};
 /// Phase of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
-    /// Asked for; the robot has not shown it yet.
+    /// The motion is requested; the robot has not shown its modes yet.
     Armed,
-    /// Abandoned while it was armed, with the number of states in a row since then that show no
-    /// motion. The robot may still begin it. Nothing is sent.
+    /// The motion was abandoned while it was armed. The number counts the states in a row since
+    /// then that show no motion. The robot may still begin the motion. Nothing is sent.
     Unwanted(u32),
     Running,
     /// The finishing command is repeated until the robot leaves the motion's modes.
     Finishing,
-    /// The program has failed, or was left alone: nothing is sent until the robot leaves the
+    /// The program has failed, or was abandoned: nothing is sent until the robot leaves the
     /// motion's modes.
     Silent,
 }
 
-/// States in a row without a motion, after a stop request, from which the robot is taken not to
-/// begin it any more. A reply and a state that cross on their way are apart by less than that.
+/// Number of states in a row without a motion, after a stop request, from which the robot counts as
+/// not beginning the motion any more. A reply and a state that cross on the network are less than
+/// that apart.
 pub(super) const UNWANTED_STATES: u32 = 20;
 
 /// State of a motion from arming to its end.
@@ -40,13 +41,13 @@ pub(super) struct Execution {
     pub(super) ticket: Option<StartTicket>,
     pub(super) times: Arc<MotionTimes>,
     pub(super) observer: Option<Observer>,
-    /// The newest command that was sent; zeros before the first.
+    /// The newest command that was sent; zeros before the first command.
     pub(super) sent: RobotCommand,
     pub(super) phase: Phase,
 }
 
 impl Execution {
-    /// Returns whether it may begin, or has begun, at this state.
+    /// Returns whether the motion may begin, or has begun, at this state.
     pub(super) fn gate(&mut self, state: &RobotState) -> Gate {
         let Some(ticket) = &mut self.ticket else {
             return Gate::Open;
@@ -57,7 +58,7 @@ impl Execution {
         ticket.pass(state.message_id)
     }
 
-    /// True if the robot has begun it, and has not left it.
+    /// True if the robot has begun the motion, and has not left it.
     pub(super) fn has_begun(&self) -> bool {
         matches!(
             self.phase,
@@ -65,7 +66,7 @@ impl Execution {
         )
     }
 
-    /// Gives the motion up: it ends once the robot has left it. A program that brakes alone
+    /// Gives the motion up: it ends once the robot has left it. A program that brakes by itself
     /// continues until then.
     pub(super) fn abandon(&mut self) {
         self.phase = match self.phase {
@@ -76,14 +77,14 @@ impl Execution {
         self.leave();
     }
 
-    /// Leaves the common start, so that the others do not wait.
+    /// Leaves the common start, so that the other robots do not wait.
     pub(super) fn leave(&mut self) {
         if let Some(ticket) = &mut self.ticket {
             ticket.end();
         }
     }
 
-    /// Brakes the others of its team if it ends otherwise than asked.
+    /// Brakes the other members of the motion's team if the motion ends otherwise than asked.
     pub(super) fn tell_team(&mut self, ending: Ending) {
         match ending {
             Ending::Finished => {}

@@ -9,7 +9,7 @@ use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 /// Reference of target control, and the progress of its goal, in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceState {
-    /// `message_id` of the state that it answers, `[ms]` of the robot's clock.
+    /// `message_id` of the state that the reference answers, `[ms]` of the robot's clock.
     pub time: u64,
     /// The goal that is followed.
     pub goal: GoalId,
@@ -23,14 +23,14 @@ pub struct ReferenceState {
     pub elapsed: Duration,
     /// See [`Record::remaining`].
     pub remaining: Duration,
-    /// The guards that bound the command of this cycle, or another one since at least
-    /// [`Self::GUARDS_MS`] and at most twice that.
+    /// The guards that bound the command of this cycle or of a recent one: of at least the last
+    /// [`Self::GUARDS_MS`], and of at most twice that.
     pub guards: Bindings,
 }
 
 impl ReferenceState {
-    /// Time for which a guard that has bound counts, `[ms]` of the robot's clock: readers look a
-    /// few dozen times per second.
+    /// Time for which a guard that has bounded a command stays listed, `[ms]` of the robot's clock.
+    /// Readers look a few dozen times per second.
     pub const GUARDS_MS: u64 = 100;
 
     fn of(record: &Record, guards: Bindings) -> Self {
@@ -51,7 +51,7 @@ impl ReferenceState {
 #[derive(Debug)]
 pub(super) struct ReferenceWriter {
     newest: SlotWriter<ReferenceState>,
-    /// The guards that have bound since `begin`, and the guards of the period before.
+    /// The guards that have bounded a command since `begin`, and the guards of the period before.
     guards: [Bindings; 2],
     begin: u64,
 }
@@ -117,7 +117,8 @@ impl Words for ReferenceState {
     }
 }
 
-/// Attempts to read. One fails if this thread is delayed until the value has been replaced twice.
+/// Attempts to read. One attempt fails if this thread is delayed until the value was replaced
+/// twice.
 const ATTEMPTS: usize = 16;
 
 /// Reads the newest reference. Clones read independently of each other.
@@ -125,7 +126,8 @@ const ATTEMPTS: usize = 16;
 pub struct ReferenceReader(SlotReader<ReferenceState>);
 
 impl ReferenceReader {
-    /// The reference of the newest cycle; `None` if target control did not answer it.
+    /// Returns the reference of the newest cycle; `None` if target control did not answer that
+    /// cycle.
     pub fn newest(&self) -> Option<ReferenceState> {
         // A clone has read nothing yet, and so finds the present value whether or not it is new.
         match self.0.clone().read_retry(ATTEMPTS) {

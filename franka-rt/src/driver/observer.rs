@@ -1,4 +1,4 @@
-//! A function of the user's that sees every cycle of a motion.
+//! A function of the user that sees every cycle of a motion.
 
 use core::any::Any;
 use core::fmt;
@@ -11,19 +11,19 @@ use crate::panic;
 
 type Function = dyn FnMut(&Record, &RobotState) + Send;
 
-/// Sees every cycle of a motion on the control thread, once its command has left: the record of the
-/// cycle and its state.
+/// Sees every cycle of a motion on the control thread, once the command has left. Its arguments are
+/// the record of the cycle and the state.
 ///
-/// It has some 300 us and must not lock, allocate, print or wait. If it panics it is not called
-/// again; the motion continues.
+/// The function has some 300 us and must not lock, allocate, print or wait. If the function panics,
+/// it is not called again; the motion continues.
 pub struct Observer {
     function: Box<Function>,
-    /// Payload of its panic, kept to be freed elsewhere.
+    /// Payload of the function's panic, kept to be freed elsewhere.
     panicked: Option<Box<dyn Any + Send>>,
 }
 
 impl Observer {
-    /// An observer that calls `function`.
+    /// Returns an observer that calls `function`.
     pub fn new(function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         Self {
             function: Box::new(function),
@@ -31,7 +31,7 @@ impl Observer {
         }
     }
 
-    /// Shows it a cycle. Returns true if it panics, which happens once.
+    /// Calls the function with a cycle. Returns true if the function panics, which happens once.
     pub(super) fn see(&mut self, record: &Record, state: &RobotState) -> bool {
         if self.panicked.is_some() {
             return false;
@@ -44,7 +44,7 @@ impl Observer {
     }
 }
 
-/// Freed elsewhere: see [`Event::Ended`](super::Event::Ended).
+/// Must be freed elsewhere: see [`Event::Ended`](super::Event::Ended).
 impl Drop for Observer {
     fn drop(&mut self) {
         // The panic has been reported.

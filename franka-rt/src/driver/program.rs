@@ -10,33 +10,32 @@ use crate::session::{SessionCommand, SessionEvent, Target, TargetSession, Trace}
 use crate::team::MemberFault;
 use crate::together::Gate;
 
-/// Program that answers the states of a running motion. Built outside the thread and freed outside
-/// it.
+/// Program that answers the states of a running motion. Built and freed outside the thread.
 #[derive(Debug)]
 pub enum Program {
-    /// Goals from a slot, turned into torques.
+    /// Goals from a slot, which the session turns into torques.
     Target(Box<TargetSession>),
-    /// A function of the program, called with every state.
+    /// A function of the user, called with every state.
     Callback(Box<Callback>),
-    /// Commands written from outside, see [`Driver::write`](super::Driver::write).
+    /// Commands from a thread of the user, see [`Driver::write`](super::Driver::write).
     Active(ActiveControl),
-    /// Sparse targets, between which the robot plans.
+    /// Sparse targets between which the robot plans.
     Asynchronous(AsynchronousPositions),
 }
 
-/// Answer to a state.
+/// Answer of a program to a state.
 pub(super) enum CycleOutcome {
-    /// This command; the last one if `finished`.
+    /// Send this command; it is the last one if `finished`.
     Command { command: Command, finished: bool },
-    /// Nothing now, but a command may be written before the next state.
+    /// Send nothing now; a command may be written before the next state.
     Open,
-    /// No command, and none later.
+    /// Send no command now, and none later.
     Failed(Failure),
 }
 
 impl Program {
-    /// True if everything that it computes with is finite in `state`. A command computed from
-    /// non-finite values must not reach the motors.
+    /// True if all values of `state` that the program computes with are finite. A command computed
+    /// from non-finite values must not reach the motors.
     pub(super) fn can_read(&self, state: &RobotState) -> bool {
         let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
         let finite = numbers.copied().all(f64::is_finite);
@@ -48,7 +47,7 @@ impl Program {
     }
 
     /// True if the first goal of the motion has been cancelled or replaced. Called only while the
-    /// motion waits for others.
+    /// motion waits for other robots.
     pub(super) fn is_withdrawn(&mut self) -> bool {
         match self {
             Self::Target(session) => session.is_withdrawn(),
@@ -56,35 +55,37 @@ impl Program {
         }
     }
 
-    /// Brakes the others of its team, if it has one.
+    /// Brakes the other members of the program's team, if it has one.
     pub(super) fn fail_team(&mut self, fault: MemberFault) {
         if let Self::Target(session) = self {
             session.fail_team(fault);
         }
     }
 
-    /// Brakes the others of its team, if it has one, when the robot has been silent for too long.
+    /// Brakes the other members of the team, if there is one, when the robot has been silent for
+    /// too long.
     pub(super) fn on_silence(&mut self, silence: Duration) {
         if let Self::Target(session) = self {
             session.on_silence(silence);
         }
     }
 
-    /// Leaves its team, if it has one, without a fault.
+    /// Leaves the team, if there is one, without a fault.
     pub(super) fn leave_team(&mut self) {
         if let Self::Target(session) = self {
             session.leave_team();
         }
     }
 
-    /// True if it stops an arm that it moves, without the robot, once its goal asks for that.
+    /// True if the program itself stops an arm that moves, without the robot, once its goal asks
+    /// for that.
     pub(super) fn brakes(&self) -> bool {
         matches!(self, Self::Target(_))
     }
 
-    /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
-    /// the gate is broken. [`Command::datagram`] checks that the command is finite. A report of the
-    /// program is left in `event`.
+    /// Answers a state. Holds the arm while the gate of a common start is closed, and finishes
+    /// where the arm is if the start has failed. [`Command::datagram`] checks that the command is
+    /// finite. A report of the program is left in `event`.
     pub(super) fn step(
         &mut self,
         gate: Gate,

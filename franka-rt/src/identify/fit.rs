@@ -1,4 +1,4 @@
-//! From records to friction, bias and load: weighted least squares.
+//! Weighted least squares from records to friction, bias and load.
 
 use franka_model::{JointVector, Load, Model};
 use franka_proto::RobotState;
@@ -8,7 +8,7 @@ use super::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad, Plan, declare
 use crate::driver::Record;
 use crate::session::Guard;
 
-/// Takes the records of a [`Plan`]'s motions, and identifies the arm.
+/// Collects the records of a [`Plan`]'s motions, and identifies the arm.
 #[derive(Clone, Debug)]
 pub struct Fit {
     model: Model,
@@ -22,21 +22,21 @@ pub struct Fit {
     windows: Vec<Window>,
 }
 
-/// Steady motion by now.
+/// The present stretch of steady motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steady {
-    /// The way of each joint; 0 for those that are too slow.
+    /// Direction of each joint, -1 or 1; 0 for joints that are too slow.
     signs: JointVector,
     /// Time of the last record, `[ms]`.
     time: u64,
-    /// Cycles of it.
+    /// Number of cycles of the stretch so far.
     cycles: u32,
-    /// Number of its cycles that are summed up, and sums over them.
+    /// Number of cycles of the stretch that are summed, and their sums.
     summed: u32,
     q: JointVector,
     dq: JointVector,
     tau: JointVector,
-    /// Number of the stroke that it belongs to.
+    /// Number of the stroke that the stretch belongs to.
     stroke: u32,
 }
 
@@ -44,14 +44,14 @@ struct Steady {
 #[derive(Clone, Copy, Debug)]
 struct Window {
     signs: JointVector,
-    /// Torques of the joints in addition to the model, `[N m]`.
+    /// Torques of the joints that the model does not explain, `[N m]`.
     takes: JointVector,
     /// Torques of the joints per mass and moment of a load.
     gravity: SMatrix<f64, 7, 4>,
     stroke: u32,
 }
 
-/// Reason why the records do not show the properties of the arm.
+/// Reason why the records do not identify the arm.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
@@ -63,9 +63,9 @@ pub enum FitError {
     TooLittle {
         /// The joint, 1 to 7.
         joint: usize,
-        /// Intervals of a quarter of a second, one way.
+        /// Number of intervals of a quarter of a second, in one direction.
         got: usize,
-        /// The least number of them.
+        /// Least number of intervals.
         expected: usize,
     },
     /// The torques of a joint do not fit any friction, bias and load: something pushed the arm.
@@ -76,9 +76,9 @@ pub enum FitError {
     Disturbed {
         /// The joint, 1 to 7.
         joint: usize,
-        /// Root mean square of the remainder, `[N m]`.
+        /// Root mean square of the unexplained torque, `[N m]`.
         got: f64,
-        /// The most that is accepted, `[N m]`.
+        /// Largest accepted value, `[N m]`.
         expected: f64,
     },
 }
@@ -87,8 +87,8 @@ pub enum FitError {
 type Unknowns = SVector<f64, 18>;
 
 impl Fit {
-    /// Begins for an arm of this model that is in this state. End effector, declared load and base
-    /// must stay as they are.
+    /// Returns a fit for an arm of this model in this state. End effector, declared load and base
+    /// must not change.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
         let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
@@ -102,8 +102,8 @@ impl Fit {
         }
     }
 
-    /// Takes the record of a cycle. Slower motions, cycles in which a guard binds, and missed
-    /// records do no harm; motions under the robot's own controller do.
+    /// Adds the record of a cycle. Do not add records of motions under the robot's own controller.
+    /// Slower motions, cycles in which a guard bounds the command, and missed records do no harm.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
@@ -185,8 +185,8 @@ impl Fit {
         Ok(self.identified(&fitted.0, &fitted.1))
     }
 
-    /// The most likely unknowns if the windows of a stroke have these deviations, and the variances
-    /// of the unknowns.
+    /// Returns the most likely unknowns, given these deviations of the windows of a stroke, and the
+    /// variances of the unknowns.
     fn solve(&self, noise: &JointVector) -> (Unknowns, Unknowns) {
         let mut information = SMatrix::<f64, 18, 18>::from_diagonal(&prior());
         let mut right = Unknowns::zeros();
@@ -207,7 +207,7 @@ impl Fit {
         (inverse * right, inverse.diagonal())
     }
 
-    /// Deviation of each joint's windows from the prediction of the unknowns, `[N m]`.
+    /// Returns the deviation of each joint's windows from the prediction of the unknowns, `[N m]`.
     fn residuals(&self, unknowns: &Unknowns) -> JointVector {
         JointVector::from_fn(|joint, _| {
             let off = self.windows.iter().filter_map(|window| {
@@ -252,7 +252,7 @@ impl Fit {
 }
 
 impl Window {
-    /// Torque of a joint per unknown; `None` for a joint that was too slow.
+    /// Returns the torque of a joint per unknown; `None` for a joint that was too slow.
     fn row(&self, joint: usize) -> Option<Unknowns> {
         let sign = self.signs[joint];
         (sign != 0.0).then(|| {
@@ -265,7 +265,7 @@ impl Window {
     }
 }
 
-/// Prior knowledge of any arm: the inverse of the variances of the unknowns.
+/// Returns the prior knowledge of any arm: the inverse of the variances of the unknowns.
 fn prior() -> Unknowns {
     Unknowns::from_fn(|i, _| {
         let deviation: f64 = match i {
@@ -278,7 +278,7 @@ fn prior() -> Unknowns {
     })
 }
 
-/// Guards under which something other than the arm itself takes torques.
+/// Guards under which the torques are not the arm's alone.
 const HOLDING: [Guard; 5] = [
     Guard::Leash,
     Guard::ForceCap,
@@ -287,36 +287,36 @@ const HOLDING: [Guard; 5] = [
     Guard::TorqueRate,
 ];
 
-/// Velocity of the reference from which a joint counts, `[rad/s]`: slower ones have another
+/// Velocity of the reference above which a joint counts, `[rad/s]`: slower joints have another
 /// friction.
 const FAST: f64 = 0.75 * Plan::SPEED;
 
 /// Acceleration of the reference below which its motion is steady, `[rad/s^2]`.
 const STEADY: f64 = 0.02;
 
-/// Cycles of steady motion after which the arm has swung in.
+/// Cycles of steady motion after which the transients of the arm have decayed.
 const SETTLES: u32 = 150;
 
-/// Cycles of a window.
+/// Length of a window, in cycles.
 const WINDOW: u32 = 250;
 
-/// Time without a record after which a steady motion counts as another one, `[ms]`.
+/// Time without a record after which a new stretch of steady motion begins, `[ms]`.
 const GAP: u64 = 20;
 
-/// Windows that each joint needs, one way and the other.
+/// Number of windows that each joint needs in each direction.
 const INTERVALS: usize = 12;
 
-/// Number of times that the weights of the joints are taken from the residuals.
+/// Number of iterations in which the weights of the joints are computed from the residuals.
 const REWEIGHTED: usize = 3;
 
-/// Least deviation of a joint's windows, `[N m]`: the resolution of its sensor.
+/// Least standard deviation of a joint's windows, `[N m]`: the resolution of its sensor.
 const RESIDUAL_MIN: f64 = 0.01;
 
-/// More than any joint takes, `[N m]`: larger numbers, and values that are not numbers, are not
-/// counted.
+/// Torque larger than a joint can have, `[N m]`. Larger numbers, and values that are not numbers,
+/// do not count.
 const ABSURD: f64 = 1e3;
 
-/// Greatest deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
+/// Greatest standard deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
 const RESIDUAL_MAX: f64 = 0.5;
 
 /// Effect of an error of the robot's own masses, `[kg]` and `[kg m]`.

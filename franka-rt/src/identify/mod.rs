@@ -1,4 +1,4 @@
-//! Friction and bias of the joints and the load at the flange, measured by a minute of small
+//! Friction and bias of the joints and the load at the flange, measured in a minute of small
 //! motions.
 //!
 //! ```text
@@ -6,11 +6,11 @@
 //!                                   later connections: Lifecycle::knowing <---'
 //! ```
 //!
-//! A `Plan` lists the motions. While its motions run, a `Fit` takes the record of every cycle. In
-//! steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that changes with
-//! the pose as the gravity of a load does is a load, the rest belongs to the joint. The load that
-//! is set at the robot counts as part of it. Gravity has the direction in the state, `O_ddP_O`.
-//! Nothing here is sent to a robot.
+//! A `Plan` lists the motions. While its motions run, a `Fit` collects the record of every cycle.
+//! In steady motion the torque of a joint that the model does not explain is `direction * friction
+//! + bias + G(q) load`. The part that changes with the pose, as the gravity of a load does, is
+//! load; the rest belongs to the joint. The load that is set at the robot counts as part of the
+//! load. Gravity has the direction in the state, `O_ddP_O`. Nothing here is sent to a robot.
 
 mod fit;
 mod plan;
@@ -30,48 +30,48 @@ pub use plan::{Plan, PlannedMotion, Reach};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimate {
-    /// Its most likely value, in the unit of the quantity.
+    /// Most likely value, in the unit of the quantity.
     pub value: f64,
-    /// Its standard deviation, in the same unit.
+    /// Standard deviation, in the same unit.
     pub deviation: f64,
 }
 
 impl fmt::Display for Estimate {
-    /// `0.842 ± 0.031`; with a precision, to that number of digits.
+    /// Prints `0.842 ± 0.031`; with a precision, to that number of digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(3);
         write!(f, "{:.digits$} ± {:.digits$}", self.value, self.deviation)
     }
 }
 
-/// Torques of one joint in addition to the robot's model.
+/// Torques of one joint that the robot's model does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
     /// Friction at `Plan::SPEED`, viscous part included, beyond the robot's own compensation, `[N
     /// m]`.
     pub friction: Estimate,
-    /// Torque that it takes in either direction and in every pose, such as the zero error of its
-    /// torque sensor, `[N m]`.
+    /// Torque in either direction and in every pose, for example the zero error of the torque
+    /// sensor, `[N m]`.
     pub bias: Estimate,
 }
 
-/// Load of the flange in addition to the end effector that the robot is configured with (`m_ee`). A
-/// declared load is part of it, and so is the weight by which a real end effector exceeds the
-/// configured one.
+/// Load of the flange in addition to the end effector that the robot is configured with (`m_ee`).
+/// It includes a declared load, and the weight by which a real end effector exceeds the configured
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedLoad {
-    /// `[kg]`; slightly negative at times where there is no load.
+    /// Mass, `[kg]`; may be slightly negative without a load.
     pub mass: Estimate,
     /// Mass times centre of mass, in the flange frame, `[kg m]`.
     pub moment: [Estimate; 3],
 }
 
 impl IdentifiedLoad {
-    /// The centre of mass in the flange frame, `[m]`; `None` where the mass is less than three of
-    /// its deviations, and the centre therefore unknown. Mass and centre are arguments of
-    /// `set_load`.
+    /// Returns the centre of mass in the flange frame, `[m]`. `None` if the mass is less than three
+    /// of its standard deviations, because the centre is then unknown. Mass and centre are
+    /// arguments of `set_load`.
     pub fn center(&self) -> Option<[Estimate; 3]> {
         let Estimate { value, deviation } = self.mass;
         (value > 3.0 * deviation).then(|| {
@@ -86,35 +86,35 @@ impl IdentifiedLoad {
     }
 }
 
-/// Properties of an arm, found by the motions of a `Plan`.
+/// Properties of an arm, measured by the motions of a `Plan`.
 ///
-/// `Display` is a table to read. With the feature `serde` it can be stored.
+/// `Display` prints a table to read. With the feature `serde` the value can be stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Identified {
     /// The kind of the robot.
     pub kind: RobotKind,
-    /// Its joints, base to flange.
+    /// Joints of the arm, base to flange.
     pub joints: [IdentifiedJoint; 7],
-    /// Load of its flange.
+    /// Load of the arm's flange.
     pub load: IdentifiedLoad,
 }
 
-/// Reason why an [`Identified`] is not used.
+/// Reason why an [`Identified`] cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KnownError {
-    /// It is of another kind of robot.
+    /// The values are of another kind of robot.
     #[error(
         "the identified values belong to another kind of robot: got {got:?}, expected {expected:?}"
     )]
     Kind {
-        /// The kind that it is of.
+        /// Kind of robot of the values.
         got: RobotKind,
-        /// The kind that is connected.
+        /// Kind of robot that is connected.
         expected: RobotKind,
     },
-    /// A number that no arm has.
+    /// A number is implausible for any arm.
     #[error(
         "the identified values have an implausible {name}: got {got}, expected {least} to {most}"
     )]
@@ -123,15 +123,15 @@ pub enum KnownError {
         name: &'static str,
         /// The number.
         got: f64,
-        /// The least that is accepted.
+        /// The lowest accepted value.
         least: f64,
-        /// The most that is accepted.
+        /// The highest accepted value.
         most: f64,
     },
 }
 
 impl Identified {
-    /// Checks that a robot of this kind may be controlled with it.
+    /// Checks that a robot of this kind may be controlled with these values.
     ///
     /// # Errors
     /// [`KnownError`] for another kind, non-finite or implausible numbers.
@@ -171,8 +171,8 @@ impl Identified {
         Ok(())
     }
 
-    /// Initial values of the law at the robot's present state: the part of the load that is not
-    /// declared there is bias.
+    /// Returns the initial values of the law at the robot's present state: the part of the load
+    /// that is not declared there counts as bias.
     pub(crate) fn learned(&self, model: &Model, state: &RobotState) -> Learned {
         let IdentifiedLoad { mass, moment } = self.load;
         let [x, y, z] = moment.map(|of| of.value);
@@ -209,8 +209,9 @@ impl fmt::Display for Identified {
     }
 }
 
-/// Torques that hold a load per mass and per mass times centre of mass, flange frame, `[N m/kg]`
-/// and `[N m/(kg m)]`: they are linear in both. `gravity` is in the base frame, `[m/s²]`.
+/// Returns the torques that hold a load, per mass and per mass times centre of mass, flange frame,
+/// `[N m/kg]` and `[N m/(kg m)]`: the torques are linear in both. `gravity` is in the base frame,
+/// `[m/s²]`.
 fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatrix<f64, 7, 4> {
     let at = |com: Vector3<f64>| {
         let load = Load {
@@ -226,16 +227,16 @@ fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatr
     SMatrix::from_columns(&[mass, x, y, z])
 }
 
-/// Mass and moment of the load that is set at the robot, `[kg]` and `[kg m]`.
+/// Returns mass and moment of the load that is set at the robot, `[kg]` and `[kg m]`.
 fn declared(state: &RobotState) -> Vector4<f64> {
     let (mass, [x, y, z]) = (state.m_load, state.F_x_Cload);
     Vector4::new(1.0, x, y, z) * mass
 }
 
-/// Greatest friction and bias of a joint that is plausible, `[N m]`.
+/// Largest plausible friction and bias of a joint, `[N m]`.
 const TORQUE_MAX: f64 = 20.0;
 
-/// Greatest mass `[kg]` and moment `[kg m]` of a load that is plausible.
+/// Largest plausible mass `[kg]` and moment `[kg m]` of a load.
 const MASS_MAX: f64 = 20.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The motions by which an arm is identified.
+//! The motions that identify an arm.
 
 use core::fmt;
 use core::time::Duration;
@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use crate::session::{Budget, Tolerance};
 
-/// Motions around the present joint positions of the arm: in each of a few poses all joints go to
-/// and fro twice, then back to the start.
+/// Motions around the present joint positions of the arm. In each of a few poses all joints move to
+/// and fro twice; then they return to the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     start: [f64; 7],
@@ -20,14 +20,14 @@ pub struct Plan {
     reach: Reach,
 }
 
-/// One motion of a `Plan`, from rest to rest. `Display` is a line that announces it.
+/// One motion of a `Plan`, from rest to rest. `Display` prints a line that announces the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedMotion {
-    /// Joint positions before it, `[rad]`.
+    /// Joint positions before the motion, `[rad]`.
     pub from: [f64; 7],
-    /// Joint positions after it, `[rad]`.
+    /// Joint positions after the motion, `[rad]`.
     pub to: [f64; 7],
-    /// Its duration, arrival included.
+    /// Duration of the motion, arrival included.
     pub duration: Duration,
 }
 
@@ -41,14 +41,15 @@ impl fmt::Display for PlannedMotion {
     }
 }
 
-/// Distances that the arm goes from where it is, as its references do.
+/// Distances that the motions move the arm from its present position, according to their
+/// references.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reach {
-    /// Farthest that each joint goes, either way, `[rad]`.
+    /// Largest distance of each joint, in either direction, `[rad]`.
     pub joints: [f64; 7],
-    /// Farthest that the end effector goes, `[m]`.
+    /// Largest distance of the end effector, `[m]`.
     pub end_effector: f64,
-    /// Farthest that it goes down, base frame, `[m]`.
+    /// Largest distance of the end effector downwards, base frame, `[m]`.
     pub down: f64,
 }
 
@@ -62,8 +63,8 @@ impl Plan {
         rotation: 0.05,
     };
 
-    /// Plans for an arm of this model in this state. Joints near a limit are first led away from
-    /// it.
+    /// Plans motions for an arm of this model in this state. Joints near a limit first move away
+    /// from it.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let limits = model.joint_limits();
         let mut budget = Budget::of(limits);
@@ -99,27 +100,27 @@ impl Plan {
         }
     }
 
-    /// Joint positions at which it begins and ends, `[rad]`.
+    /// Returns the joint positions at which the plan begins and ends, `[rad]`.
     pub fn start(&self) -> &[f64; 7] {
         &self.start
     }
 
-    /// Its motions, in their order.
+    /// Returns the motions of the plan, in order.
     pub fn motions(&self) -> &[PlannedMotion] {
         &self.motions
     }
 
-    /// Budget of the motions.
+    /// Returns the budget of the motions: their limits of velocity, acceleration and jerk.
     pub fn budget(&self) -> Budget {
         self.budget
     }
 
-    /// Reach of the motions.
+    /// Returns the reach of the motions.
     pub fn reach(&self) -> Reach {
         self.reach
     }
 
-    /// Approximate duration of all motions together.
+    /// Returns the approximate duration of all motions together.
     pub fn duration(&self) -> Duration {
         let durations = self.motions.iter().map(|motion| motion.duration);
         durations.fold(Duration::ZERO, Duration::saturating_add)
@@ -173,16 +174,16 @@ impl Reach {
     }
 }
 
-/// Distance that a joint goes to and fro, `[rad]`: almost a second of steady motion, in which a
+/// Distance that a joint moves to and fro, `[rad]`: almost a second of steady motion, in which a
 /// torque ripple passes through several periods.
 const STROKE: f64 = 0.2;
 
-/// The ways of the joints on a stroke. Each is measured separately; the end effector goes less far
-/// than if all went the same way.
+/// Directions of the joints on a stroke. Each joint is measured separately. With mixed directions
+/// the end effector moves less far than with equal ones.
 const WAY: [f64; 7] = [1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
 
-/// Distance of the middle of the strokes from the start in a pose, `[rad]`. A load is seen by how
-/// its gravity changes between poses, which joint 1 does not change.
+/// Distance of the middle of the strokes from the start in a pose, `[rad]`. A load is identified by
+/// the change of its gravity between poses; joint 1 does not change it.
 const SHIFT: [f64; 7] = [0.0, 0.12, 0.1, 0.15, 0.25, 0.25, 0.25];
 
 /// The poses.
@@ -199,10 +200,10 @@ const POSES: [[f64; 7]; 6] = [
 const MARGIN: f64 = 0.1;
 
 /// Time from the arrival of the reference to the arrival of the arm, `[s]`: rest for a quarter of a
-/// second, after the arm has swung in.
+/// second, after the transients of the arm have decayed.
 const ARRIVAL: f64 = 0.45;
 
-/// Points of a motion at which its reach is evaluated.
+/// Number of points of a motion at which its reach is evaluated.
 const STEPS: u32 = 8;
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Gains as the cycle uses them: only numbers, so that values between two goals exist.
+//! Gains as the cycle uses them: only numbers, so that values between those of two goals exist.
 
 use crate::law::fade::{Blend, mix};
 use crate::law::{Gains, Law};
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
 
-/// Gains and force cap as numbers. A choice is a weight between 0 and 1, so that all values can lie
-/// between two goals.
+/// Gains and force cap as numbers. A choice is a weight between 0 and 1, so that all values can be
+/// between those of two goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BlendedGains {
     pub(crate) cartesian_stiffness: [f64; 6],
@@ -13,18 +13,18 @@ pub(crate) struct BlendedGains {
     pub(crate) joint_stiffness: [f64; 7],
     pub(crate) joint_damping: [f64; 7],
     pub(crate) feedforward: f64,
-    /// Share of the newest reference velocity in the filtered one; 1 where the filter is off.
+    /// Share of the newest reference velocity in the filtered velocity; 1 if the filter is off.
     pub(crate) feedforward_share: f64,
     /// Weight of the null-space projection of the joints' springs.
     pub(crate) projection: f64,
     /// Weight of the operational-space law against the hybrid law.
     pub(crate) operational: f64,
-    /// One over the force cap, `[1/N]`: 0 without a cap, the only number that fades continuously to
+    /// Inverse of the force cap, `[1/N]`: 0 without a cap, so that a cap can fade continuously to
     /// no cap.
     pub(crate) inverse_force_cap: f64,
     pub(crate) compensation: [f64; 7],
     pub(crate) torque_limits: [f64; 7],
-    /// Share of the newest torque in the filtered one; 1 where the filter is off.
+    /// Share of the newest torque in the filtered torque; 1 if the filter is off.
     pub(crate) torque_share: f64,
 }
 
@@ -59,7 +59,7 @@ impl BlendedGains {
         self.projection > 0.0 || self.operational > 0.0 || self.inverse_force_cap > 0.0
     }
 
-    /// Returns the force cap, `[N]`, if there is one.
+    /// Returns the force cap, `[N]`; `None` without a cap.
     pub(crate) fn force_cap(&self) -> Option<f64> {
         (self.inverse_force_cap > 0.0).then(|| self.inverse_force_cap.recip())
     }

@@ -1,12 +1,12 @@
 //! The fade from the values of one goal to the values of the next.
 
-/// Duration in cycles.
+/// Duration of the fade, in cycles.
 pub(crate) const CROSS_FADE: u32 = 300;
 
 /// Numbers that can lie between the values of two goals.
 pub(crate) trait Blend: Copy + PartialEq {
     /// Interpolates linearly at `share` of the difference to `other`: each number stays between its
-    /// two ends.
+    /// start and its end.
     fn blend(&self, other: &Self, share: f64) -> Self;
 }
 
@@ -24,7 +24,7 @@ pub(crate) struct Fade<T> {
 }
 
 impl<T: Blend> Fade<T> {
-    /// Returns a fade that is over from the start.
+    /// Returns a fade that has ended already, with this value.
     pub(crate) fn at(value: T) -> Self {
         Self {
             from: value,

@@ -11,18 +11,18 @@ pub enum Law {
     #[default]
     Hybrid,
     /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs
-    /// in its null space: see [`operational`](crate::law::operational).
+    /// act in its null space: see [`operational`](crate::law::operational).
     OperationalSpace,
 }
 
 /// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base
 /// frame, and one at each joint.
 ///
-/// A goal brings all of them. Between two goals every number cross-fades, including the choices, so
-/// that no change steps the torque.
+/// A goal replaces all of them. Between two goals every number cross-fades, including the choices,
+/// so that no change steps the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// The law that uses them.
+    /// The law that uses the gains.
     pub law: Law,
     /// End-effector stiffness, x y z `[N/m]` and about x y z `[N m/rad]`.
     pub cartesian_stiffness: [f64; 6],
@@ -36,39 +36,40 @@ pub struct Gains {
     /// only the velocity error, so they do not make the arm lag behind a moving reference. At 0
     /// they oppose all motion.
     pub feedforward: f64,
-    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it
-    /// is off, as a filter of libfranka is.
+    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`. At 1000 the
+    /// filter is off, as in libfranka.
     pub feedforward_cutoff: f64,
-    /// True if the joints' springs and dampers act only in the null space of the end effector,
-    /// where they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
+    /// True if the joints' springs and dampers act only in the null space of the end effector.
+    /// There they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
     /// this.
     pub project_joint_gains: bool,
-    /// Greatest compensation of friction and bias at each joint, `[N m]`; zero for none. With
-    /// springs alone, friction leaves the arm millimetres from its target.
+    /// Largest torque against friction and bias at each joint, `[N m]`; zero for none. With springs
+    /// alone, friction keeps the arm millimetres from its target.
     pub compensation: [f64; 7],
-    /// Greatest torque of springs, dampers and compensation together at each joint, including the
-    /// torques of the motion itself, `[N m]`. The torque of a command, besides gravity, stays below
-    /// it. Only the brake of a joint that is too fast may use more.
+    /// Largest torque of springs, dampers and compensation together at each joint, including the
+    /// torques of the motion itself, `[N m]`. The commanded torque, which excludes gravity, stays
+    /// below this limit. Only the brake of a joint that is too fast may use more.
     pub torque_limits: [f64; 7],
-    /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`; at 1000 it is off. A
-    /// lower frequency is quieter, and reduces the [`Margin`](crate::session::Margin).
+    /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`; at 1000 the filter is
+    /// off. A lower frequency is quieter, and reduces the stability
+    /// [`Margin`](crate::session::Margin).
     pub torque_cutoff: f64,
 }
 
-/// A gain out of its bounds.
+/// Caller: a gain is out of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what}{} is {got}, expected between {least} and {most}", of_axis(*.axis))]
 #[non_exhaustive]
 pub struct GainError {
     /// Group of gains.
     pub what: &'static str,
-    /// Number in the group, from 1; `None` for a single number.
+    /// Position of the number in the group, from 1; `None` for a single number.
     pub axis: Option<usize>,
-    /// The value given.
+    /// The given value.
     pub got: f64,
-    /// The lowest value accepted.
+    /// The lowest accepted value.
     pub least: f64,
-    /// The highest value accepted.
+    /// The highest accepted value.
     pub most: f64,
 }
 
@@ -95,9 +96,9 @@ impl Gains {
     /// Highest values that [`check`](Self::check) accepts.
     ///
     /// Stiffness at the end effector has the bounds of the robot's own impedance commands, 3000 N/m
-    /// and 300 N m/rad. The bounds of joints and damping are ten times the stiff preset. No one has
-    /// tried all of it on every axis at once on hardware. The bound of the compensation is twice
-    /// the default and more. The bound of the torques is the default.
+    /// and 300 N m/rad. The bounds of joints and damping are ten times the stiff preset. These
+    /// values were never tried on every axis at once on hardware. The bound of the compensation is
+    /// twice the default and more. The bound of the torques is the default.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -124,8 +125,9 @@ impl Gains {
     /// Length of the array that [`to_array`](Self::to_array) returns.
     pub(crate) const NUMBERS: usize = 45;
 
-    /// Compliant at the end effector: 750 N/m and 60 N m/rad, with light joint springs that keep
-    /// the elbow. A softer wrist slips by several milliradians when its friction breaks loose.
+    /// Returns gains with a compliant end effector: 750 N/m and 60 N m/rad, with light joint
+    /// springs that hold the elbow. A softer wrist slips by several milliradians when its friction
+    /// breaks loose.
     pub const fn cartesian() -> Self {
         Self {
             law: Law::Hybrid,
@@ -142,9 +144,9 @@ impl Gains {
         }
     }
 
-    /// Compliant as [`cartesian`](Self::cartesian), with the softer wrist and the lighter damping
-    /// of the DROID platform, without feedforward and compensation. Use it for a policy that was
-    /// trained on DROID data.
+    /// Returns compliant gains like [`cartesian`](Self::cartesian), with the softer wrist and the
+    /// lighter damping of the DROID platform, without feedforward and compensation. For a policy
+    /// that was trained on DROID data.
     pub const fn droid() -> Self {
         Self {
             cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
@@ -155,8 +157,8 @@ impl Gains {
         }
     }
 
-    /// Stiff joints, no spring at the end effector. With more damping, arms whose torques lag by 10
-    /// ms begin to oscillate.
+    /// Returns gains with stiff joints and no spring at the end effector. With more damping, arms
+    /// whose torques lag by 10 ms begin to oscillate.
     pub const fn joint() -> Self {
         Self {
             law: Law::Hybrid,
@@ -183,8 +185,8 @@ impl Gains {
     }
 
     /// Returns the same gains with another stiffness at the end effector, base axes. The damping
-    /// scales with the square root, which keeps the damping ratio. An axis without stiffness gets
-    /// its damping ratio from [`Gains::cartesian`].
+    /// scales with the square root of the stiffness, which keeps the damping ratio. An axis without
+    /// stiffness gets the damping ratio of [`Gains::cartesian`].
     #[must_use]
     pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
         let preset = Self::cartesian();
@@ -207,7 +209,7 @@ impl Gains {
     /// [`MOST`](Self::MOST).
     ///
     /// # Errors
-    /// [`GainError`] names the first number that does not.
+    /// [`GainError`] names the first number out of bounds.
     pub fn check(&self) -> Result<(), GainError> {
         let (least, most) = (Self::LEAST.to_array(), Self::MOST.to_array());
         for (i, got) in self.to_array().into_iter().enumerate() {

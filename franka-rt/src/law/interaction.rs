@@ -10,7 +10,7 @@ use crate::law::task_space::TaskSpace;
 /// The springs of a law, or its dampers, in one cycle, at the measured posture.
 #[derive(Debug)]
 pub(crate) struct Interaction<'a> {
-    /// Matrix at the end effector, base axes.
+    /// Gain matrix at the end effector, base axes.
     cartesian: Matrix6<f64>,
     /// Gains at the joints.
     joint: JointVector,

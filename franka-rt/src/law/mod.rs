@@ -7,10 +7,10 @@
 //! ```
 //!
 //! [`Gains`] are the request of a goal. `blended_gains` holds the same as numbers, with choices as
-//! weights, so that `fade` changes from one to the next continuously. `interaction` turns them into
-//! torques by either law. The two laws differ in the wrench at the end effector and in where the
-//! springs of the joints act. `compensation` adds torques that springs cannot exert, against
-//! friction and an undeclared load. The session's guards bound these torques.
+//! weights, so that `fade` changes continuously from one goal's gains to the next. `interaction`
+//! turns them into torques by either law. The two laws differ in the wrench at the end effector and
+//! in where the springs of the joints act. `compensation` adds torques that springs cannot exert,
+//! against friction and an undeclared load. The session's guards bound these torques.
 //!
 //! # The hybrid law
 //!
@@ -21,13 +21,13 @@
 //! Kp  = J' Kx J + Kq        Kd = J' Kxd J + Kqd
 //! ```
 //!
-//! With the reference in joint space the spring at the end effector needs no separate pose error:
+//! The reference is in joint space, so the spring at the end effector needs no separate pose error:
 //! `J (q_ref - q)` is that error to first order, and the leash keeps it small. The robot
 //! compensates gravity, and part of the friction.
 //!
-//! `g` and the low-pass on `dq_ref` are [`Gains::feedforward`] and its cutoff. With
-//! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` pass through the null-space
-//! projection of the [operational-space law](operational) first.
+//! `g` is [`Gains::feedforward`]; its cutoff sets the low-pass on `dq_ref`. With
+//! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` first pass through the null-space
+//! projection of the [operational-space law](operational).
 
 pub(crate) mod blended_gains;
 pub(crate) mod compensation;

@@ -9,10 +9,10 @@
 //! ```
 //!
 //! The idea is Khatib's (IEEE Journal on Robotics and Automation 3(1), 1987): wrenches follow from
-//! wanted accelerations through the inertia `Lambda`. So an error along one axis moves the arm
-//! along that axis, although its inertia differs between directions. In his law an acceleration is
-//! `(Kx e + Kxd de) / m`, with one mass for all axes. Here each axis has the mass that the arm
-//! shows along it, and stiffness and damping enter from both sides of `Lambda`:
+//! desired accelerations through the inertia `Lambda`. An error along one axis therefore moves the
+//! arm along that axis, although its inertia differs between directions. In Khatib's law an
+//! acceleration is `(Kx e + Kxd de) / m`, with one mass for all axes. Here each axis has the arm's
+//! own mass along this axis, and stiffness and damping enter from both sides of `Lambda`:
 //!
 //! - gains keep their units and their meaning: a displacement along an axis causes exactly `Kx`
 //!   along it. If an axis is coupled with others, forces across are added;
@@ -21,16 +21,16 @@
 //! - the wrench is bounded near singularities: for every `Lambda`, the entries of `Sk Lambda Sk`
 //!   are at most `sqrt(Kx_i Kx_j)`.
 //!
-//! With equal gains and masses along the axes it is exactly Khatib's law. `Lambda` is computed for
-//! position and rotation separately, each with the other left free. For both together the arm
-//! weighs five times as much at the ready pose, because position and rotation of a hand are
-//! coupled. In the null-space projection of the joints' springs, `Lambda6` is the full one, damped
-//! near singularities. There the springs of the joints also act in the directions that the end
-//! effector has lost.
+//! With equal gains and masses along the axes the law is exactly Khatib's. `Lambda` is computed for
+//! position and rotation separately, each with the other left free. For both together the arm has
+//! five times the mass at the ready pose, because position and rotation of a hand are coupled. The
+//! null-space projection of the joints' springs uses the full matrix, `Lambda6`, damped near
+//! singularities. There the springs of the joints also act in the directions that the end effector
+//! has lost.
 //!
 //! At a wall where no friction holds the arm, forces across also occur: the arm slides along the
-//! wall until they are balanced. It slides about two thirds of its goal's depth behind the wall
-//! (simulated, ready pose, downwards).
+//! wall until these forces are balanced. It slides about two thirds of its goal's depth behind the
+//! wall (simulated, ready pose, downwards).
 //!
 //! The law has no feedforward of the reference's acceleration. The inertia includes the links and,
 //! nominally, the rotors.
@@ -40,7 +40,7 @@ use nalgebra::{Matrix3, Matrix6};
 use crate::law::task_space::TaskSpace;
 
 /// Returns `S Lambda S` of springs or dampers at the end effector, base axes: the response to an
-/// error there.
+/// error at the end effector.
 pub(crate) fn coupled(gains: &[f64; 6], space: &TaskSpace) -> Matrix6<f64> {
     let mut coupled = Matrix6::zeros();
     for (at, inertia) in [(0, space.translational()), (3, space.rotational())] {

@@ -1,14 +1,14 @@
-//! The inertia at the end effector, factorised once per cycle for law and guards.
+//! The inertia at the end effector, factorised once per cycle for laws and guards.
 //!
 //! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
 //! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation
 //! 3(1), 1987). The torques `tau` exert the wrench `Lambda J M^-1 tau` on a support that holds the
 //! end effector still.
 //!
-//! `W` is exact where the arm can move in all directions. Near a singularity it is damped. As the
+//! `W` is exact if the arm can move in all directions. Near a singularity it is damped. As the
 //! inertia along any axis exceeds its value in [`GREATEST_INERTIA`], damping grows smoothly from
-//! zero to one over that value. So nothing jumps and nothing divides by zero, and no inertia along
-//! an axis exceeds four thirds of the greatest.
+//! zero to one over that value. Therefore nothing jumps and nothing divides by zero, and no inertia
+//! along an axis exceeds four thirds of the greatest.
 
 use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use nalgebra::{Cholesky, Const, Matrix3, SMatrix};
@@ -42,8 +42,8 @@ impl TaskSpace {
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
-    /// An unphysical `mass`, as from an impossible load, is replaced by the identity: the geometry
-    /// remains.
+    /// Replaces an unphysical `mass`, for example of an impossible load, by the identity. The
+    /// geometry remains valid.
     fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Self {
         let mass = Cholesky::new(*mass)
             .unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::<f64, 7, 7>::identity()));
@@ -74,11 +74,11 @@ impl TaskSpace {
         self.inertia.solve(&self.root.tr_mul(&half))
     }
 
-    /// Returns the joints' own motion when the end effector is moved and its rotation left free,
-    /// `M^-1 J' Lambda` of the position alone, `[rad/m]`. Of all such motions it has the least
-    /// kinetic energy.
+    /// Returns the motion of the joints when the end effector's position is moved and its rotation
+    /// is free: `M^-1 J' Lambda` of the position alone, `[rad/m]`. Of all such motions this one has
+    /// the least kinetic energy.
     ///
-    /// Its transpose maps torques to the force on a hand that holds the end effector at a point,
+    /// The transpose maps torques to the force on a hand that holds the end effector at a point,
     /// `[N]`.
     pub(crate) fn yielding(&self) -> SMatrix<f64, 7, 3> {
         let mut yielding = self.root.fixed_columns::<3>(0) * self.blocks[0];
@@ -88,18 +88,18 @@ impl TaskSpace {
         yielding
     }
 
-    /// Inertia of the end effector's position, its rotation left free.
+    /// Returns the inertia of the end effector's position, with its rotation left free.
     pub(crate) fn translational(&self) -> &Matrix3<f64> {
         &self.blocks[0]
     }
 
-    /// Inertia about the end effector, its position left free.
+    /// Returns the inertia about the end effector, with its position left free.
     pub(crate) fn rotational(&self) -> &Matrix3<f64> {
         &self.blocks[1]
     }
 }
 
-/// Returns the factorisation of a mobility, damped where some inertia exceeds the `greatest`.
+/// Returns the factorisation of a mobility, damped where an inertia exceeds `greatest`.
 fn damped<const N: usize>(
     mobility: &SMatrix<f64, N, N>,
     greatest: &[f64; N],

@@ -5,12 +5,13 @@ use std::io;
 
 use super::Party;
 
-/// Reason why a connection to a robot or an end effector has ended. `Display` is the text of the
-/// reference client where it has one.
+/// Reason why a connection to a robot or an end effector has ended. `Display` prints the text of
+/// the reference client where that client has the same reason.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloseReason {
-    /// Caller: this program closed it: `shutdown`, a cancelled token, or the last handle dropped.
+    /// Caller: this program closed the connection: by `shutdown`, a cancelled token, or dropping
+    /// the last handle.
     #[error("this program has closed the connection")]
     ClosedByUs,
     /// Link: the other side closed it.
@@ -24,7 +25,7 @@ pub enum CloseReason {
         /// Failed operation, in the words of the reference client.
         text: String,
     },
-    /// Peer: it left the protocol in a way that no later message can repair.
+    /// Peer: a message breaks the protocol in a way that no later message can repair.
     #[error("{text}")]
     Protocol {
         /// Expected and received values.
@@ -33,13 +34,13 @@ pub enum CloseReason {
     /// Host: the control thread has ended or does not respond.
     #[error("the control thread failed: {text}")]
     ThreadEnded {
-        /// Evidence of that.
+        /// Evidence for this.
         text: String,
     },
     /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
     #[error("no robot state for {} ms more than the link timeout", .silence.as_millis())]
     Silent {
-        /// Length of the silence, from when it was noticed.
+        /// Length of the silence, from the moment when it was noticed.
         silence: Duration,
     },
     /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
@@ -49,14 +50,14 @@ pub enum CloseReason {
         attempts: u32,
         /// Time since the connection was lost.
         after: Duration,
-        /// Error of the last one.
+        /// Error of the last attempt.
         text: String,
     },
     /// Robot: after the connection was lost, another robot answered. Models and goals are made for
     /// the previous robot.
     #[error("another robot answers: {text}")]
     AnotherRobot {
-        /// Difference.
+        /// Description of the difference.
         text: String,
     },
     /// Caller: the runtime that served the connection was shut down.
@@ -65,7 +66,7 @@ pub enum CloseReason {
 }
 
 impl CloseReason {
-    /// True if this program, or its runtime, has closed it: nothing was lost.
+    /// True if this program, or its runtime, has closed the connection: nothing was lost.
     pub fn is_ours(&self) -> bool {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }

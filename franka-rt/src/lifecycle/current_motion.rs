@@ -1,4 +1,4 @@
-//! One motion: the reports of the two sides, and the outcome that follows from them.
+//! One motion: the reports of robot and thread, and the resulting outcome.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::stats::MotionTimes;
 /// Fault of a robot that starts a motion and shows no state of it.
 pub(super) const NEVER_SHOWN: &str = "the robot's states never showed the motion's modes";
 
-/// One motion, with the reports of the two sides so far.
+/// One motion, with the reports of robot and thread so far.
 #[derive(Debug)]
 pub(super) struct CurrentMotion {
     pub(super) motion: MotionId,
@@ -26,16 +26,16 @@ pub(super) struct CurrentMotion {
     pub(super) command: CommandSide,
     pub(super) thread: ThreadSide,
     pub(super) deadline: Option<Duration>,
-    /// Step that the robot had not taken by a deadline, so that it was asked to stop.
+    /// Step that the robot had not taken by a deadline. The robot was then asked to stop.
     pub(super) given_up: Option<&'static str>,
-    /// Time since which its last command is out.
+    /// Time at which the last command was sent.
     pub(super) finishing: Option<Duration>,
-    /// Reason why its program could not continue.
+    /// Reason why the motion's program could not continue.
     pub(super) failure: Option<MotionError>,
-    /// Time since which a `StopMove` is out, or about to be, because a stop was asked for, the
-    /// program failed, or the arm does not stop.
+    /// Time at which a `StopMove` was sent, or is about to be. The reason is a request to stop, a
+    /// failed program, or an arm that does not stop.
     pub(super) stopped: Option<Duration>,
-    /// Counts of the times of its cycles, written by the thread.
+    /// Counts of the times of the motion's cycles, written by the thread.
     pub(super) times: Arc<MotionTimes>,
 }
 
@@ -46,21 +46,21 @@ pub(super) struct CurrentMotion {
     reason = "one per motion, in a box of its own already"
 )]
 pub(super) enum Work {
-    /// Goals, one superseding the other.
+    /// Goals, each superseding the previous one.
     Goals(Goals),
-    /// A program of the user's.
+    /// A program of the user.
     Program(UserProgram),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum CommandSide {
-    /// The `Move` is out.
+    /// The `Move` was sent.
     Requested,
     /// The robot has started the motion.
     Started,
-    /// It did not end in time; a `StopMove` is out.
+    /// The motion did not end in time, and a `StopMove` was sent.
     Cancelled,
-    /// The robot has reported how it ended, or why it did not begin.
+    /// The robot has reported the end of the motion, or why it did not begin.
     Ended(MoveStatus),
 }
 
@@ -76,8 +76,8 @@ pub(super) enum ThreadSide {
 }
 
 impl CurrentMotion {
-    /// Returns the outcome of the motion with a robot of this model, once both sides have ended. If
-    /// the outcome is an error with a log, the log moves into it.
+    /// Returns the outcome of the motion with a robot of this model, once robot and thread have
+    /// ended it. If the outcome is an error with a log, moves the log into it.
     pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Outcome {
         let ThreadSide::Ended(ended) = &mut self.thread else {
             unreachable!("a motion concludes when its thread side has ended")
@@ -133,14 +133,14 @@ impl CurrentMotion {
         }))
     }
 
-    /// True if one of its sides has ended, or the robot was asked to stop it.
+    /// True if robot or thread has ended the motion, or the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
         self.stopped.is_some()
             || matches!(self.thread, ThreadSide::Ended(_))
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
     }
 
-    /// True if it is coming to its end, and no caller needs it to continue.
+    /// True if the motion is about to end, and no caller needs it to continue.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
             || match &self.work {
@@ -150,14 +150,15 @@ impl CurrentMotion {
             }
     }
 
-    /// Deadline of a motion under way; none unless its last command is out or a stop was asked for.
+    /// Returns the deadline of a motion under way; `None` unless its last command was sent or a
+    /// stop was requested.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
         let since = self.finishing.or(self.stopped);
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// True if it takes goals from callers outside a session: it is neither a program nor a lasting
-    /// session.
+    /// True if the motion accepts goals from callers outside a session. Programs and lasting
+    /// sessions do not.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
             Work::Goals(goals) => goals.owner == Owner::Goal || !goals.goes_on(),
@@ -170,8 +171,8 @@ impl CurrentMotion {
         matches!(self.command, CommandSide::Requested | CommandSide::Started)
     }
 
-    /// Makes the thread end the motion, and returns the order that this takes, unless it was sent
-    /// before: no caller waits for the motion any more. An arm on its way to a goal brakes; a
+    /// Returns the order that makes the thread end the motion, unless the order was sent before.
+    /// Called when no caller waits for the motion any more. An arm on its way to a goal brakes. A
     /// program gets no more states, and the robot stops without commands.
     pub(super) fn abandon(&mut self) -> Option<Order> {
         if let Work::Goals(goals) = &mut self.work {
@@ -183,7 +184,7 @@ impl CurrentMotion {
     }
 }
 
-/// Returns the outcome of a motion of a program that finished well or was stopped as asked.
+/// Returns the outcome of a motion of a program that succeeded or was stopped as asked.
 fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     match ended.ending {
         Ending::Finished => {
@@ -202,7 +203,7 @@ fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     }
 }
 
-/// Reason why a program could not continue, in words that can cross tasks.
+/// Converts the reason why a program could not continue into an error that tasks can share.
 impl From<Failure> for MotionError {
     fn from(failure: Failure) -> Self {
         match failure {
@@ -219,8 +220,8 @@ impl From<Failure> for MotionError {
 }
 
 impl ControlError {
-    /// Returns the error of a robot of this model that ended a motion with `refusal`. Takes the log
-    /// of the motion.
+    /// Returns the error for a robot of this model that ended a motion with `refusal`. Moves the
+    /// log of the motion into it.
     fn new(refusal: Refusal, ended: &mut Ended, model: &Arc<Model>) -> Box<Self> {
         let log = core::mem::take(&mut ended.log);
         Box::new(Self {
@@ -243,8 +244,8 @@ impl ControlError {
     }
 }
 
-/// True if the robot did not let the motion begin, rather than ended it before the thread saw it
-/// run.
+/// True if the robot did not let the motion begin. False if the robot ended the motion before the
+/// thread saw it run.
 fn is_rejection(status: MoveStatus) -> bool {
     matches!(
         status,

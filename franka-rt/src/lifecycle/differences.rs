@@ -1,4 +1,4 @@
-//! Differences of a robot that answers after a lost connection.
+//! Differences between the robots before and after a lost connection.
 
 use core::fmt;
 
@@ -7,15 +7,16 @@ use core::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Differences {
-    /// Its description of itself, or the fact that it has one.
+    /// True if the description differs, or only one of the robots has one.
     pub description: bool,
-    /// A frame of its end effector (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or the end effector's mass,
-    /// centre of mass or inertia.
+    /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or the end
+    /// effector's mass, centre of mass or inertia.
     pub frames: bool,
-    /// Its clock advanced by another time than has passed: it was restarted, or is another robot.
+    /// True if the clock advanced by another time than has passed: the robot was restarted, or is
+    /// another one.
     pub clock: bool,
-    /// The first joint, from 1, that is more than 5 mrad from where it was. A joint that moved may
-    /// also have run on for as long as braking takes.
+    /// The first joint, from 1, that is more than 5 mrad from its earlier position. A joint that
+    /// moved may also have continued while it braked.
     pub joint: Option<u8>,
 }
 
@@ -26,7 +27,7 @@ impl Differences {
     }
 }
 
-/// One line, such as `its clock does not continue, as after a restart; joint 3 has moved`.
+/// Prints one line, such as `its clock does not continue; joint 3 is elsewhere`.
 impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flags = [

@@ -1,4 +1,4 @@
-//! The end of a motion: its goals resolve, and the motion that waits begins.
+//! The end of a motion: its goals resolve, and the waiting motion begins.
 
 use core::time::Duration;
 
@@ -10,13 +10,13 @@ use super::{Lifecycle, LifecyclePhase, MotionError, MotionReport, NewMotion, Out
 use crate::driver::{Ended, Ending, Program};
 use crate::session::{GoalId, OnArrival, Target};
 
-/// Reason why no motion begins: the previous motion was given up, and does not end.
+/// Reason why no motion begins: the previous motion was given up, but the robot still runs it.
 pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
     what: "the robot's states still show the previous motion, which it was asked to stop",
 };
 
 impl Lifecycle {
-    /// Takes note that a motion is over for the thread.
+    /// Notes that a motion has ended for the thread.
     pub(super) fn on_ended(&mut self, ended: Ended, now: Duration) {
         if let Program::Target(session) = &ended.program {
             self.learned = session.learned();
@@ -47,8 +47,8 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion when its thread side has ended and nothing more is expected from the command
-    /// side.
+    /// Ends the motion when the thread has ended it and no more replies are expected on the command
+    /// connection.
     pub(super) fn conclude(&mut self, now: Duration) {
         let LifecyclePhase::UnderWay(current) = &self.phase else {
             return;
@@ -66,8 +66,8 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, both of whose sides have ended, by their reports. If the robot has not
-    /// reported the end of the motion, it is asked to stop it.
+    /// Ends the motion, which robot and thread have ended, according to their reports. If the robot
+    /// has not reported the end of the motion, asks the robot to stop it.
     fn finish(&mut self, now: Duration) {
         let Some(mut current) = self.take_current() else {
             return;
@@ -109,8 +109,8 @@ impl Lifecycle {
     }
 
     /// Gives up the motion under way, if any, and resolves it at once: with the failure of its
-    /// program if there was one, which came first, otherwise with `error`. Unless the robot has
-    /// reported the end, `StopMove` is sent. A thread that still runs the motion brakes (goals) or
+    /// program if there was one, because that came first, otherwise with `error`. Sends `StopMove`
+    /// unless the robot has reported the end. A thread that still runs the motion brakes (goals) or
     /// sends no more commands (programs).
     pub(super) fn give_up(&mut self, error: MotionError, now: Duration) {
         let Some(mut current) = self.take_current() else {
@@ -149,8 +149,8 @@ impl Lifecycle {
         self.follow(&outcome.map(drop), counted, now);
     }
 
-    /// Starts the waiting motion, if any, once no motion is under way. `before` is the end of the
-    /// previous one.
+    /// Starts the waiting motion, if any, once no motion is under way. `before` is the outcome of
+    /// the previous motion.
     fn follow(&mut self, before: &Result<(), MotionError>, counted: &Counted, now: Duration) {
         if let LifecyclePhase::Idle = self.phase
             && let Some(next) = self.next.take()
@@ -159,8 +159,8 @@ impl Lifecycle {
         }
     }
 
-    /// Begins `motion` after another one, which has ended with `before`. If it only asks the arm to
-    /// stop, it is resolved at once from that end, and no motion is started.
+    /// Begins `motion` after another motion, which has ended with `before`. If `motion` only asks
+    /// the arm to stop, resolves it at once with that outcome, and starts no motion.
     fn take_up(
         &mut self,
         motion: NewMotion,
@@ -207,7 +207,7 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the session of a motion, and goals that came after its end.
+    /// Resolves the session of a motion, and the goals that came after its end.
     fn resolve_session(&mut self, after_end: Vec<GoalId>, end: Option<(GoalId, Outcome)>) {
         let reason = match &end {
             Some((_, Err(error))) => error.clone(),
@@ -224,7 +224,7 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the motion that waits, if any, with `error`: it does not begin.
+    /// Resolves the waiting motion, if any, with `error`, because it does not begin.
     pub(super) fn resolve_next(&mut self, error: MotionError) {
         if let Some(next) = self.next.take() {
             self.resolve(next.id(), Err(error));

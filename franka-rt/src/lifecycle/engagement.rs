@@ -16,22 +16,22 @@ use crate::session::{
 };
 use crate::team::Member;
 
-/// Options of a session that goes from goal to goal, in addition to its goals.
+/// Options of a session that lasts from goal to goal, in addition to its goals.
 #[derive(Debug, Default)]
 pub struct Engagement {
-    /// The deadman that it is bound to.
+    /// The deadman that the session is bound to.
     pub deadman: Option<DeadmanMonitor>,
-    /// Its part in a team.
+    /// The session's membership in a team.
     pub team: Option<Member>,
-    /// Keep-out regions of the arm, in the place of the regions of [`Lifecycle::keep_out_of`]; up
-    /// to [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
+    /// Keep-out regions of the arm, which replace the regions of [`Lifecycle::keep_out_of`]. At
+    /// most [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX) regions, in the base frame.
     pub keep_out: Option<Vec<Obstacle>>,
-    /// The greatest speed of any joint, the flange and the end effector, `[m/s]`: see
+    /// The highest speed of any joint, the flange and the end effector, `[m/s]`: see
     /// [`Guard::SpeedCap`](crate::session::Guard::SpeedCap).
     pub speed_cap: Option<f64>,
     /// Backend that turns setpoints into torques.
     pub backend: Backend,
-    /// The observer of its cycles.
+    /// The observer of the session's cycles.
     pub observer: Option<Observer>,
 }
 
@@ -53,7 +53,7 @@ impl Engagement {
     }
 }
 
-/// Changes to the goal under way, except for its destination.
+/// Changes to the goal under way; its destination stays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
     /// Stiffness and damping; the gains fade over 0.3 s.
@@ -64,10 +64,10 @@ pub struct Tuning {
     pub force_cap: Option<ForceCap>,
     /// Largest distance of the reference ahead of the arm. It fades as the gains do.
     pub leash: Option<Leash>,
-    /// Distance that the arm may be pushed off its way.
+    /// Distance that the arm may be pushed off its path.
     pub deviation: Option<Deviation>,
-    /// Posture for the arm's free direction, joint positions in `[rad]`, like the `posture` of a
-    /// goal.
+    /// Posture for the arm's free direction, the null space of the end effector's pose: joint
+    /// positions in `[rad]`, like the `posture` of a goal.
     pub posture: Option<[f64; 7]>,
 }
 
@@ -93,8 +93,8 @@ impl Tuning {
         }
     }
 
-    /// Returns the goal with these changes. A goal that guides keeps its gains: its free axes have
-    /// no springs.
+    /// Returns the goal with these changes. A goal of hand guiding keeps its gains, because its
+    /// free axes have no springs.
     #[must_use]
     pub fn apply(&self, goal: Goal) -> Goal {
         Goal {
@@ -113,7 +113,7 @@ impl Tuning {
 }
 
 impl Lifecycle {
-    /// Takes a goal for the session `engaged`. It supersedes the previous goal.
+    /// Accepts a goal for the session `engaged`. The goal supersedes the previous one.
     pub(super) fn submit_within(
         &mut self,
         engaged: GoalId,
@@ -138,16 +138,16 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Hands a chunk to the session `engaged`. It replaces the previous chunk, in the way that its
-    /// own options define. Any other goal is superseded by `goal`, which names the chunks until
-    /// another goal comes, and has their speed and stiffness. The arm rests at the last point.
+    /// Passes a chunk to the session `engaged`. The chunk replaces the previous one as its own
+    /// options define. `goal` supersedes any other goal, names the chunks until another goal comes,
+    /// and has their speed and stiffness. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::begin`]. [`MotionError::Held`] while a deadman holds the arm. Once, the reason
-    /// why the previous chunk was given up, as [`MotionError::Held`] or [`MotionError::Braked`].
+    /// As [`Self::begin`]. [`MotionError::Held`] while a deadman holds the arm. If the previous
+    /// chunk was given up, once [`MotionError::Held`] or [`MotionError::Braked`] with the reason.
     /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for a
     /// chunk of another clock. [`GoalError::Outdated`] for a chunk with an older observation than
-    /// the previous one, and [`GoalError::Chunks`] if too many are under way.
+    /// the previous chunk, and [`GoalError::Chunks`] if too many chunks are under way.
     pub fn chunk(
         &mut self,
         engaged: GoalId,
@@ -222,7 +222,7 @@ impl Lifecycle {
     /// Tunes the current goal of the session `engaged`. Torques do not step.
     ///
     /// # Errors
-    /// As [`Self::begin`]; everything stays as it was then.
+    /// As [`Self::begin`]; then nothing changes.
     pub fn tune(
         &mut self,
         engaged: GoalId,
@@ -255,7 +255,7 @@ impl Lifecycle {
     }
 
     /// Ends the session `engaged` as asked: brakes, releases the arm, ends the motion. Its goal
-    /// resolves as [`MotionError::Stopped`], the session itself well. Without effect on a session
+    /// resolves as [`MotionError::Stopped`], the session itself as `Ok`. Has no effect on a session
     /// that is ending or has ended.
     pub fn disengage(&mut self, engaged: GoalId) {
         if self.check_engaged(engaged).is_ok() {
@@ -263,9 +263,9 @@ impl Lifecycle {
         }
     }
 
-    /// Returns what follows the end of a goal: more goals, if its session goes from goal to goal. A
-    /// session that is asked to end does end, also if the goal that ends it is taken back: its
-    /// owner may already know that it takes no more goals.
+    /// Returns what follows the end of a goal: more goals, if its session lasts from goal to goal.
+    /// A session that was asked to end does end, even if the goal that ends it is cancelled: its
+    /// owner may already know that it accepts no more goals.
     pub(super) fn end_of(&self, id: GoalId) -> OnArrival {
         let waits = self.next.as_ref().is_some_and(|next| next.id() == id);
         let of_session = |goals: &Goals| goals.owner != Owner::Goal && goals.goes_on();
@@ -276,17 +276,17 @@ impl Lifecycle {
         }
     }
 
-    /// True if the motion under way has ended on one side, or the robot was asked to stop it.
+    /// True if robot or thread has ended the motion under way, or the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
         matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }
 
-    /// True if a session that goes from goal to goal has the arm.
+    /// True if a session that lasts from goal to goal controls the arm.
     pub(super) fn is_engaged(&self) -> bool {
         self.goals().is_some_and(|goals| goals.owner != Owner::Goal)
     }
 
-    /// Ends the session of that name. Returns true if it has the arm.
+    /// Ends the session of that name. Returns true if it controls the arm.
     pub(super) fn release(&mut self, engaged: GoalId) -> bool {
         let ending = self.is_ending();
         let Some(goals) = self.goals_mut() else {

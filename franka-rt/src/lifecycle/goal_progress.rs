@@ -20,36 +20,36 @@ pub(super) struct Goals {
     pub(super) newest: Writer<Goal>,
     /// The newest goal.
     pub(super) current: Goal,
-    /// True if its owner has taken it back.
+    /// True if the owner of the goal has cancelled it.
     pub(super) cancelled: bool,
-    /// Result of the motion, by the reports of its session.
+    /// Result of the motion, according to the reports of its session.
     pub(super) verdict: Verdict,
     pub(super) owner: Owner,
     /// Pulse of the deadman that the session is bound to.
     pub(super) pulse: Option<Arc<Pulse>>,
     /// Backend that turns setpoints into torques.
     pub(super) backend: Backend,
-    /// The way of chunks to the session.
+    /// Sender of chunks to the session.
     pub(super) chunks: ChunkWriter,
     pub(super) stream: ChunkStream,
-    /// Goals that came for that session after it had ended and before its outcome was known.
+    /// Goals that came for that session after its end and before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
 }
 
-/// Receiver of the end of a motion.
+/// Receiver of the outcome of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Owner {
-    /// The caller of its goal: the motion ends with it.
+    /// The caller of the goal: the motion ends with the goal.
     Goal,
-    /// A session that lasts from goal to goal. The name belongs to the caller that awaits its end,
-    /// and between goals to the goal that the arm holds.
+    /// A session that lasts from goal to goal. The name is of the caller that awaits the session's
+    /// end, and between goals also of the goal that the arm holds.
     Engaged(GoalId),
-    /// Such a session, whose end was asked for.
+    /// A session that lasted from goal to goal, and whose end was requested.
     Disengaged(GoalId),
 }
 
 impl Owner {
-    /// Returns the name of the session that goes, or went, from goal to goal.
+    /// Returns the name of the session that lasts, or lasted, from goal to goal.
     pub(super) fn session(self) -> Option<GoalId> {
         match self {
             Self::Goal => None,
@@ -58,7 +58,7 @@ impl Owner {
     }
 }
 
-/// Reports of the session of a motion on its end.
+/// Report of the session of a motion on its end.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -66,30 +66,30 @@ impl Owner {
 )]
 pub(super) enum Verdict {
     Open,
-    /// It cannot begin with the tool that the robot has.
+    /// The session cannot begin with the tool that the robot has.
     BadTool,
-    /// It has settled a goal, the current one or one before it.
+    /// The session has settled a goal: the current goal or an earlier one.
     Settled(Settled),
 }
 
-/// The chunks of a session, which have one goal until another comes.
+/// The chunks of a session, which share one goal until another goal comes.
 #[derive(Clone, Debug)]
 pub(super) enum ChunkStream {
-    /// The next chunk begins with its own goal.
+    /// There is no goal of chunks; the next chunk begins with its own goal.
     None,
-    /// The newest chunk belongs to this goal, and the next one continues it while that is the
-    /// current goal. The path of a goal is no such chunk; the next goal or chunk supersedes it.
+    /// The newest chunk belongs to this goal, and the next chunk continues it while that is the
+    /// current goal. The path of a goal is no such chunk: the next goal or chunk supersedes it.
     Of {
         goal: GoalId,
-        /// The observation that the newest chunk names, `message_id`.
+        /// `message_id` of the observation that the newest chunk was computed from.
         observed_at: Option<u64>,
     },
-    /// Reason why its goal was given up, which the next chunk returns: chunks have no caller that
-    /// awaits their end.
+    /// Reason why the goal of the chunks was given up. The next chunk returns it, because chunks
+    /// have no caller that awaits their end.
     GivenUp(MotionError),
 }
 
-/// Report of the session on the goal it settled.
+/// Report of the session on the goal that it settled.
 #[derive(Clone, Debug)]
 pub(super) struct Settled {
     pub(super) goal: GoalId,
@@ -97,12 +97,12 @@ pub(super) struct Settled {
     pub(super) duration_ms: u64,
     pub(super) compensation: Option<[f64; 7]>,
     pub(super) reacted: Option<Reacted>,
-    /// Counts of the motion by then.
+    /// Counts of the motion up to then.
     pub(super) counted: Counted,
 }
 
 impl Goals {
-    /// A separate motion to `goal`, which `newest` holds already.
+    /// Returns a separate motion to `goal`, which `slot` holds already.
     pub(super) fn new(goal: Goal, newest: Writer<Goal>, chunks: ChunkWriter) -> Self {
         Self {
             newest,
@@ -127,7 +127,7 @@ impl Goals {
         Ok(())
     }
 
-    /// True if a chunk or a path can be sent. Frees those that the session no longer needs.
+    /// True if a chunk or a path can be sent. Frees the chunks that the session no longer needs.
     pub(super) fn has_room(&mut self) -> bool {
         while let Some(done) = self.chunks.collect() {
             drop(done);
@@ -152,7 +152,7 @@ impl Goals {
     }
 
     /// Continues with `goal`. Returns the outcome of the previous goal, with `reason` if it was not
-    /// reached, unless the session held the arm there.
+    /// reached; `None` if the session held the arm there.
     pub(super) fn supersede(
         &mut self,
         goal: Goal,
@@ -172,13 +172,13 @@ impl Goals {
         (self.owner.session() != Some(previous)).then_some((previous, result))
     }
 
-    /// True if goals are still taken.
+    /// True if the motion still accepts goals.
     pub(super) fn goes_on(&self) -> bool {
         self.current.on_arrival != OnArrival::ReportAndFinish
     }
 
-    /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
-    /// on. Returns its outcome, unless a caller has received it before.
+    /// Notes that a goal of the session `engaged` has ended, and that the arm is held from now on.
+    /// Returns its outcome, unless a caller has received it before.
     pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
         let goal = self.current;
         if goal.id == engaged {
@@ -225,7 +225,7 @@ impl Goals {
         Some(result)
     }
 
-    /// Takes the reason why a goal of chunks was given up, if it was not reported.
+    /// Removes and returns the reason why a goal of chunks was given up, if it was not reported.
     pub(super) fn take_chunk_error(&mut self) -> Option<MotionError> {
         match core::mem::replace(&mut self.stream, ChunkStream::None) {
             ChunkStream::GivenUp(error) => Some(error),
@@ -245,8 +245,8 @@ impl Goals {
         }
     }
 
-    /// True if the motion ended well, or by a stop request to the robot (`told`), with an older
-    /// goal than the current one.
+    /// True if the current goal came too late for the motion: the motion ended as `Ok`, or by a
+    /// stop request to the robot (`told`), with an older goal than the current one.
     pub(super) fn came_too_late(&self, command: CommandSide, told: bool, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;
@@ -260,8 +260,8 @@ impl Goals {
                 .is_some_and(|last| last != self.current.id)
     }
 
-    /// Returns the outcome of the current goal in a motion that finished well, if the session
-    /// reported one.
+    /// Returns the outcome of the current goal in a motion that succeeded, if the session reported
+    /// one.
     pub(super) fn outcome(&self, ended: &Ended) -> Option<Outcome> {
         let settled = match &self.verdict {
             Verdict::Open => return None,
@@ -282,8 +282,8 @@ impl Goals {
     }
 
     /// Returns the outcome of the current goal in a motion that was stopped by a request to the
-    /// robot, since the arm did not stop. If the session reported an outcome before, that is the
-    /// outcome. Otherwise only a brake was asked for, or the goal was stopped.
+    /// robot, because the arm did not stop. If the session reported an outcome before, returns that
+    /// outcome. Otherwise only a brake was requested, or the goal was stopped.
     pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {
         let brakes = self.current.target == Target::Rest && !self.goes_on() && !self.cancelled;
         self.outcome(ended).unwrap_or_else(|| {

@@ -1,5 +1,5 @@
-//! Goals of target control: changed, superseded, cancelled (explicitly, or because their future was
-//! dropped: the arm is braked). `cancel` and `stop` decide for programs and sessions, too.
+//! Goals of target control: changing, superseding, cancelling. Cancelling, or dropping the goal's
+//! future, brakes the arm. `cancel` and `stop` handle programs and sessions, too.
 
 use core::time::Duration;
 
@@ -12,11 +12,11 @@ use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target}
 
 impl Lifecycle {
     /// Moves the target of a goal under way, for a goal that follows a stream. Returns true if the
-    /// goal is still being followed. A goal that was taken back is not, even if targets were still
-    /// on their way to it. The brake of a stop or of a session that ends is not, either.
+    /// arm still follows the goal. Returns false for a cancelled goal, even if targets were still
+    /// queued for it, and for the brake of a stop or of a session that ends.
     ///
     /// # Errors
-    /// [`GoalError`] for a target that is not accepted; the previous one stays.
+    /// [`GoalError`] for a target that is not accepted; the previous target stays.
     pub fn update(
         &mut self,
         id: GoalId,
@@ -38,8 +38,8 @@ impl Lifecycle {
         self.amend(id, change, Some(state))
     }
 
-    /// Lets a goal that is held come to its end: the motion settles at the newest target and
-    /// finishes, unless its session lasts from goal to goal. A path has its end anyway.
+    /// Marks a held goal as complete. The motion settles at the newest target and finishes, unless
+    /// its session lasts from goal to goal. A path ends in any case.
     pub fn close(&mut self, id: GoalId) {
         let current = self.goals().map(|goals| &goals.current);
         if current.is_some_and(|goal| goal.id == id && goal.along_path) {
@@ -59,8 +59,8 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Halts a motion on its way, within its budget, or resumes it. Without effect on a goal that
-    /// is no longer the newest, and on chunks, whose points have their times.
+    /// Halts a motion on its way, within its budget, or resumes it. Has no effect on a goal that is
+    /// no longer the newest, and on chunks, whose points have fixed times.
     pub fn pause(&mut self, id: GoalId, paused: bool) {
         let goal = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
@@ -76,9 +76,9 @@ impl Lifecycle {
         goal.paused = paused;
     }
 
-    /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
-    /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program
-    /// is taken back in the same way, by stopping the robot.
+    /// Cancels a goal. An arm on its way to the goal brakes as by a stop, and the goal resolves as
+    /// [`MotionError::Stopped`]. A program is cancelled by stopping the robot. Has no effect on a
+    /// goal that is no longer the newest.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if self.next.take_if(|next| next.id() == id).is_some() {
             return self.resolve(id, Err(MotionError::Stopped));
@@ -96,14 +96,14 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the target of target control, and the name of that goal. It is the last target
-    /// taken, whether or not the thread has it by now. `None` if target control moves nothing.
+    /// Returns the target of target control, and the name of its goal. This is the last accepted
+    /// target, even if the thread has not read it yet. `None` if target control moves nothing.
     pub fn heading(&self) -> Option<(GoalId, Target)> {
         let goal = self.newest()?;
         Some((goal.id, goal.hand_target()))
     }
 
-    /// The last goal taken.
+    /// Returns the last accepted goal.
     fn newest(&self) -> Option<&Goal> {
         match &self.next {
             Some(NewMotion::Goal { goal, .. }) => Some(goal),
@@ -111,7 +111,7 @@ impl Lifecycle {
         }
     }
 
-    /// The goals of the motion under way, if target control runs it.
+    /// Returns the goals of the motion under way, if target control runs it.
     pub(super) fn goals(&self) -> Option<&Goals> {
         match &self.phase {
             LifecyclePhase::UnderWay(current) => match &current.work {
@@ -133,8 +133,9 @@ impl Lifecycle {
         }
     }
 
-    /// Puts a goal in the place of all others, which resolve with `reason`. The goal joins the
-    /// motion under way if that takes goals, or else a motion that waits for its end.
+    /// Replaces all other goals, which resolve with `reason`, by `goal`. The goal joins the motion
+    /// under way if that motion accepts goals. Otherwise it becomes a motion that waits for the end
+    /// of that one.
     pub(super) fn replace(&mut self, goal: Goal, path: Option<Box<Chunk>>, reason: MotionError) {
         let is_ending = self.is_ending();
         let previous = match self.goals_mut() {
@@ -161,7 +162,7 @@ impl Lifecycle {
         }
     }
 
-    /// Changes a goal that has not been superseded. Returns true if there was one of that name.
+    /// Changes a goal that has not been superseded. Returns true if a goal of that name exists.
     pub(super) fn amend(
         &mut self,
         id: GoalId,

@@ -11,21 +11,20 @@
 //!                         +-----------> Abandoned ------------------> Idle (or the next motion)
 //! ```
 //!
-//! The thread is armed before the `Move` goes out, so the first state of the motion finds it ready.
-//! The two sides then report in any order; the motion is over when both have. Goals come and go
-//! meanwhile: a newer one supersedes the older within the same motion, a goal that came too late
-//! for it gets its own motion. A program of the user's has the motion for itself. A motion that is
-//! given up, because a reply cannot be read or a deadline has passed, resolves at once; the next
-//! one waits until the thread has seen the robot leave it. The phases `Stalled` and `Closed` can
-//! follow on any other. A stop outlives the motion that it brakes: it waits until a state shows an
-//! arm at rest. An arm that its own law does not bring to rest, because a hand moves it, is stopped
-//! by the robot: a motion that finished with it would end in a reflex.
+//! The thread is armed before the `Move` is sent, so the first state of the motion finds it ready.
+//! Robot and thread then report in any order; the motion has ended when both have reported its end.
+//! Goals come and go meanwhile: a newer goal supersedes the older one within the same motion, and a
+//! goal that came too late for it gets its own motion. A program of the user runs in a motion of
+//! its own. A motion that is given up, because a reply cannot be read or a deadline has passed,
+//! resolves at once; the next motion waits until the thread has seen the robot leave it. The phases
+//! `Stalled` and `Closed` can follow on any other phase. A stop outlives the motion that it brakes:
+//! it waits until a state shows an arm at rest. If a hand keeps the arm in motion, the robot stops
+//! it, because a motion that finished with a moving arm would end in a reflex.
 //!
 //! Inputs are [`Lifecycle::begin`], `update`, `close`, `cancel`, `stop`, `chunk`, `tune` and
-//! `disengage` (from users), the `on_*` methods (from the command connection, the thread and the
-//! clock); effects come out of
-//! [`Lifecycle::poll`]. No clock, socket or task in here: `now` is an argument, counted from any
-//! fixed moment.
+//! `disengage` (from users), and the `on_*` methods (from the command connection, the thread and
+//! the clock). Effects are returned by [`Lifecycle::poll`]. The lifecycle has no clock, socket or
+//! task: `now` is an argument, counted from any fixed moment.
 
 mod close_reason;
 mod current_motion;
@@ -69,34 +68,35 @@ pub use unready::Unready;
 /// Time for the robot to answer a `Move`, and to show the motion's modes after that.
 pub const START_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Time for the second of the two sides to end after the first has.
+/// Time for robot and thread to end a motion, counted from the first end of the two.
 pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Time for a stop to bring an arm that target control moves to rest. After that, the robot is
-/// asked to stop it. It then has [`END_TIMEOUT`] to end the motion, and as long to show an arm at
-/// rest.
+/// Time for a stop to bring an arm under target control to rest. After that, the robot is asked to
+/// stop the arm. The robot then has [`END_TIMEOUT`] to end the motion, and the same time to show an
+/// arm at rest.
 pub const BRAKE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Something to carry out, in the order given.
+/// An effect to carry out, in the order in which effects are returned.
 #[derive(Debug)]
 pub enum Output {
-    /// Hand this to the thread.
+    /// Pass this order to the thread.
     Order(Order),
-    /// Send this on the command connection. Replies to `Move` come back through
+    /// Send this request on the command connection. Replies to `Move` come back through
     /// [`Lifecycle::on_move_reply`] with this motion; replies to other requests are not awaited.
     Send {
-        /// The motion that it is about.
+        /// The motion of the request.
         motion: MotionId,
         /// The request.
         request: Request,
     },
-    /// Notify the caller that began this program or session, if it asked, that it runs now.
+    /// Notify the caller that began this program or session that it runs now, if the caller asked
+    /// for this.
     Began {
-        /// Its name.
+        /// Name of the program or session.
         id: GoalId,
     },
-    /// Send the outcome to the caller that awaits this goal. Each goal that was taken gets exactly
-    /// one outcome.
+    /// Send the outcome to the caller that awaits this goal. Each accepted goal gets exactly one
+    /// outcome.
     Resolve {
         /// The goal.
         goal: GoalId,
@@ -111,48 +111,48 @@ pub struct Lifecycle {
     model: Arc<Model>,
     version: Version,
     phase: LifecyclePhase,
-    /// Motion that waits for the motion under way, or an abandoned one, to end.
+    /// Motion that waits for the end of the motion under way, or of an abandoned motion.
     next: Option<NewMotion>,
-    /// The last session from goal to goal, if it did not end as asked, and its error.
+    /// The last session that lasted from goal to goal, if it did not end as asked, and its error.
     ended: Option<(GoalId, MotionError)>,
     /// Stops that have not resolved.
     stops: Vec<Stop>,
     motions: u64,
-    /// Cycles that the log of a motion holds.
+    /// Number of cycles that the log of a motion holds.
     log_size: usize,
     /// Silence of the robot after which a change that no state has shown counts as missing.
     link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
-    /// Earlier knowledge of the arm, until a session begins with it.
+    /// Earlier knowledge of the arm; `None` once a session has begun with it.
     known: Option<Box<Identified>>,
-    /// Values that sessions have learned of the arm.
+    /// Values that sessions have learned about the arm.
     learned: Learned,
     outputs: VecDeque<Output>,
 }
 
-/// Known state of the motion.
+/// Phase of the motion, as known.
 #[derive(Debug)]
 enum LifecyclePhase {
     Idle,
     UnderWay(Box<CurrentMotion>),
-    /// A motion was given up and has resolved, and the thread has not seen the robot end it. The
+    /// A motion was given up and has resolved, but the thread has not seen the robot end it. The
     /// next motion waits for that.
     Abandoned {
         motion: MotionId,
-        /// Deadline until which the next motion waits; after that, the error with which new ones
+        /// Deadline until which the next motion waits. After that, the error with which new motions
         /// are refused.
         deadline: Result<Duration, MotionError>,
     },
-    /// A thread that has borrowed the cycle does not run it, so that no motion can run.
+    /// A thread of the user has borrowed the cycle and does not run it. No motion can run.
     Stalled {
-        /// The motion that was given up for that, until the thread has ended it.
+        /// The motion that was given up because of this, until the thread has ended it.
         abandoned: Option<MotionId>,
     },
-    /// The connection is gone, for this reason; nothing starts any more.
+    /// The connection is gone, for this reason; no motion starts any more.
     Closed {
         reason: CloseReason,
-        /// The motion that is still braked, until the thread has ended it.
+        /// The motion that still brakes, until the thread has ended it.
         braking: Option<MotionId>,
     },
 }
@@ -165,8 +165,8 @@ impl LifecyclePhase {
 }
 
 impl Lifecycle {
-    /// Returns an idle lifecycle for a robot of this model, whose limits goals must keep, and
-    /// protocol `version`.
+    /// Returns an idle lifecycle for a robot of this model and protocol `version`. Goals must keep
+    /// the model's limits.
     pub fn new(model: Arc<Model>, version: Version) -> Self {
         Self {
             model,
@@ -200,12 +200,12 @@ impl Lifecycle {
         self
     }
 
-    /// The model of the robot.
+    /// Returns the model of the robot.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 
-    /// Returns the goal that `motion` would begin with under this host's law; `None` for a program,
+    /// Returns the goal that `motion` would begin with under this host's law. `None` for a program,
     /// and under the robot's controller.
     pub fn compliant_goal<'a>(&self, motion: &'a NewMotion) -> Option<&'a Goal> {
         let goals = self.goals().filter(|_| motion.is_within_a_session());
@@ -213,14 +213,13 @@ impl Lifecycle {
         motion.compliant_goal().filter(|_| compliant)
     }
 
-    /// Returns how far these gains are from the first oscillation of an arm in `state`: see
-    /// [`Margin::of`].
+    /// Returns the stability margin of these gains for an arm in `state`: see [`Margin::of`].
     pub fn margin(&self, gains: &Gains, state: &RobotState) -> Option<Margin> {
         Margin::of(gains, &self.model, state, self.version)
     }
 
     /// Begins the first session with the identified values of the arm, which were
-    /// [checked](Identified::check). The load that is declared then counts.
+    /// [checked](Identified::check). The load that is declared at that time counts.
     #[must_use]
     pub fn knowing(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
@@ -248,7 +247,7 @@ impl Lifecycle {
         }
     }
 
-    /// True if the thread is still needed after the end of the connection: to brake an arm that was
+    /// True if the thread is still needed after the end of the connection, to brake an arm that was
     /// on its way to a goal.
     pub fn is_braking(&self) -> bool {
         matches!(
@@ -260,12 +259,12 @@ impl Lifecycle {
         )
     }
 
-    /// The next effect to carry out.
+    /// Returns the next effect to carry out.
     pub fn poll(&mut self) -> Option<Output> {
         self.outputs.pop_front()
     }
 
-    /// The motion under way, if it is `motion`.
+    /// Returns the motion under way, if it is `motion`.
     fn current(&mut self, motion: MotionId) -> Option<&mut CurrentMotion> {
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) if current.motion == motion => Some(current),

@@ -1,4 +1,4 @@
-//! Motions that callers ask for: accepted or refused, kept waiting, started.
+//! Motions that callers request: accepted or refused, kept waiting, started.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -19,46 +19,47 @@ use crate::stats::MotionTimes;
 use crate::together::StartTicket;
 use crate::triple_buffer::triple_buffer;
 
-/// A motion to begin. Its name, a goal's or its own, must be a name that was never used before.
+/// A motion to begin. The name of its goal, or its own name, must never have been used before.
 #[derive(Debug)]
 pub enum NewMotion {
-    /// A motion to a goal. It supersedes every goal before it.
+    /// A motion to a goal. It supersedes every earlier goal.
     Goal {
         /// The goal, whose `id` names the motion.
         goal: Box<Goal>,
-        /// The path to its target, which is then the end of the path.
+        /// The path to the goal's target, which is then the end of the path.
         path: Option<Box<Chunk>>,
         /// The ticket of a common start with other robots, if any: the arm is held until all are
-        /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and takes it
-        /// out of the common start.
+        /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and removes
+        /// it from the common start.
         ticket: Option<StartTicket>,
         /// The session that the goal is for; `None` begins a separate motion.
         session: Option<GoalId>,
     },
-    /// A session that holds the arm where it is and then goes from goal to goal. It resolves when
+    /// A session that holds the arm where it is and then lasts from goal to goal. It resolves when
     /// the session has ended.
     Session {
-        /// Gains and budget to hold with; its `id` names the session.
+        /// Gains and budget for holding the arm. The goal's `id` names the session.
         goal: Box<Goal>,
-        /// Its options in addition to its goals.
+        /// Options of the session in addition to its goals.
         engagement: Engagement,
     },
-    /// A motion under a program of the user's. It supersedes nothing and is not superseded.
+    /// A motion under a program of the user. It supersedes nothing and is not superseded.
     Program {
-        /// Names the motion.
+        /// Name of the motion.
         id: GoalId,
         /// Program that answers the states.
         program: Program,
-        /// The motion to ask the robot for.
+        /// The motion to request from the robot.
         request: Box<MoveRequest>,
-        /// The ticket of a common start with other robots, for a control function: until all are
-        /// ready it is not called, and the driver holds the arm. Other programs do not wait.
+        /// The ticket of a common start with other robots, for a control function. Until all are
+        /// ready, the driver holds the arm and does not call the function. Other programs do not
+        /// wait.
         ticket: Option<StartTicket>,
     },
 }
 
 impl NewMotion {
-    /// A separate motion to `goal`.
+    /// Returns a separate motion to `goal`.
     pub fn to(goal: Goal) -> Self {
         Self::Goal {
             goal: Box::new(goal),
@@ -76,8 +77,8 @@ impl NewMotion {
         }
     }
 
-    /// Returns the goal that its own law begins with; `None` for a program, and for a session under
-    /// the robot's controller.
+    /// Returns the goal that this host's law begins with. `None` for a program, and for a session
+    /// under the robot's controller.
     pub(super) fn compliant_goal(&self) -> Option<&Goal> {
         match self {
             Self::Session { engagement, .. } if engagement.backend != Backend::Torques => None,
@@ -86,7 +87,7 @@ impl NewMotion {
         }
     }
 
-    /// True if it is a goal of a session.
+    /// True if the motion is a goal of a session.
     pub(crate) fn is_within_a_session(&self) -> bool {
         matches!(
             self,
@@ -97,7 +98,7 @@ impl NewMotion {
         )
     }
 
-    /// True if it begins together with motions of other robots.
+    /// True if the motion begins together with motions of other robots.
     pub(crate) fn has_ticket(&self) -> bool {
         match self {
             Self::Goal { ticket, .. } | Self::Program { ticket, .. } => ticket.is_some(),
@@ -105,31 +106,31 @@ impl NewMotion {
         }
     }
 
-    /// True if it yields to a newer goal.
+    /// True if a newer goal may supersede the motion.
     pub(crate) fn is_superseded_by_goals(&self) -> bool {
         matches!(self, Self::Goal { .. })
     }
 
-    /// True if it supersedes older goals.
+    /// True if the motion supersedes older goals.
     pub(crate) fn supersedes_goals(&self) -> bool {
         matches!(self, Self::Goal { ticket: None, .. })
     }
 }
 
 impl Lifecycle {
-    /// Begins a motion of a robot in `state`, or hands its goal to the motion under way. If the
-    /// motion under way is ending, or was stopped or cancelled, the new one waits for its end.
+    /// Begins a motion of a robot in `state`, or passes its goal to the motion under way. If the
+    /// motion under way is ending, or was stopped or cancelled, the new motion waits for its end.
     ///
     /// # Errors
-    /// Nothing is resolved then, everything stays as it was, and a ticket is dropped.
+    /// After an error nothing is resolved or changed, and a ticket is dropped.
     /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a
-    ///   path while as many chunks are under way as there can be.
+    ///   path while the maximum number of chunks is under way.
     /// - [`MotionError::Busy`] while another motion runs or waits and does not yield. A running
     ///   motion yields when it is ending, stopped or cancelled. Goals outside a session also yield
     ///   to a new goal without a ticket.
-    /// - [`MotionError::Start`] if the others of its common start will not come.
-    /// - For a goal of a session that has ended: [`MotionError::Disengaged`] if that was asked for,
-    ///   otherwise the error that ended it.
+    /// - [`MotionError::Start`] if the other motions of its common start will not come.
+    /// - For a goal of a session that has ended: [`MotionError::Disengaged`] if the end was
+    ///   requested, otherwise the error that ended the session.
     /// - [`MotionError::Protocol`] if the robot continues the previous motion, which was given up.
     /// - [`MotionError::ConnectionClosed`] after the connection was lost.
     pub fn begin(
@@ -187,7 +188,7 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Checks that a path can be handed to the motion under way.
+    /// Checks that a path can be passed to the motion under way.
     fn check_room(&mut self) -> Result<(), GoalError> {
         match self.goals_mut().map(Goals::has_room) {
             Some(false) => Err(TooManyChunks.into()),
@@ -229,8 +230,8 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Makes a motion wait until the previous motion has ended. A motion that waited before
-    /// resolves with `reason`.
+    /// Makes a motion wait until the previous motion has ended. An earlier waiting motion resolves
+    /// with `reason`.
     pub(super) fn wait(&mut self, motion: NewMotion, reason: MotionError) {
         if let Some(before) = self.next.replace(motion) {
             self.resolve(before.id(), Err(reason));
@@ -259,8 +260,8 @@ impl Lifecycle {
         }
     }
 
-    /// Starts a motion towards a goal; of a session that lasts from goal to goal if there is an
-    /// `engagement`.
+    /// Starts a motion to a goal; with an `engagement`, a motion of a session that lasts from goal
+    /// to goal.
     fn start_goal(
         &mut self,
         goal: Goal,

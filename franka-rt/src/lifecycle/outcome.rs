@@ -1,5 +1,5 @@
-//! Outcome of a motion: the value that its future resolves with. `franka_diagnosis` finds why the
-//! robot ended it.
+//! Outcome of a motion: the value that its future resolves with. `franka_diagnosis` finds the
+//! reason why the robot ended it.
 
 use core::fmt;
 use core::time::Duration;
@@ -20,52 +20,52 @@ use crate::together::StartFault;
 /// Outcome of a motion.
 pub type Outcome = Result<MotionReport, MotionError>;
 
-/// A motion that came to its end as asked.
+/// Report of a motion that ended as asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionReport {
-    /// From the first state that the goal answered to the arrival, in the robot's time, with all
-    /// pauses and delays; for a control function, to the end of the motion.
+    /// Duration from the first state that the goal answered to the arrival, in the robot's time,
+    /// with all pauses and delays. For a control function, the duration until the end of the
+    /// motion.
     ///
-    /// It does not include the time for which the arm must then rest there,
-    /// [`Settling::hold`](crate::session::Settling::hold), after which the motion resolves. The
-    /// counts below include that time.
+    /// The arm must then rest at the target for [`Settling::hold`](crate::session::Settling::hold)
+    /// before the motion resolves. The duration does not include that time; the counts below do.
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
-    /// The same after the arm was released at the end of the motion, before the robot's own
-    /// controller took it, which ignores the compensation. `None` without a target, where the arm
-    /// stays held, and where the robot's controller had it all the time.
+    /// Distance after the arm was released at the end of the motion. The robot's own controller,
+    /// which does not have the compensation, takes over after that. `None` without a target, if the
+    /// arm stays held, and if the robot's controller ran the motion.
     pub released_error: Option<PoseError>,
     /// Torques that compensated the friction and bias of each joint at the arrival, `[N m]`, in
-    /// addition to the springs. `None` without our law: under the robot's controller, and for a
-    /// control function.
+    /// addition to the springs. `None` if this driver's law did not run: under the robot's
+    /// controller, and for a control function.
     pub compensation: Option<[f64; 7]>,
     /// Values at the time when the condition of the motion became true, if the motion reacted to it
-    /// instead of arriving: see [`Reaction`](crate::session::Reaction). `None` if it has arrived
-    /// without, and for a motion without a condition.
+    /// instead of arriving: see [`Reaction`](crate::session::Reaction). `None` if the motion
+    /// arrived, or has no condition.
     pub reacted: Option<Reacted>,
-    /// States that never arrived while the motion ran.
+    /// Number of states that never arrived while the motion ran.
     pub lost_states: u64,
-    /// States that arrived meanwhile but were skipped, because a newer one had come before they
-    /// were looked at.
+    /// Number of states that arrived but were skipped, because a newer state had come before they
+    /// were read.
     pub skipped_states: u64,
     /// Lowest success rate that the robot reported while the motion ran, in `[0, 1]`.
     pub success_rate_min: f64,
-    /// Mean of it.
+    /// Mean success rate that the robot reported while the motion ran, in `[0, 1]`.
     pub success_rate_avg: f64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
     /// The least time that was left until the next state was due when a command departed. `None`,
-    /// as below, if no command left.
+    /// like the next options, if no command left.
     pub slack_min: Option<Slack>,
-    /// Commands that left only after the next state was due. No cause for alarm on a simulator that
-    /// waits for commands, which still has them in time.
+    /// Number of commands that left only after the next state was due. A simulator that waits for
+    /// commands still has them in time.
     pub overruns: u64,
     /// The longest cycle, with its phases.
     pub worst_cycle: Option<CycleTimes>,
-    /// Times between two states in a row, by this host's clock.
+    /// Times between two consecutive states, by this host's clock.
     pub interval: Option<Quantiles>,
     /// Times from the receipt of a state to the departure of its command.
     pub turnaround: Option<Quantiles>,
@@ -110,69 +110,68 @@ impl Counted {
     }
 }
 
-/// Reason why a motion ended short of its goal. Grouped by the party that can act on it.
+/// Reason why a motion ended short of its goal, grouped by the party that can act on it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// Caller: the goal was not accepted; the robot was not asked.
+    /// Caller: the goal was not accepted. Nothing was sent to the robot.
     #[error(transparent)]
     Goal(#[from] GoalError),
-    /// Caller: the path was not accepted; the robot was not asked.
+    /// Caller: the path was not accepted. Nothing was sent to the robot.
     #[error(transparent)]
     Path(#[from] PathError),
     /// Caller: a newer goal took over.
     #[error("superseded by a newer goal")]
     Superseded,
-    /// Caller: a stop was asked for; the arm was braked and rests.
+    /// Caller: a stop was requested; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
-    /// Caller: the goal was given up, and the arm holds: at the last target, or where it stopped.
+    /// Caller: the goal was given up. The arm is held at the last target, or where it stopped.
     #[error("the motion was given up and the arm holds its position: {0}")]
     Held(Lapse),
-    /// The goal was given up and the arm braked, for this reason. It holds where it stopped.
-    /// Caller: its targets stopped coming, or lead too near to the arm itself or to a region to
-    /// keep out of; or the arm was pushed off its way.
+    /// The goal was given up and the arm braked, for this reason. The arm is held where it stopped.
+    /// Caller: the targets stopped coming, or are too near to the arm itself or to a keep-out
+    /// region, or the arm was pushed off its path.
     #[error("the motion was given up and the arm braked: {0}")]
     Braked(Lapse),
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
     #[error("the arm is no longer engaged: call `engage` again")]
     Disengaged,
-    /// Caller: something else controls the arm, and does not yield.
+    /// Caller: something else controls the arm, and does not yield to this motion.
     #[error(
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
     )]
     Busy,
-    /// Caller: the other motions of a common start did not all come. The arm was held, or never
-    /// moved.
+    /// Caller: not all motions of a common start came. The arm was held, or never moved.
     #[error(transparent)]
     Start(#[from] StartFault),
-    /// Caller: the protocol version has no such motion. Nothing was sent.
+    /// Caller: the protocol version does not have this motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
     /// Caller: a command cannot be sent. A control function returned it, or it was computed from a
-    /// state or a goal with non-finite numbers. The robot was asked to stop.
+    /// state or a goal with non-finite numbers. The driver has asked the robot to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
-    /// Caller: a control function gave up. The robot was asked to stop.
+    /// Caller: a control function gave up. The driver has asked the robot to stop.
     #[error("the control function gave up with code {code}")]
     GivenUp {
         /// The function's own code.
         code: i32,
     },
-    /// Caller: a control function panicked. The robot was asked to stop.
+    /// Caller: a control function panicked. The driver has asked the robot to stop.
     #[error("the control function panicked: {message}")]
     Panicked {
         /// Message of the panic, if it was text.
         message: String,
     },
-    /// Caller: the thread that runs active control has read no state for this long. The robot was
-    /// asked to stop.
+    /// Caller: the thread that runs active control has read no state for this long. The driver has
+    /// asked the robot to stop.
     #[error(
         "active control has read no state for {} ms, expected a `read_once` every millisecond",
         .silence.as_millis()
     )]
     Stalled {
-        /// Length of the silence when it was given up.
+        /// Length of the silence when the motion was given up.
         silence: Duration,
     },
     /// Caller: the control thread has run no cycle for this long, and the robot has ended the
@@ -184,29 +183,30 @@ pub enum MotionError {
         .silence.as_millis()
     )]
     Hung {
-        /// For how long, at least.
+        /// Least time without a cycle.
         silence: Duration,
     },
-    /// Robot: it refused to start the motion. libfranka's text, and after a reflex the remedy.
+    /// Robot: it refused to start the motion. The text is libfranka's, followed by the remedy after
+    /// a reflex.
     #[error("{}{}", .0, recover_first(.0))]
     Rejected(Refusal),
-    /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function.
-    /// Clear the cause; after a reflex, recover.
+    /// Robot: it ended the motion: by a reflex, a user stop, another client's stop, or a safety
+    /// function. Clear the cause; after a reflex, recover.
     #[error(transparent)]
     Control(#[from] Box<ControlError>),
-    /// Robot or link: the supervised robot takes no motions now, and this one did not wait, or no
-    /// longer waits. It has not begun. The party that can act on it depends on the reason.
+    /// Robot or link: the supervised robot accepts no motions now, and this motion did not wait, or
+    /// no longer waits. It has not begun. Who can act depends on the reason.
     #[error("{}", not_ready(*.why, *.waited))]
     NotReady {
         /// Reason.
         why: Unready,
-        /// Time that it waited.
+        /// Time that the motion waited.
         waited: Duration,
     },
-    /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
-    /// where it is.
+    /// Robot or surroundings: the reference reached the target and the arm did not follow. The arm
+    /// rests where it is.
     ///
-    /// Caller: if a torque limit of its gains kept it, [`Shortfall::limited`].
+    /// Caller: if a torque limit of the gains kept the arm back, see [`Shortfall::limited`].
     #[error("the arm stopped {0}")]
     TargetNotReached(Shortfall),
     /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
@@ -215,48 +215,48 @@ pub enum MotionError {
     NotAtRest {
         /// A joint that moves, 1 to 7.
         joint: usize,
-        /// Its velocity, `[rad/s]`.
+        /// Velocity of that joint, `[rad/s]`.
         velocity: f64,
     },
-    /// The condition of the motion was true, and the arm did not reach its new target, for `error`:
-    /// [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party of the error can
-    /// act on it.
+    /// The condition of the motion was true, but the arm did not reach its new target. `error` is
+    /// [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]; the party of `error` can act
+    /// on it.
     #[error("{error} (after the motion's condition was true at {} ms)", .reacted.after.as_millis())]
     AfterReaction {
         /// Values at the time when the condition became true.
         reacted: Box<Reacted>,
-        /// Reason why it did not reach the other target.
+        /// Reason why the arm did not reach the new target.
         error: Box<Self>,
     },
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
-        /// Length of the silence when it was given up.
+        /// Length of the silence when the motion was given up.
         silence: Duration,
     },
-    /// The command connection has ended. The party that can act on it depends on the reason.
+    /// The command connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
         /// Cause of the end.
         reason: CloseReason,
     },
-    /// Peer: one of its replies cannot be read.
+    /// Peer: a reply of the robot cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
-    /// Peer: it left the protocol. Please report it.
+    /// Peer: the robot broke the protocol. Please report it.
     #[error("{what}")]
     Protocol {
-        /// Act of the peer.
+        /// Action of the robot that broke the protocol.
         what: &'static str,
     },
 }
 
 impl MotionError {
-    /// True if the robot accepts a new motion afterwards without help from outside.
+    /// True if the robot accepts a new motion after this error without help from outside.
     ///
-    /// After a reflex the robot must be recovered first; after a lost link or connection,
-    /// reconnected to. A control function that fails may have left it without commands for long
-    /// enough to stop itself, too.
+    /// After a reflex the robot must be recovered first. After a lost link or connection, the
+    /// program must reconnect. A failed control function may also have left the robot without
+    /// commands for so long that the robot has stopped itself.
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,
@@ -275,8 +275,8 @@ impl MotionError {
         )
     }
 
-    /// Returns the values at the time when its condition became true, if the motion failed after
-    /// that. For a motion that the robot ended, see
+    /// Returns the values at the time when the motion's condition became true, if the motion failed
+    /// after that. For a motion that the robot ended, see
     /// [`Guard::Reaction`](crate::session::Guard::Reaction) in the records of the log.
     pub fn reacted(&self) -> Option<&Reacted> {
         match self {
@@ -367,7 +367,7 @@ impl MotionError {
     }
 }
 
-/// Advice for a robot that refuses in the mode "Reflex".
+/// Returns the advice for a robot that refuses in the mode "Reflex".
 fn recover_first(refusal: &Refusal) -> &'static str {
     let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
     match (refusal.status() == not_possible, refusal.mode()) {
@@ -383,25 +383,24 @@ fn not_ready(why: Unready, waited: Duration) -> String {
     }
 }
 
-/// Party that can act on an error.
+/// Party that can act on an error. Every error has one, see [`MotionError::party`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Party {
-    /// The program: it made an impossible request, or it ended something itself.
+    /// The program: it made an impossible request, or ended something itself.
     Caller,
-    /// At the robot: it refused, stopped itself, or something is in its way.
+    /// People at the robot: it refused, stopped itself, or something is in its way.
     Robot,
-    /// In the network.
+    /// The network.
     Link,
-    /// On this computer: privileges, kernel, resources.
+    /// This computer: privileges, kernel, resources.
     Host,
-    /// In the code of one side: the other side does not keep to the protocol, or is of another
-    /// version.
+    /// The code of one side: the other side breaks the protocol, or has another version.
     Peer,
 }
 
-/// One word, such as `caller`.
+/// Prints one word, such as `caller`.
 impl fmt::Display for Party {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
@@ -419,18 +418,18 @@ impl fmt::Display for Party {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Stage {
-    /// None of its states had been answered.
+    /// No state of the motion had been answered.
     Starting,
-    /// It was under way.
+    /// The motion was under way.
     Running,
-    /// The finishing command was out: the robot may have refused to finish a moving command.
+    /// The finishing command was sent: the robot may have refused to finish a moving command.
     Finishing,
 }
 
-/// The robot ended a motion.
+/// Report on a motion that the robot ended.
 ///
-/// `Display` is the message of libfranka's `ControlException` for the same event. The message of a
-/// reflex before the first cycle names the errors, too.
+/// `Display` prints the message of libfranka's `ControlException` for the same event. For a reflex
+/// before the first cycle, the message also names the errors.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -438,12 +437,12 @@ pub struct ControlError {
     /// The robot's answer, the errors that stopped it (`reflex_reason` of the state that ended the
     /// motion) and the success rate before it.
     pub failure: ControlFailure,
-    /// Errors that hold, by the last state.
+    /// Errors that are active in the last state.
     pub errors: Errors,
     /// Progress of the motion.
     pub stage: Stage,
-    /// The last cycles of the motion, the newest of which shows its end. How many is an option of
-    /// the connection.
+    /// The last cycles of the motion. The newest one shows its end. An option of the connection
+    /// sets their number.
     pub log: Arc<ControlLog>,
     /// Source of the motion's commands.
     pub commander: Commander,
@@ -455,7 +454,7 @@ pub struct ControlError {
 }
 
 impl ControlError {
-    /// The robot's last word on the motion.
+    /// Returns the robot's last reply about the motion.
     pub fn refusal(&self) -> Refusal {
         self.failure.refusal
     }
@@ -471,7 +470,7 @@ impl ControlError {
     }
 
     /// True if the robot stopped itself for one of the reasons in
-    /// [`ControlFailure::reflex_reason`], and must be recovered.
+    /// [`ControlFailure::reflex_reason`]. It must then be recovered.
     pub fn is_reflex(&self) -> bool {
         self.failure.refusal.status() == Status::Move(MoveStatus::ReflexAborted)
     }

@@ -1,4 +1,4 @@
-//! Programs of the user's: control functions and commands from outside, one per motion.
+//! Programs of the user: control functions and commands from a thread of the user, one per motion.
 
 use core::time::Duration;
 
@@ -8,12 +8,12 @@ use super::current_motion::Work;
 use super::{Lifecycle, LifecyclePhase};
 use crate::session::GoalId;
 
-/// A motion under a program of the user's.
+/// A motion under a program of the user.
 #[derive(Debug)]
 pub(super) struct UserProgram {
-    /// Names the caller that awaits its end.
+    /// Name of the caller that awaits the program's end.
     pub(super) id: GoalId,
-    /// Other callers that asked for the end and await it.
+    /// Other callers that requested the end and await it.
     pub(super) stops: Vec<GoalId>,
 }
 
@@ -28,8 +28,8 @@ impl Lifecycle {
         named
     }
 
-    /// Stops the robot that runs the current program; `id` resolves when it has stopped. Returns
-    /// true if there is one.
+    /// Stops the robot that runs the current program; `id` resolves when the robot has stopped.
+    /// Returns true if there is a program.
     pub(super) fn stop_program(&mut self, id: GoalId, now: Duration) -> bool {
         let Some(program) = self.program() else {
             return false;
@@ -49,9 +49,9 @@ impl Lifecycle {
         }
     }
 
-    /// Asks the robot to stop the motion under way, unless it has been asked or the motion is over
-    /// for it. Its answer is not awaited; only the end of the motion counts. A robot that continues
-    /// is asked once more, then given up.
+    /// Asks the robot to stop the motion under way, unless it was asked already or has ended the
+    /// motion. The robot's answer is not awaited; only the end of the motion counts. A robot that
+    /// continues is asked once more, then given up.
     pub(super) fn send_stop(&mut self, now: Duration) {
         let LifecyclePhase::UnderWay(current) = &mut self.phase else {
             return;

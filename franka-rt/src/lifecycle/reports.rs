@@ -16,7 +16,7 @@ use crate::session::SessionEvent;
 use crate::stats::MotionStatistics;
 
 impl Lifecycle {
-    /// Takes a reply to the `Move` of `motion`. Replies to motions that are over are ignored.
+    /// Processes a reply to the `Move` of `motion`. Replies to motions that have ended are ignored.
     pub fn on_move_reply(&mut self, motion: MotionId, status: MoveStatus, now: Duration) {
         let Some(current) = self.current(motion) else {
             return;
@@ -43,16 +43,16 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Takes note that a reply to the `Move` of `motion` could not be read. It is then unknown what
-    /// the robot is doing, so the arm is braked, the robot asked to stop, and the goal resolves.
-    /// New motions wait until states show that this one has ended.
+    /// Notes that a reply to the `Move` of `motion` could not be read. It is then unknown what the
+    /// robot does. The arm is braked, the robot is asked to stop, and the goal resolves. New
+    /// motions wait until states show that this motion has ended.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         if self.current(motion).is_some() {
             self.give_up(MotionError::Violation(violation), now);
         }
     }
 
-    /// Takes an event of the thread.
+    /// Processes an event of the thread.
     pub fn on_event(&mut self, event: Event, now: Duration) {
         match event {
             Event::Started { motion, .. } => {
@@ -142,12 +142,12 @@ impl Lifecycle {
         }
     }
 
-    /// Closes the lifecycle, since the command connection is gone: every goal resolves with an
+    /// Closes the lifecycle, because the command connection is gone. Every goal resolves with an
     /// error, and no motion starts any more.
     ///
     /// An arm on its way to a goal is braked, for as long as the thread runs: see
-    /// [`Self::is_braking`]. If a program of the user's moves the arm, no more commands are sent,
-    /// and the robot stops it.
+    /// [`Self::is_braking`]. If a program of the user moves the arm, no more commands are sent, and
+    /// the robot stops the arm.
     pub fn on_connection_closed(&mut self, reason: CloseReason) {
         let closed = LifecyclePhase::Closed {
             reason: reason.clone(),
@@ -176,10 +176,10 @@ impl Lifecycle {
         self.fail_stops(&error);
     }
 
-    /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that
-    /// it does again (`None`). Meanwhile no state arrives and no motion can run. The motion under
-    /// way is given up and resolves as [`MotionError::Stalled`], and so does a motion that waits
-    /// for it.
+    /// Notes that a thread that has borrowed the cycle has not run it for `silence`, or with `None`
+    /// that the thread runs it again. Meanwhile no state arrives and no motion can run. The motion
+    /// under way and a motion that waits for it are given up and resolve as
+    /// [`MotionError::Stalled`].
     pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
         match (&self.phase, silence) {
             (
@@ -207,7 +207,7 @@ impl Lifecycle {
         }
     }
 
-    /// Time at which [`Self::on_time`] must be called, if nothing else happens before.
+    /// Returns the time at which [`Self::on_time`] must be called, if no other input comes before.
     pub fn deadline(&self) -> Option<Duration> {
         let deadlines = [self.phase_deadline(), self.deadline_of_stops()];
         deadlines.into_iter().flatten().min()
@@ -223,8 +223,9 @@ impl Lifecycle {
         }
     }
 
-    /// Error of a motion whose end was not seen, if no state has come for `silence`: `None` if that
-    /// is too short to matter. `turning` is whether the control thread has run meanwhile.
+    /// Returns the error of a motion whose end was not seen, if no state has come for `silence`.
+    /// `None` if the silence is too short to matter. `turning` is true if the control thread has
+    /// run meanwhile.
     pub fn unseen(silence: Duration, turning: bool) -> Option<MotionError> {
         (silence >= END_TIMEOUT / 2).then_some(match turning {
             true => MotionError::LinkLost { silence },
@@ -232,8 +233,8 @@ impl Lifecycle {
         })
     }
 
-    /// Moves the deadlines that are over by `now`: the deadlines of the motion under way or given
-    /// up, and of stops.
+    /// Postpones the deadlines that have passed by `now`: of the motion under way or given up, and
+    /// of stops.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {
@@ -248,9 +249,10 @@ impl Lifecycle {
         }
     }
 
-    /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
-    /// asked to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. If no state
-    /// was seen, it resolves as [`unseen`](Self::unseen), but not before the link counts as lost.
+    /// Checks the deadline at `now`. If neither robot nor thread has ended the motion by then, the
+    /// robot is asked to stop and has [`END_TIMEOUT`] more. Otherwise the motion is given up. If no
+    /// state was seen, it resolves as [`unseen`](Self::unseen), but not before the link counts as
+    /// lost.
     pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;

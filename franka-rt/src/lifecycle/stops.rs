@@ -1,4 +1,4 @@
-//! Stops: the moving arm is braked, and then the states must show that the arm rests.
+//! Stops: the moving arm brakes, and then the states must show that the arm rests.
 
 use core::mem;
 use core::time::Duration;
@@ -24,18 +24,18 @@ pub(super) struct Stop {
 enum StopStage {
     /// The motion under way brakes.
     Braking {
-        /// The goal whose outcome decides; several stops may share it.
+        /// The goal whose outcome decides. Several stops may share it.
         goal: GoalId,
-        /// Deadline after which the robot is asked to stop. `None` once it was.
+        /// Deadline after which the robot is asked to stop; `None` once it was asked.
         until: Option<Duration>,
     },
-    /// Nothing of this program moves. The states must show it.
+    /// Nothing of this program moves any more. The states must show this.
     Showing {
         /// Report on the motion that was stopped.
         report: Box<MotionReport>,
-        /// Deadline for the states to show that. `None` until the first of them.
+        /// Deadline for the states to show this; `None` until the first state.
         until: Option<Duration>,
-        /// Error in the newest state.
+        /// Reason why the newest state does not show it.
         why: MotionError,
     },
 }
@@ -63,12 +63,12 @@ impl StopStage {
 impl Lifecycle {
     /// Brakes everything that moves. Goals before the stop resolve as [`MotionError::Stopped`]. The
     /// stop resolves under the name `id` when the motion has ended and a state shows an arm at rest
-    /// and a robot without a motion. Returns false, and does nothing, if that is so already, and
+    /// and a robot without a motion. Does nothing and returns false if the arm rests already, and
     /// after the end of the connection.
     ///
     /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is
     /// also sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are
-    /// requested at the same time share one brake and its outcome.
+    /// requested at the same time share one braking and its outcome.
     pub fn stop(&mut self, id: GoalId, state: &RobotState, now: Duration) -> bool {
         match &self.phase {
             LifecyclePhase::Closed { .. } => return false,
@@ -117,15 +117,14 @@ impl Lifecycle {
         self.stops.push(Stop { id, stage });
     }
 
-    /// The newest goal, if it is the brake of a stop.
+    /// Returns the newest goal, if it is the brake of a stop.
     fn brake_of_a_stop(&self) -> Option<GoalId> {
         let (newest, _) = self.heading()?;
         let brakes = |stop: &Stop| stop.stage.is_braking_by(newest);
         self.stops.iter().any(brakes).then_some(newest)
     }
 
-    /// Takes the newest state, for stops that wait until it shows an arm at rest. Without such
-    /// stops it has no effect.
+    /// Processes the newest state, for stops that wait until a state shows an arm at rest.
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.stops.is_empty() {
             return;
@@ -155,8 +154,8 @@ impl Lifecycle {
         }
     }
 
-    /// Takes note of the end of a goal, for the stops that brake by it. Returns the outcome if no
-    /// stop does.
+    /// Resolves the stops that brake by this goal with its outcome. Returns the outcome if no stop
+    /// does.
     pub(super) fn share_with_stops(&mut self, goal: GoalId, result: Outcome) -> Option<Outcome> {
         let brakes = |stop: &Stop| stop.stage.is_braking_by(goal);
         if !self.stops.iter().any(brakes) {
@@ -175,9 +174,9 @@ impl Lifecycle {
         None
     }
 
-    /// Handles stops whose time is over. If a motion still brakes, the robot is asked to stop it. A
-    /// stop that waits for a state resolves: with `unseen` if none came, otherwise with the reason
-    /// from the newest state.
+    /// Handles stops whose time has passed. If a motion still brakes, asks the robot to stop it. A
+    /// stop that waits for a state resolves: with `unseen` if no state came, otherwise with the
+    /// reason from the newest state.
     pub(super) fn give_up_stops(&mut self, now: Duration, unseen: Option<&MotionError>) {
         for mut stop in mem::take(&mut self.stops) {
             let is_over = stop.stage.until().is_some_and(|until| until <= now);
@@ -207,13 +206,13 @@ impl Lifecycle {
         }
     }
 
-    /// Earliest deadline of the stops.
+    /// Returns the earliest deadline of the stops.
     pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
         let until = self.stops.iter().map(|stop| stop.stage.until());
         until.flatten().min()
     }
 
-    /// Moves the deadlines of stops that are over by `now`.
+    /// Postpones the deadlines of stops that have passed by `now`.
     pub(super) fn postpone_stops(&mut self, now: Duration, later: Duration) {
         for stop in &mut self.stops {
             if let StopStage::Braking {
@@ -234,7 +233,8 @@ impl Lifecycle {
     }
 }
 
-/// Reason why `state` does not show an arm at rest and a robot without a motion; `None` if it does.
+/// Returns the reason why `state` does not show an arm at rest and a robot without a motion; `None`
+/// if it does.
 fn unrest(state: &RobotState) -> Option<MotionError> {
     // The modes of a motion show before the robot's mode does.
     let begins = state.robot_mode == RobotMode::Idle

@@ -1,38 +1,38 @@
-//! Reasons why a robot takes no motion.
+//! Reasons why a robot accepts no motion.
 
 use franka_proto::Command;
 
 use super::{Differences, Party};
 
-/// Reason why a robot takes no motion now. A robot that is not supervised refuses motions itself,
-/// except for a stop that is latched.
+/// Reason why a robot accepts no motion now. The driver checks this for supervised robots; a robot
+/// without supervision refuses motions itself, except while a stop is latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Unready {
-    /// Link: there is no connection. The supervisor makes a new one.
+    /// Link: there is no connection. The supervisor reconnects.
     #[error("the robot is not connected")]
     Disconnected,
     /// Link: the robot is silent.
     #[error("no states arrive from the robot")]
     Silent,
-    /// Robot: a reflex, from which it is being recovered.
+    /// Robot: a reflex, from which the supervisor recovers the robot.
     #[error("the robot is being recovered from a reflex")]
     Recovering,
-    /// Robot: a reflex. Its recovery waits for someone to agree.
+    /// Robot: a reflex. Its recovery waits for the user's approval.
     #[error("the recovery from a reflex waits for approval (`agree`)")]
     AgreementAwaited,
     /// Robot: after a lost connection, the robot differs from before. Its recovery from a reflex
-    /// waits for someone to agree, and a motion that waited does not begin.
+    /// waits for the user's approval, and a motion that waited does not begin.
     #[error("the robot differs from the robot before the connection was lost: {0}")]
     Unrecognised(Differences),
-    /// Robot: the settings of this program are being sent to it again after a reconnect.
+    /// Robot: the settings of this program are being sent again after a reconnect.
     #[error("the settings of this program are being restored on the robot")]
     Configuring,
     /// Robot: a setting of this program could not be restored after a reconnect.
     #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
-    /// Robot: a reflex, which someone must recover it from.
+    /// Robot: a reflex, from which the user must recover the robot.
     #[error("the robot stopped itself by a reflex (`recover` first)")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.
@@ -44,13 +44,13 @@ pub enum Unready {
     /// Robot: its brakes are closed, or it is not ready for another reason.
     #[error("the brakes are closed, or the robot is not ready")]
     Braked,
-    /// Caller: this program has latched a stop, and not released it.
+    /// Caller: this program has latched a stop and has not released it.
     #[error("a stop is latched (`release_stop` first)")]
     StopLatched,
 }
 
 impl Unready {
-    /// True if the supervisor is about to end it. Everything else is up to the people at the robot.
+    /// True if the supervisor is about to end this condition. People must end the others.
     pub fn is_passing(self) -> bool {
         matches!(
             self,

@@ -12,14 +12,14 @@ use crate::sys;
 impl Scheduling {
     /// Applies the options to the calling thread, touches its stack and blocks signals, so that no
     /// handler of the process runs on it. The order is as in libfranka 0.21: scheduling first, then
-    /// the question after the kernel.
+    /// the check of the kernel.
     ///
     /// Signals that report a fault of the thread itself (such as `SIGSEGV`) are not blocked.
-    /// Threads and processes that the thread starts later inherit the rest.
+    /// Threads and processes that the thread starts later inherit the other settings.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it
-    /// stay granted. Under both, an option that is out of range: then nothing is requested.
+    /// Under [`Realtime::Enforce`], the first request that was refused; earlier requests stay
+    /// granted. Under both, an option that is out of range; then nothing is requested.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.enter_on(Kernel::read)
     }
@@ -57,7 +57,7 @@ impl Scheduling {
     /// `granted`.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if that is refused.
+    /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if the system refuses to poll.
     pub fn tune(&self, socket: &impl AsFd, granted: &mut Granted) -> Result<(), SchedError> {
         self.check()?;
         let Some(duration) = self.busy_poll else {
@@ -87,9 +87,9 @@ impl Scheduling {
         }
     }
 
-    /// Checks whether a thread of this process would be granted the requests, memory aside. Starts
-    /// a short-lived thread, so that the caller keeps its own scheduling; for asking before a robot
-    /// is contacted.
+    /// Checks whether a thread of this process would be granted the requests, except for memory.
+    /// Use it before a robot is contacted. Starts a short-lived thread, so that the caller keeps
+    /// its own scheduling.
     ///
     /// # Errors
     /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as

@@ -6,8 +6,8 @@ use super::{BUSY_POLL_MAX, Kernel, PREFAULT_MAX};
 #[cfg(unix)]
 use crate::sys::error_text;
 
-/// Reason why the thread cannot run as asked. The numbers are errno values; the texts of the first
-/// three are libfranka's.
+/// Reason why the thread cannot run with the requested options. The numbers are errno values; the
+/// texts of the first three variants are libfranka's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SchedError {
@@ -18,43 +18,43 @@ pub enum SchedError {
     /// low.
     #[error("libfranka: unable to set realtime scheduling: {}", error_text(*.0))]
     SetScheduling(i32),
-    /// Nothing shows that the kernel is a real-time one. Under
-    /// [`Realtime::Enforce`](super::Realtime::Enforce) only. libfranka's text, and then the
+    /// Nothing shows that the kernel is a real-time kernel. Only under
+    /// [`Realtime::Enforce`](super::Realtime::Enforce). The text is libfranka's, followed by the
     /// evidence.
     #[error("libfranka: Running kernel does not have realtime capabilities. ({0})")]
     KernelNotRealtime(Box<Kernel>),
-    /// The processor asked for does not exist or is not open to this process.
+    /// The requested processor does not exist or is not available to this process.
     #[error("unable to run on processor {cpu}: {}", error_text(*.errno))]
     Pin {
-        /// The processor asked for.
+        /// The requested processor.
         cpu: usize,
-        /// Reason.
+        /// errno value with the reason.
         errno: i32,
     },
     /// Memory cannot be locked; usually `RLIMIT_MEMLOCK` is too low.
     #[error("unable to lock memory: {}", error_text(*.0))]
     LockMemory(i32),
-    /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot
-    /// (`ENOPROTOOPT`).
+    /// The system refuses to poll the socket: without `CAP_NET_ADMIN`, or because the kernel does
+    /// not support it (`ENOPROTOOPT`).
     #[error("unable to busy-poll the socket for {} us: {}", .duration.as_micros(), error_text(*.errno))]
     BusyPoll {
-        /// Duration that was asked for.
+        /// The requested duration.
         duration: Duration,
-        /// Reason.
+        /// errno value with the reason.
         errno: i32,
     },
-    /// Caller: a busy poll this long leaves the thread no time. Under either
+    /// Caller: a busy poll this long leaves the thread no time. Refused under either
     /// [`Realtime`](super::Realtime).
     #[error("the busy poll is {} us, expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
-        /// Value that was asked for.
+        /// The requested duration.
         got: Duration,
     },
-    /// Caller: the stack to touch is larger than allowed. Under either
+    /// Caller: the stack to touch is larger than allowed. Refused under either
     /// [`Realtime`](super::Realtime).
     #[error("the stack to prefault has {got} bytes, expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {
-        /// Size that was asked for, in bytes.
+        /// The requested size, in bytes.
         got: usize,
     },
 }
@@ -74,7 +74,7 @@ impl SchedError {
         }
     }
 
-    /// True if the caller asked for an option that is out of range, which no host grants.
+    /// True if the caller requested an option that is out of range, which no host grants.
     pub fn is_misuse(&self) -> bool {
         matches!(
             self,
@@ -83,7 +83,7 @@ impl SchedError {
     }
 }
 
-/// Placeholder for systems that refuse no thread anything.
+/// Placeholder for systems without such refusals.
 #[cfg(not(unix))]
 fn error_text(errno: i32) -> String {
     format!("Unknown error {errno}")

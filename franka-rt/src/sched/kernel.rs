@@ -5,14 +5,14 @@
 //! file. The version text of `uname` names the option in both. The release name (`-rt`) is chosen
 //! freely and proves nothing.
 //!
-//! `/proc/config.gz` is not read: decompressing takes a crate more in the driver, and a kernel that
-//! has this file has a version text that its build made of the same options.
+//! `/proc/config.gz` is not read: decompressing would need another crate, and a kernel with this
+//! file has a version text that its build made from the same options.
 
 use core::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Kernel of a host. [`Kernel::read`] asks the host that this runs on.
+/// Kernel of a host. [`Kernel::read`] reads the running one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Kernel {
     /// Release, such as `6.12.43-rt`.
@@ -21,8 +21,8 @@ pub struct Kernel {
     pub version: String,
     /// Contents of `/sys/kernel/realtime`; `None` if it cannot be read.
     pub flag: Option<String>,
-    /// True if the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if there is no
-    /// file that can be read.
+    /// True if the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if no such file
+    /// can be read.
     pub configured: Option<bool>,
 }
 
@@ -32,7 +32,7 @@ impl Kernel {
         Self::read_below(Path::new("/"))
     }
 
-    /// Reads the files below `root`, such as the files of another host.
+    /// Reads the files below `root`, for example copies of another host's files.
     pub fn read_below(root: &Path) -> Self {
         let read = |path: &str| fs::read_to_string(root.join(path)).ok();
         let line = |path| read(path).unwrap_or_default().trim().to_owned();
@@ -64,7 +64,7 @@ impl Kernel {
     }
 }
 
-/// Files that were looked at, and their content.
+/// Prints the files that were read, and their content.
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "uname: `{}`, expected PREEMPT_RT in it", self.version)?;

@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 
-/// Stack touched before the loop starts unless stated otherwise, in bytes. A cycle of target
-/// control uses some tens of kilobytes, a control function of the user's any amount.
+/// Default number of bytes of stack to touch before the loop starts. A cycle of target control uses
+/// some tens of kilobytes, a control function of the user any amount.
 pub const DEFAULT: usize = 512 * 1024;
 
 /// Largest stack that can be requested, in bytes. Larger buffers belong on the heap, allocated
@@ -13,17 +13,17 @@ pub const MAX: usize = 64 * 1024 * 1024;
 /// Stack beyond the touched part, in bytes: for the larger frames of unoptimised builds.
 const RESERVE: usize = 1536 * 1024;
 
-/// Bytes that one frame of the walk covers: a few pages, so that little more than asked for is
-/// touched.
+/// Number of bytes that one frame of the walk covers: a few pages, so that the walk touches little
+/// more than requested.
 const FRAME: usize = 16 * 1024;
 
-/// Size of a stack of which `touched` bytes will be touched.
+/// Returns the size of a stack of which `touched` bytes will be touched.
 pub(super) const fn size(touched: usize) -> usize {
     touched + RESERVE
 }
 
-/// Writes to `bytes` of stack below the caller, rounded up to frames. A page that was written to
-/// stays mapped: no cycle faults on it.
+/// Writes to `bytes` of stack below the caller, rounded up to frames. A written page stays mapped,
+/// so that no cycle causes a fault on it.
 #[inline(never)]
 pub(super) fn touch(bytes: usize) {
     if bytes == 0 {

@@ -1,11 +1,11 @@
-//! Aim of a course.
+//! Aim of a course: the present target and limits of the reference.
 
 use franka_otg::AxisLimits;
 
 use super::{Budget, GoalId, Leash, Target};
 
-/// Present aim of the reference: its target and limits. A goal has more; this is copied in each
-/// cycle.
+/// Present aim of the reference: its target and limits. A goal has more fields; only the aim is
+/// copied in each cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     /// Goal of the aim.
@@ -14,7 +14,7 @@ pub(super) struct Aim {
     pub(super) budget: Budget,
     /// True to stop on the way.
     pub(super) paused: bool,
-    /// The leash of hand guiding, in this cycle.
+    /// The leash of hand guiding in this cycle: how far the reference may be from the arm.
     pub(super) leash: Leash,
 }
 

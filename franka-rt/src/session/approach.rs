@@ -10,9 +10,9 @@
 //! ```
 //!
 //! The left side is the distance that the envelope needs to stop, the right side the distance that
-//! the plan has. A plan that does not keep this condition brakes more gently: with `acceleration <=
-//! deceleration - offset^2 / (2 room)` it holds at every speed. Within some milliradians of the end
-//! of the range no acceleration is gentle enough.
+//! the plan has. A plan that violates this condition brakes more gently: with `acceleration <=
+//! deceleration - offset^2 / (2 room)` the condition holds at every speed. Within some milliradians
+//! of the end of the range no acceleration is gentle enough.
 
 use franka_model::limits::JointLimits;
 use franka_otg::AxisLimits;
@@ -20,8 +20,7 @@ use franka_otg::AxisLimits;
 /// Speed margin to the envelope, `[rad/s]`: the measured velocity differs slightly from the plan's.
 const MARGIN: f64 = 0.02;
 
-/// Least acceleration of a plan, `[rad/s^2]`. A target that asks for a gentler approach is not
-/// accepted.
+/// Least acceleration of a plan, `[rad/s^2]`. A target that requires a gentler approach is refused.
 const GENTLEST: f64 = 0.3;
 
 /// Returns the limits of a plan from `q` to `target`, made gentle enough for the end of the joint's
@@ -65,8 +64,8 @@ pub fn target_range_of(robot: &JointLimits, acceleration: &[f64; 7]) -> [(f64, f
     core::array::from_fn(|i| range_of(i, robot, acceleration[i]))
 }
 
-/// Range of targets that plans can approach, `[rad]`. If the range is empty, both ends are its
-/// middle; they never cross.
+/// Returns the range of targets that plans can approach, `[rad]`. If the range is empty, both ends
+/// are its middle.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
     range_of(i, robot, GENTLEST)
 }

@@ -22,7 +22,7 @@ pub struct Settling {
 }
 
 impl Default for Settling {
-    /// Hold of 250 ms and timeout of 5 s.
+    /// Returns a hold of 250 ms and a timeout of 5 s.
     fn default() -> Self {
         Self {
             hold: Duration::from_millis(250),
@@ -39,17 +39,17 @@ impl Settling {
 /// Cycles of rest after which an arm without a target counts as stopped.
 const HOLD_AT_REST: u64 = 100;
 
-/// Longest time for that: the reference rests, so an arm that still moves is moved from outside.
+/// Longest time for that. The reference rests, so an arm that still moves is moved from outside.
 /// The timeout of a goal does not extend its stop.
 const REST_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Cycles without progress after which an arm at rest certainly stays short of its target.
+/// Cycles without progress after which an arm at rest counts as stuck short of its target.
 const STUCK: u64 = 500;
 
 /// Least progress, in parts of the tolerance.
 const PROGRESS: f64 = 0.02;
 
-/// Cycles over which the spring is released.
+/// Cycles over which the spring between arm and reference is released.
 const RELEASE: u32 = 100;
 
 /// Time after which the robot must stop an arm that was released and does not rest. If the motion
@@ -79,7 +79,7 @@ impl PoseError {
         self.in_parts_of(tolerance) <= 1.0
     }
 
-    /// Returns the greater of the two errors in parts of their tolerances.
+    /// Returns the greater of the two errors, relative to their tolerances.
     fn in_parts_of(&self, tolerance: &Tolerance) -> f64 {
         let translation = self.translation / tolerance.translation;
         translation.max(self.rotation / tolerance.rotation)
@@ -95,7 +95,7 @@ pub struct Shortfall {
     /// Wrench towards the target at the end effector, base axes, `[N, N m]`; an obstacle exerts the
     /// opposite. `None` if the robot's controller turns setpoints into torques.
     pub pull: Option<[f64; 6]>,
-    /// Torque limit of the goal that keeps the arm from pulling harder, if any.
+    /// Torque limit of the goal that prevents the arm from pulling harder, if any.
     pub limited: Option<LimitedTorque>,
 }
 
@@ -136,7 +136,7 @@ pub(super) struct Landing {
     settling: Settling,
     cycles: u64,
     held: u64,
-    /// The least error so far, in parts of the tolerance, and the cycles without a change since
+    /// The least error so far, relative to the tolerance, and the cycles without a change since
     /// then.
     nearest: f64,
     stuck: u64,
@@ -149,8 +149,8 @@ pub(super) enum Verdict {
 }
 
 impl Landing {
-    /// Creates a landing at a target of the end effector. Without a target, it is enough that the
-    /// arm stops.
+    /// Creates a landing at a target of the end effector. Without a target, the arm only has to
+    /// stop.
     pub(super) fn new(
         target: Option<Isometry3<f64>>,
         tolerance: Tolerance,
@@ -221,8 +221,8 @@ impl Landing {
 }
 
 /// Releases the spring: the reference moves to the arm's position, so that the motion ends without
-/// a step in torque. An arm whose load differs from the declared load still hangs on the spring
-/// then, and does not fall.
+/// a step in torque. The springs stay active: if the load differs from the declared load, they hold
+/// the arm, which does not fall.
 #[derive(Debug)]
 pub(super) struct Release {
     target: Option<Isometry3<f64>>,
@@ -259,12 +259,12 @@ impl Release {
         self.target.map(|target| PoseError::between(pose, &target))
     }
 
-    /// True if the spring is released and the arm rests.
+    /// True if the spring is released and the arm is at rest.
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
         self.cycle >= RELEASE && at_rest
     }
 
-    /// True if the arm does not stop.
+    /// True if the arm does not come to rest in time.
     pub(super) fn is_in_vain(&self) -> bool {
         u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
     }

@@ -20,7 +20,7 @@ use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 /// |---|---|---|
 /// | clearance, lead, watchdog, deadman, reaction | yes | yes |
 /// | joints' bounds on the way to a pose | yes | yes |
-/// | leash, deviation, velocity barrier | yes | no: an arm that is held back or pushed away springs back to its setpoint |
+/// | leash, deviation, velocity barrier | yes | no: an arm that was held back or pushed away springs back to its setpoint |
 /// | force cap | yes | no: the session refuses a goal with a force cap |
 /// | torque clamp and rate | yes | no: the torques are the robot's |
 /// | limiter of setpoints (backstop) | no | yes |
@@ -33,9 +33,10 @@ pub enum Backend {
     /// The law of the session, on this host.
     #[default]
     Torques,
-    /// One of the robot's own controllers, which gets the setpoints. Every controller accepts every
-    /// kind. The robot sets its stiffness: see `set_joint_impedance` and `set_cartesian_impedance`.
-    /// The gains of goals have no effect, and a goal with a force cap is refused.
+    /// One of the robot's own controllers, which receives the setpoints. Every controller accepts
+    /// every kind of setpoints. The robot sets its stiffness: see `set_joint_impedance` and
+    /// `set_cartesian_impedance`. The gains of goals have no effect, and a goal with a force cap is
+    /// refused.
     ///
     /// Setpoints continue from the robot's own setpoint. If commands were lost and the robot
     /// continued alone, the reference moves to the robot's setpoint. The robot's limiter is the
@@ -52,10 +53,12 @@ pub enum Backend {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Controller {
-    /// A spring and damper per joint. It gets nearer to its target than the Cartesian controller.
+    /// A spring and damper per joint. It moves the arm nearer to its target than the Cartesian
+    /// controller.
     JointImpedance,
     /// Springs and dampers at the end effector. An arm with friction rests further from its target,
-    /// and its posture is held softly. Joint positions are reached only at the end effector.
+    /// and its posture is held softly. Targets in joint positions are reached only at the end
+    /// effector.
     CartesianImpedance,
 }
 
@@ -67,9 +70,9 @@ pub enum Setpoints {
     JointPositions,
     /// Joint velocities, which the robot integrates. Supports every goal except hand guiding.
     ///
-    /// Each is the velocity of the reference. The robot may have integrated to another position. If
-    /// the difference is small, it is made up for slowly, so that the arm ends exactly at its
-    /// target. Otherwise the reference continues from the robot's position.
+    /// Each setpoint is the velocity of the reference. The robot may have integrated to another
+    /// position. A small difference is corrected slowly, so that the arm ends exactly at its
+    /// target. After a large difference, the reference continues from the robot's position.
     JointVelocities,
     /// Poses of the end effector. Supports only goals with poses.
     ///
@@ -78,9 +81,9 @@ pub enum Setpoints {
     /// refuses a stretched arm. Joint 4 stays on its side of [`FLIP_ANGLE`], because the robot
     /// keeps the elbow's side from the beginning.
     ///
-    /// An elbow determines the other joints poorly where joint 3 rests while the arm moves about
-    /// its pose, which requires wide turns of joints 3 and 5. There only the robot's own check
-    /// applies. Joint setpoints are the better choice then.
+    /// An elbow determines the other joints poorly while joint 3 rests and the arm moves around its
+    /// pose, which requires wide turns of joints 3 and 5. Only the robot's own check applies there.
+    /// Joint setpoints are then the better choice.
     CartesianPoses,
     /// Twists of the end effector, which the robot integrates, each with its elbow. The notes on
     /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] apply here.
@@ -88,7 +91,7 @@ pub enum Setpoints {
 }
 
 impl Setpoints {
-    /// All kinds.
+    /// All kinds of setpoints.
     pub const ALL: [Self; 4] = [
         Self::JointPositions,
         Self::JointVelocities,
@@ -132,7 +135,7 @@ impl Backend {
         ]
     };
 
-    /// The robot's joint impedance controller with these setpoints.
+    /// Returns the robot's joint impedance controller with these setpoints.
     pub const fn joint_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::JointImpedance,
@@ -140,7 +143,7 @@ impl Backend {
         }
     }
 
-    /// The robot's Cartesian impedance controller with these setpoints.
+    /// Returns the robot's Cartesian impedance controller with these setpoints.
     pub const fn cartesian_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::CartesianImpedance,
@@ -171,7 +174,7 @@ impl Backend {
         MoveRequest::new(controller, generator)
     }
 
-    /// True if the robot's inverse kinematics stands between its setpoints and the joints. Such a
+    /// True if the robot's inverse kinematics converts the setpoints into joint positions. Such a
     /// backend accepts only poses.
     pub fn is_cartesian(self) -> bool {
         use Setpoints::{CartesianPoses, CartesianVelocities};
@@ -263,7 +266,7 @@ impl Backend {
     }
 
     /// Returns the limits of the joints of `model` under this backend. The elbow that accompanies
-    /// poses has its own limits, and no backstop stands between these joints and the robot.
+    /// poses has its own limits, because no backstop protects these joints.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
         if !self.is_cartesian() {
             return None;
@@ -298,8 +301,8 @@ impl Backend {
         joints == [true; 3] && (!self.is_cartesian() || pose())
     }
 
-    /// Returns the answer that holds the arm: the robot's desired setpoint, or zero torques besides
-    /// its gravity compensation.
+    /// Returns the answer that holds the arm: the robot's desired setpoint, or zero torques in
+    /// addition to its gravity compensation.
     pub(super) fn holding(self, state: &RobotState) -> SessionCommand {
         match self {
             Self::Torques => SessionCommand::Torques(Torques([0.0; 7])),
@@ -347,8 +350,8 @@ pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }
 
-/// Side of the stretched arm on which joint 4 is: as [`franka_model::elbow::elbow`], but -1 or +1
-/// also at the flip angle itself.
+/// Returns the side of the stretched arm on which joint 4 is: as [`franka_model::elbow::elbow`],
+/// but -1 or +1 also at the flip angle itself.
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
@@ -356,5 +359,5 @@ fn side(q: &JointVector) -> f64 {
 /// Backend for goals that no controller of the robot supports.
 const OWN_LAW: &str = "Backend::Torques";
 
-/// Share of the elbow's velocity that joint 3 may use, where that is less than its own limit.
+/// Share of the elbow's velocity that joint 3 may use, if that is less than its own limit.
 const ELBOW: f64 = 0.95;

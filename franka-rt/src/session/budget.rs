@@ -10,8 +10,8 @@ use crate::session::GoalError;
 /// Limits of the reference: the speed of the approach to a goal.
 ///
 /// A stop may use more acceleration and jerk than the budget has, up to the robot's limits. So may
-/// a goal that arrives while the arm moves faster than its budget allows. On the way to a pose each
-/// joint may use three times its velocity, and the robot's acceleration.
+/// a goal that begins while the arm moves faster than its budget allows. On the way to a pose each
+/// joint may use three times its velocity limit, and the robot's acceleration limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Limits of each joint, `[rad/s, rad/s^2, rad/s^3]`.
@@ -28,7 +28,7 @@ impl Budget {
 
     /// Returns the default budget. Joints get a fifth of the robot's limits. Translation gets 0.3
     /// m/s, 0.5 m/s^2 and 20 m/s^3; rotation gets 0.5 rad/s, 1 rad/s^2 and 20 rad/s^3. A person
-    /// beside the arm can follow and stop a motion of this pace.
+    /// next to the arm can follow and stop a motion of this speed.
     pub fn of(limits: &JointLimits) -> Self {
         Self {
             joints: core::array::from_fn(|i| AxisLimits {
@@ -66,7 +66,8 @@ impl Budget {
     }
 
     /// Lowest velocity, acceleration and jerk of every axis, in its units. The default budget at
-    /// [`Self::SPEED_MIN`] has more. At these limits a joint needs days for a third of a radian.
+    /// [`Self::SPEED_MIN`] is above them. At these limits a joint needs days for a third of a
+    /// radian.
     pub const LIMITS_MIN: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
     /// Lowest factor that [`Self::at_speed`] accepts.
@@ -212,10 +213,11 @@ pub(crate) struct Leg {
 impl Leg {
     /// Returns the share of a norm budget for each axis. The squares sum to 1.
     ///
-    /// With a third for each axis a motion along one axis would use only 58 % of the budget. So the
-    /// shares follow the direction to the target: on a straight line each axis gets its part of the
-    /// line, and the line gets the whole budget. While the axes move elsewhere, part of the budget
-    /// follows the velocity and part is spread evenly, so that a sideways motion can be braked.
+    /// With a third for each axis, a motion along one axis would use only 58 % of the budget.
+    /// Therefore the shares follow the direction to the target. On a straight line each axis gets
+    /// its part of the line, and the line gets the whole budget. While the axes move elsewhere,
+    /// part of the budget follows the velocity and part is spread evenly, so that a sideways motion
+    /// can be braked.
     fn shares(&self) -> Vector3<f64> {
         let (along_way, along_velocity) = if self.is_straight() {
             (0.99, 0.0)

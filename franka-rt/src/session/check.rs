@@ -1,5 +1,5 @@
-//! Checks of a goal where it is accepted, outside the thread. A goal that passes here cannot fail
-//! in the cycle.
+//! Checks of a goal when it is accepted, outside the thread. A goal that passes these checks cannot
+//! fail in the cycle.
 
 use core::time::Duration;
 

@@ -1,4 +1,4 @@
-//! The course of the reference: over the joints, or over the pose of the end effector.
+//! The course of the reference: its planned motion, of the joints or of the end effector's pose.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
@@ -39,7 +39,7 @@ pub(super) struct CourseStep {
     pub(super) reference: Reference,
     /// The bounds that held joints back on the way to a pose.
     pub(super) bounds: BoundsReached,
-    /// True if the pose was held at joints that did not keep up.
+    /// True if the pose had to wait for joints that did not keep up.
     pub(super) held: bool,
     /// True if the course's own leash moved the reference with the arm.
     pub(super) leashed: bool,
@@ -63,11 +63,11 @@ impl CourseStep {
 impl Course {
     /// Turns towards a new aim from the reference's present place and motion.
     ///
-    /// Courses take some kilobytes: a course of the same kind is planned anew in place.
+    /// Courses take some kilobytes, so a course of the same kind is planned anew in place.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only: goals are checked where they are accepted. The course
-    /// continues to its previous aim, which is safe and ends short of the new aim.
+    /// [`PlanError`], by a defect only, because goals are checked when they are accepted. The
+    /// course continues to its previous aim, which is safe and ends short of the new aim.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -148,8 +148,8 @@ impl Course {
         }
     }
 
-    /// Returns the time from `now` until the target is met, `[s]`, or until rest without a target;
-    /// zero where neither is planned.
+    /// Returns the time from `now` until the target is met, or until rest without a target, `[s]`;
+    /// zero if neither is planned.
     pub(super) fn remaining(&self, now: u64) -> f64 {
         match self {
             Self::Joints(generator) => generator.remaining(),
@@ -159,8 +159,8 @@ impl Course {
         }
     }
 
-    /// Returns the moving pose, and the drift of earlier motions, that a course over poses starts
-    /// from.
+    /// Returns the moving pose, and the drift of earlier motions, from which a course of poses
+    /// starts.
     pub(super) fn pose(
         &self,
         model: &Model,
@@ -254,9 +254,9 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
 }
 
 /// Returns the limits of one joint's plan. They are the budget's limits, or `robot`'s if these are
-/// narrower: a backend may allow less than the robot does. A moving joint may exceed them in three
-/// cases: it only has to stop, its motion exceeds them already, or it would stop too late for the
-/// end of its range.
+/// narrower, because a backend may allow less than the robot does. A moving joint may exceed them
+/// in three cases: it only has to stop, its motion exceeds them already, or it would stop too late
+/// for the end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,

@@ -26,7 +26,7 @@ use crate::shaping::filter;
 #[derive(Debug)]
 pub(super) struct Effort {
     fade: Fade<BlendedGains>,
-    /// Reference velocity behind its low-pass, `[rad/s]`.
+    /// Reference velocity after its low-pass, `[rad/s]`.
     feedforward: JointVector,
     inertia: Inertia,
     compensation: Compensation,
@@ -39,7 +39,7 @@ pub(super) struct Effort {
     asked: JointVector,
     /// Torques that the law demanded in the last cycle, before low-pass and rate limit, `[N m]`.
     demanded: JointVector,
-    /// True if clamp or force cap bound in the last cycle.
+    /// True if clamp or force cap changed a torque in the last cycle.
     bound: bool,
 }
 
@@ -54,16 +54,16 @@ pub(super) enum Resistance {
     Release,
 }
 
-/// The acceleration that is fed forward as a torque.
+/// The reference's acceleration that is fed forward as a torque.
 ///
 /// While the leash moves the reference with a pushed arm, the reference accelerates as fast as the
-/// joints' bounds allow, and torques for that would push back. So the feedforward fades out there.
-/// It fades in again while the reference is free.
+/// joints' bounds allow, and torques for that would push back. Therefore the feedforward fades out
+/// then. It fades in again while the reference is free.
 #[derive(Debug)]
 struct Inertia {
     /// Acceleration, `[rad/s^2]`.
     acceleration: JointVector,
-    /// Cycles since the leash held the reference.
+    /// Number of cycles since the leash last held the reference.
     free: u32,
 }
 
@@ -85,11 +85,11 @@ impl Inertia {
 /// Keeps the wrench finite at a singular posture, `[m^2]`.
 const SINGULAR: f64 = 1e-6;
 
-/// Cycles of a free reference after which its whole acceleration counts again.
+/// Number of cycles with a free reference after which its whole acceleration counts again.
 const RETURN: u32 = 300;
 
 /// Share of the difference to its new value by which the acceleration changes in a cycle: it fades
-/// in about ten.
+/// in about ten cycles.
 const FADE: f64 = 0.1;
 
 impl Effort {
@@ -126,7 +126,8 @@ impl Effort {
         self.compensated
     }
 
-    /// Torques that the law demanded in the last cycle, before they were smoothed, `[N m]`.
+    /// Returns the torques that the law demanded in the last cycle, before they were smoothed, `[N
+    /// m]`.
     pub(super) fn demanded(&self) -> &JointVector {
         &self.demanded
     }
@@ -157,8 +158,8 @@ impl Effort {
             .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));
     }
 
-    /// Returns the torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities. `met` is true if the goal has reacted to something that the arm has met.
+    /// Returns the torques of one cycle, `[N m]`; `dynamics` is computed at the measured positions
+    /// and velocities. `met` is true if the goal has reacted to a contact.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
@@ -229,8 +230,8 @@ impl Effort {
     }
 }
 
-/// Low-passes `tau`, with weight `share`, against the torques that the robot last took, `tau_J_d`
-/// of its state.
+/// Low-passes `tau`, with weight `share`, against the last torques that the robot accepted,
+/// `tau_J_d` of its state.
 pub(super) fn low_pass(share: f64, tau: &JointVector, last: &JointVector) -> JointVector {
     tau.zip_map(last, |tau, last| filter::mix(share, tau, last))
 }

@@ -1,7 +1,7 @@
 //! Comparison between the model's poses and the poses that the robot reports.
 //!
 //! A robot computes its poses with its own lengths and joint frames, and users read these poses.
-//! Goals lead the end effector to a pose as the robot reports it.
+//! Goals move the end effector to a pose as the robot reports it.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::RobotState;
@@ -20,9 +20,9 @@ const LEVER: f64 = 0.1;
 /// and its `O_T_EE`, `[m]`. It is the greater of two values: the distance of the positions, and the
 /// largest difference of an element of the rotation matrices times 0.1 m.
 ///
-/// `None` if the poses cannot be compared. That is so if `O_T_EE` or a frame of the tool is no
-/// rigid transformation, or if a joint position is not finite. It is also so if `O_T_EE` is the
-/// identity: no end effector is there, so the state has no pose.
+/// `None` if the poses cannot be compared: `O_T_EE` or a frame of the tool is not a rigid
+/// transformation, or a joint position is not finite. Also `None` if `O_T_EE` is the identity: the
+/// end effector cannot be there, so the state has no pose.
 pub fn residual(model: &Model, state: &RobotState) -> Option<f64> {
     let (models, robots) = poses(model, state)?;
     Some(distance(&models, &robots))
@@ -37,8 +37,8 @@ pub fn reported_end_effector(model: &Model, state: &RobotState) -> Option<EndEff
     Some(corrected(&ee, &correction.unwrap_or_default()))
 }
 
-/// Returns the pose of the reported end effector, column-major, relative to the model's. It is the
-/// identity if the two agree, or if they cannot be compared.
+/// Returns the pose of the reported end effector, column-major, relative to the model's end
+/// effector. It is the identity if the two agree, or if they cannot be compared.
 ///
 /// The correction depends on the posture: with errors of the geometry of 1 mm and 3 mrad it changes
 /// by some 0.1 mm over 5 cm.
@@ -73,7 +73,7 @@ fn read(reported: &[f64; 16]) -> Option<Isometry3<f64>> {
     (pose != Isometry3::identity()).then_some(pose)
 }
 
-/// Distance of two poses, `[m]`, as in [`residual`].
+/// Returns the distance of two poses, `[m]`, as in [`residual`].
 pub(super) fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let way = (a.translation.vector - b.translation.vector).norm();
     let [a, b] = [a, b].map(|pose| pose.rotation.to_rotation_matrix().into_inner());

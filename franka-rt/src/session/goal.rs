@@ -22,7 +22,7 @@ pub struct GoalId(pub u64);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Target {
-    /// Rest: the joints brake in about a quarter of a second. This uses up to the robot's jerk
+    /// Rest: the joints brake in about a quarter of a second. The brake uses up to the robot's jerk
     /// limit, however gentle the goal's budget is.
     Rest,
     /// Joint positions, `[rad]`.
@@ -31,22 +31,22 @@ pub enum Target {
     Pose(Isometry3<f64>),
     /// Moving joint positions: the arm catches up with them and keeps moving with them. Only for
     /// goals that are held. The motion is extrapolated for [`Self::MOVES_ON_MS`] after the newest
-    /// target, then the arm brakes on its path.
+    /// target; then the arm brakes on its path.
     MovingJoints {
-        /// Positions at the instant when the session takes up the target, `[rad]`.
+        /// Positions at the instant when the session accepts the target, `[rad]`.
         q: [f64; 7],
         /// Velocities of the positions, `[rad/s]`.
         dq: [f64; 7],
     },
     /// A moving pose; otherwise as [`Self::MovingJoints`].
     MovingPose {
-        /// `O_T_EE` at the instant when the session takes up the target, metres.
+        /// `O_T_EE` at the instant when the session accepts the target, metres.
         pose: Isometry3<f64>,
         /// Velocity of the frame's origin, `[m/s]`, and angular velocity, `[rad/s]`, base axes.
         twist: Twist,
     },
     /// Hand guiding: the reference follows the arm along the free axes, and stays fixed on the
-    /// others.
+    /// other axes.
     Guide(Free),
 }
 
@@ -69,14 +69,14 @@ impl From<JointVector> for Target {
 }
 
 impl From<([f64; 7], [f64; 7])> for Target {
-    /// Joint positions, `[rad]`, and their velocities, `[rad/s]`.
+    /// Combines joint positions, `[rad]`, and their velocities, `[rad/s]`.
     fn from((q, dq): ([f64; 7], [f64; 7])) -> Self {
         Self::MovingJoints { q, dq }
     }
 }
 
 impl From<(Isometry3<f64>, Twist)> for Target {
-    /// A pose in the base frame, and its velocity in base axes: m/s, rad/s.
+    /// Combines a pose in the base frame and its velocity in base axes: m/s, rad/s.
     fn from((pose, twist): (Isometry3<f64>, Twist)) -> Self {
         Self::MovingPose { pose, twist }
     }
@@ -120,7 +120,7 @@ impl Target {
     }
 }
 
-/// The pose after `t` seconds of the motion `twist`.
+/// Returns the pose after `t` seconds of the motion `twist`.
 pub(crate) fn moved(pose: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f64> {
     let part = |from: usize| Vector3::new(twist[from], twist[from + 1], twist[from + 2]);
     Isometry3::from_parts(
@@ -134,7 +134,7 @@ pub(crate) fn moved(pose: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f
 pub struct Free {
     /// Axes of the base frame at the end effector: x y z, about x y z.
     pub axes: [bool; 6],
-    /// The elbow, while the end effector stays.
+    /// True if the elbow is free; the end effector stays.
     pub elbow: bool,
 }
 
@@ -170,9 +170,9 @@ pub struct Goal {
     pub budget: Budget,
     /// Stiffness and damping.
     pub gains: Gains,
-    /// Tolerance of the arrival; `None` uses what the law achieves on an arm with friction: see
-    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object together with others
-    /// of its team has also arrived if it stops within 5 mm and 10 mrad.
+    /// Tolerance of the arrival. `None` uses the accuracy of the law on an arm with friction: see
+    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object together with other
+    /// arms of its team has also arrived if it stops within 5 mm and 10 mrad.
     pub tolerance: Option<Tolerance>,
     /// Reaction to a stream of updates that stops; only for goals that are held.
     pub watchdog: Option<Watchdog>,
@@ -194,22 +194,23 @@ pub struct Goal {
     /// True if the goal follows a path to its target. The path is sent separately, as a chunk.
     /// Without the chunk the arm rests.
     pub along_path: bool,
-    /// True if the arm must stop on its path, within the budget, and stay there until this is
-    /// reset.
+    /// True if the arm must stop on its path, within the budget, and stay there until this is false
+    /// again.
     pub paused: bool,
     /// Condition that ends the motion early. A goal keeps the condition that it began with.
     pub reaction: Option<Reaction>,
-    /// Joint motion of a team that the goal belongs to. It begins together with the goals of the
-    /// other members, and a fault of one member aborts it. Only for sessions with a [`Member`].
+    /// Joint motion of a team that the goal belongs to. The goal begins together with the goals of
+    /// the other members, and a fault of one member aborts all of them. Only for sessions with a
+    /// [`Member`].
     ///
     /// [`Member`]: crate::team::Member
     pub round: Option<Round>,
     /// Pose of the held object in the frame of the end effector. The target is then a pose of the
     /// object, and the object moves on the straight line. Springs and force cap act at the hand. In
-    /// a round the reference waits for the arms of the other members.
+    /// a joint motion of a team, the reference waits for the arms of the other members.
     pub grasp: Option<Isometry3<f64>>,
     /// Incremented by each new target and each new [`on_arrival`](Self::on_arrival), not by tuning.
-    /// Only a new revision feeds the watchdog.
+    /// Only a new revision restarts the watchdog's time.
     pub revision: u64,
 }
 

@@ -19,7 +19,7 @@ pub enum GoalError {
     /// The stream of targets ended before its first target.
     #[error("the stream of targets ended before its first target")]
     NoTarget,
-    /// Commands for an external controller came without torques, which it needs.
+    /// Commands for an external controller came without torques, which that controller needs.
     #[error(
         "got commands without torques, expected torques too for an external controller: use \
          `with_torques`"
@@ -31,29 +31,29 @@ pub enum GoalError {
          `set` or `follow` for moving targets"
     )]
     Moves,
-    /// A joint position lies outside the joint's range.
+    /// A joint position is outside the joint's range.
     #[error(
         "the target of joint {joint} is {got} rad, expected between {lower:.4} and {upper:.4} rad"
     )]
     OutOfRange {
         /// The joint, from 1.
         joint: usize,
-        /// The position asked for, `[rad]`.
+        /// The requested position, `[rad]`.
         got: f64,
         /// Lower end of the range, `[rad]`.
         lower: f64,
         /// Upper end of the range, `[rad]`.
         upper: f64,
     },
-    /// No joint positions inside their ranges put the end effector there.
+    /// No joint positions inside their ranges reach the position.
     #[error("the pose at {} is out of reach: no joint positions within their ranges reach it with \
         its orientation", place([*x, *y, *z]))]
     Unreachable {
-        /// Position asked for, base frame, `[m]`.
+        /// Coordinate x of the requested position, base frame, `[m]`.
         x: f64,
-        /// See `x`.
+        /// Coordinate y of the requested position.
         y: f64,
-        /// See `x`.
+        /// Coordinate z of the requested position.
         z: f64,
     },
     /// The arm reaches the pose, but not on a straight line from its present place. Joints reach
@@ -64,13 +64,13 @@ pub enum GoalError {
         way_on(posture.as_ref())
     )]
     NoLine {
-        /// Position asked for, base frame, `[m]`.
+        /// Coordinate x of the requested position, base frame, `[m]`.
         x: f64,
-        /// See `x`.
+        /// Coordinate y of the requested position.
         y: f64,
-        /// See `x`.
+        /// Coordinate z of the requested position.
         z: f64,
-        /// The obstacle to the straight line with the elbow in its present place.
+        /// Reason why the straight line is not possible with the elbow in its present place.
         hindrance: Hindrance,
         /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; the
         /// search ignores keep-out regions. `None` if none were found.
@@ -81,7 +81,7 @@ pub enum GoalError {
     Budget {
         /// The limit.
         what: &'static str,
-        /// The value given.
+        /// The given value.
         got: f64,
         /// The lowest accepted value.
         least: f64,
@@ -95,7 +95,7 @@ pub enum GoalError {
         least = Budget::SPEED_MIN
     )]
     Speed {
-        /// The factor given.
+        /// The given factor.
         got: f64,
         /// The greatest factor that keeps all limits inside the robot's.
         most: f64,
@@ -116,9 +116,9 @@ pub enum GoalError {
     Number {
         /// The number.
         what: &'static str,
-        /// The value given.
+        /// The given value.
         got: f64,
-        /// Its unit.
+        /// Unit of the number.
         unit: &'static str,
         /// The lowest accepted value.
         least: f64,
@@ -137,8 +137,8 @@ pub enum GoalError {
         /// Time since that point, by the robot's clock.
         by: Duration,
     },
-    /// The time origin of a chunk lies too far in the robot's future. It is probably from another
-    /// clock.
+    /// The time origin of a chunk is too far in the robot's future, probably because it is from
+    /// another clock.
     #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at \
         most: pass times of the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {
@@ -155,7 +155,7 @@ pub enum GoalError {
     /// Too many chunks arrived within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
-    /// The backend of the session cannot do what the goal asks for.
+    /// The backend of the session does not support the goal.
     #[error("{backend} does not support {got}: use {expected}")]
     Backend {
         /// The backend.
@@ -177,10 +177,10 @@ pub enum GoalError {
     #[error(transparent)]
     Condition(#[from] ConditionError),
     /// The timeout of a watchdog or a deadman is so short that a lossy network alone could exceed
-    /// it.
+    /// the timeout.
     #[error("the timeout of a watchdog or deadman is {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
-        /// The timeout given.
+        /// The given timeout.
         got: Duration,
     },
     /// The target for a held object is not a pose.
@@ -196,7 +196,7 @@ pub enum GoalError {
 }
 
 impl GoalError {
-    /// Returns the name of the row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoTarget => "goal-no-target",
@@ -239,13 +239,13 @@ fn place(position: [f64; 3]) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Hindrance {
-    /// The arm leaves the line, with this joint, from 1, at the end of its range, if any.
+    /// The arm leaves the line. If a joint is at the end of its range, this is its number, from 1.
     Range(Option<u8>),
-    /// The arm comes too near itself.
+    /// The arm comes too near to itself.
     Itself,
 }
 
-/// Empty, or a reason in parentheses.
+/// Prints nothing, or the end of a sentence after a comma.
 impl core::fmt::Display for Hindrance {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {

@@ -18,8 +18,8 @@ const LET_GO: u32 = 300;
 const SQUARED_DAMPING: f64 = 1e-4;
 
 impl Gains {
-    /// Gains for hand guiding: springs at the end effector as in [`Self::cartesian`] on the axes
-    /// that are not free, and a light damping of the joints. Nothing is compensated.
+    /// Returns gains for hand guiding: springs at the end effector as in [`Self::cartesian`] on the
+    /// axes that are not free, and a light damping of the joints. Nothing is compensated.
     pub fn guiding(free: Free) -> Self {
         let preset = Self::cartesian();
         let locked =
@@ -55,9 +55,9 @@ enum GuideStage {
 struct Floating {
     /// Pose in which the fixed axes stay.
     pose: Isometry3<f64>,
-    /// Positions in which the joints stay, to the extent that the end effector allows.
+    /// Positions in which the joints stay, as far as the end effector allows.
     q: JointVector,
-    /// Offset of the reference from the arm at the release, at the joints and at the end effector.
+    /// Offset of the reference from the arm at the release, of the joints and of the end effector.
     offset: JointVector,
     offset_at_ee: Twist,
     cycle: u32,
@@ -162,7 +162,7 @@ impl Floating {
         }
     }
 
-    /// Same at the end effector. Fixed axes are held as by the leash.
+    /// Same at the end effector. Fixed axes are held within the leash.
     fn at_end_effector(
         &mut self,
         free: Free,

@@ -10,7 +10,7 @@ use crate::session::{Budget, Target, approach, budget};
 use crate::shaping::CYCLE;
 
 /// Time for which the motion of a joint's target must stay inside its range, `[s]`: the time of its
-/// extrapolation, and the same again for the stop that follows.
+/// extrapolation, and the same time again for the stop that follows.
 const ROOM: f64 = 2e-3 * Target::MOVES_ON_MS as f64;
 
 /// Target of the joints: positions `[rad]`, and their velocities `[rad/s]`.
@@ -34,11 +34,11 @@ pub(super) struct JointGenerator {
 }
 
 impl JointGenerator {
-    /// Begins at `reference`, and heads for `target`, or stops in the least time.
+    /// Begins at `reference`, and moves to `target`; without a target, stops in the least time.
     ///
     /// # Errors
-    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
-    /// one.
+    /// As for [`Generator`]. Goals are checked when they are accepted, so only a defect can cause
+    /// an error.
     pub(super) fn new(
         robot: &JointLimits,
         reference: &Reference,
@@ -54,7 +54,7 @@ impl JointGenerator {
         })
     }
 
-    /// Heads for another target from `reference`, or stops. If the target's motion continues as
+    /// Moves to another target from `reference`, or stops. If the target's motion continues as
     /// before, the plan stays as it is.
     ///
     /// # Errors
@@ -152,7 +152,7 @@ impl JointGenerator {
         }
     }
 
-    /// Seconds since the plan was made.
+    /// Returns the seconds since the plan was made.
     fn time(&self) -> f64 {
         f64::from(self.cycles) * CYCLE
     }

@@ -20,8 +20,8 @@ const FEEDBACK: f64 = 100.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
     q: JointVector,
-    /// True if a goal requests it. Otherwise it is only kept while the end effector moves: the rate
-    /// fades with the speed, so that an arm at its target rests.
+    /// True if a goal requests the posture. Otherwise it is only kept while the end effector moves:
+    /// the rate fades with the speed, so that an arm at its target rests.
     asked: bool,
 }
 
@@ -29,7 +29,7 @@ impl Posture {
     /// Rate at which the free direction returns to a kept posture, `[1/s]`.
     const KEPT: f64 = 1.0;
 
-    /// Speed of the end effector from which that rate applies in full, `[m/s]`.
+    /// Speed of the end effector above which that rate applies in full, `[m/s]`.
     const SPEED: f64 = 0.1;
 
     /// Rate at which the free direction approaches a requested posture, near the end, `[1/s]`.
@@ -48,12 +48,12 @@ impl Posture {
         Self { q, asked: true }
     }
 
-    /// True if a goal requests it.
+    /// True if a goal requests the posture.
     pub(super) fn is_asked(&self) -> bool {
         self.asked
     }
 
-    /// Returns the velocity at which joints at `q` move to the posture, `[rad/s]`, once they do so
+    /// Returns the velocity at which joints at `q` move to the posture, `[rad/s]`, once they move
     /// evenly, while the end effector moves at `speed`, `[m/s]`.
     pub(super) fn velocity(
         &self,
@@ -108,8 +108,8 @@ const SQUARED_DAMPING: f64 = 1e-6;
 /// `[s]`.
 const FADE: f64 = 0.3;
 
-/// Share of the difference by which each stage of [`Drift::ease`] changes in a cycle: another
-/// posture moves the elbow within some 100 ms.
+/// Share of the difference by which each stage of [`Drift::ease`] changes in a cycle. After a
+/// change of posture, the elbow begins to move within some 100 ms.
 const EASE: f64 = 0.02;
 
 /// Motion of the arm's free direction, which the pose does not determine. It has two parts: the
@@ -125,7 +125,7 @@ pub(super) struct Drift {
 }
 
 impl Drift {
-    /// Drift of joints that move at `velocity`, `[rad/s]`.
+    /// Returns the drift of joints that move at `velocity`, `[rad/s]`.
     pub(super) fn of(velocity: JointVector) -> Self {
         Self {
             velocity,
@@ -140,7 +140,7 @@ impl Drift {
         self.cycle == 0
     }
 
-    /// Share that remains in the next cycle: from 1 to 0, with zero slope at both ends.
+    /// Returns the share that remains in the next cycle: from 1 to 0, with zero slope at both ends.
     fn share(&mut self) -> f64 {
         self.cycle = self.cycle.saturating_add(1);
         let gone = (f64::from(self.cycle) * CYCLE / FADE).min(1.0);

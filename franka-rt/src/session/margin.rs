@@ -1,4 +1,4 @@
-//! Distance of gains from the first oscillation.
+//! Stability margin: the distance of gains from the first oscillation.
 //!
 //! Four delays lie between a wanted torque and its effect: the cycle of the client, the robot's
 //! delay, the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers
@@ -10,8 +10,8 @@
 //!
 //! to first order. A damper alone makes a mode oscillate from the `d / m` at which the phases of
 //! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
-//! FILTER)`. Friction, which helps, and the elasticity of the joints, which does not, are left out.
-//! The margins were compared with simulated arms (`cargo xtask arms --gain`).
+//! FILTER)`. The computation ignores friction, which helps, and the elasticity of the joints, which
+//! does not. The margins were compared with simulated arms (`cargo xtask arms --gain`).
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -25,9 +25,9 @@ use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
-/// Distance of gains from the first oscillation of an arm that delays and lags like the slowest
-/// realistic simulated arm (`franka_sim::arm::Family::realistic`). Bad arms have less margin: they
-/// lag twice as long, and their joints are softer.
+/// Stability margin of gains: their distance from the first oscillation. The assumed arm delays and
+/// lags like the slowest realistic simulated arm (`franka_sim::arm::Family::realistic`). Bad arms
+/// have less margin: they lag twice as long, and their joints are softer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// Factor by which all dampers may grow.
@@ -47,7 +47,7 @@ impl Margin {
 
     /// Returns the margin of these gains on an arm of this model in `state`, with the end effector
     /// and the load that the robot knows. `None` for gains that are out of their bounds, and if the
-    /// tool is no rigid body.
+    /// tool is not a rigid body.
     pub fn of(gains: &Gains, model: &Model, state: &RobotState, version: Version) -> Option<Self> {
         gains.check().ok()?;
         let (ee, load) = (end_effector_of(state)?, load_of(state, version)?);
@@ -76,7 +76,7 @@ impl Margin {
     }
 }
 
-/// Returns the greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` is not
+/// Returns the greatest eigenvalue of `over^-1 of`, both symmetric; infinite if `over` is not
 /// positive.
 fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     let floor = MassMatrix::identity() * 1e-9;
@@ -100,7 +100,7 @@ impl Lateness {
     /// Time constant of the robot's torque loop, `[s]`.
     const LAG: f64 = 5e-3;
 
-    /// Delays with a low-pass of this cutoff frequency, `[Hz]`.
+    /// Returns the delays with a low-pass of this cutoff frequency, `[Hz]`.
     fn of(cutoff: f64) -> Self {
         let filter = if cutoff < MAX_CUTOFF_FREQUENCY {
             1.0 / (TAU * cutoff)
@@ -112,14 +112,14 @@ impl Lateness {
         }
     }
 
-    /// Delay and lags together, `[s]`.
+    /// Returns delay and lags together, `[s]`.
     fn sum(&self) -> f64 {
         self.lags.iter().fold(Self::DELAY, |sum, lag| sum + lag)
     }
 
-    /// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`. At that frequency
-    /// the phases add up to a quarter of a turn, and the gain of the lags is divided out. With the
-    /// default low-pass the ratio is 257, at 182 rad/s.
+    /// Returns the ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`. At that
+    /// frequency the phases add up to a quarter of a turn, and the gain of the lags is divided out.
+    /// With the default low-pass the ratio is 257, at 182 rad/s.
     fn damped(&self) -> f64 {
         let phase = |frequency: f64| {
             let lags = self.lags.iter().map(|lag| (frequency * lag).atan());

@@ -1,5 +1,5 @@
-//! The part of a session in a team: when goals may begin, when the arm must brake for the others,
-//! and when the others must brake for this arm.
+//! The part of a session in a team: when goals may begin, when the arm must brake because of
+//! another member, and when the other members must brake because of this arm.
 
 use core::time::Duration;
 
@@ -11,9 +11,9 @@ use crate::team::{Carrying, Member, MemberFault, Passage, Round, TeamStop};
 #[derive(Debug)]
 pub(super) struct Membership {
     member: Member,
-    /// A goal of a round that has not begun.
+    /// A goal of a joint motion (round) that has not begun.
     waiting: Option<(Round, Goal)>,
-    /// The goal of a round that has begun.
+    /// The goal of a joint motion that has begun.
     pursued: Option<Pursued>,
     /// True if the session has reported a fault to the team since its newest state.
     has_failed: bool,
@@ -57,9 +57,9 @@ impl Membership {
         }
     }
 
-    /// Returns the goal to take up for the answer to the state `now`, `message_id`, and the stop of
-    /// the team. The stop is returned in the cycle that sees it, or that takes up a goal of a
-    /// stopped round.
+    /// Returns the goal to begin in the answer to the state `now`, `message_id`, and the stop of
+    /// the team. The stop is returned in the cycle that sees it, or that begins a goal of a stopped
+    /// round.
     pub(super) fn admit(
         &mut self,
         newer: Option<Goal>,
@@ -140,7 +140,8 @@ impl Membership {
         own.lags || others.lags || others.remaining > own.remaining + AHEAD
     }
 
-    /// Stops the round if its goal was given up. Reports the arm's progress to the others.
+    /// Stops the joint motion if its goal was given up. Reports the arm's progress to the other
+    /// members.
     pub(super) fn watch(&mut self, session: &mut RunningSession) {
         self.carrying = session.carrying();
         if let (Some(pursued), Some(own)) = (self.pursued, self.carrying) {
@@ -155,7 +156,7 @@ impl Membership {
     }
 
     /// Records the end of a goal at this target. A goal that ended as asked stays part of its
-    /// round, also after tuning: if it is given up later, the others brake.
+    /// round, also after tuning: if it is given up later, the other members brake.
     pub(super) fn settle(&mut self, event: &SessionEvent, target: Target) {
         let (SessionEvent::Settled { settlement, .. }, Some(pursued)) = (event, &mut self.pursued)
         else {

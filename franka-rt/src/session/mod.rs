@@ -6,17 +6,17 @@
 //! answered: -> leash -> law -> guards of the torques -> torques
 //! ```
 //!
-//! Between a state and its answer, the session computes only the parts that need this state.
-//! Everything else is prepared before the state arrives.
+//! Between a state and its answer, the session computes only the parts that need this state. All
+//! other parts are prepared before the state arrives.
 //!
-//! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints
-//! for joint goals and for braking, over three axes of translation and three of rotation for poses.
-//! When the kind of goal changes, the new course starts from the position, velocity and
-//! acceleration of the reference, so nothing steps.
+//! The state of a session is a joint reference `q, dq, ddq`. A course moves the reference: over
+//! seven joints for joint goals and for braking, over three axes of translation and three of
+//! rotation for poses. When the kind of goal changes, the new course starts from the position,
+//! velocity and acceleration of the reference, so nothing steps.
 //!
 //! A goal that should finish passes through the stages of `GoalStage`: under way, landing,
-//! releasing, finished. A newer goal takes the session back under way from any stage except the
-//! last.
+//! releasing, finished. From any stage except the last, a newer goal returns the session to the
+//! first.
 
 mod aim;
 mod approach;
@@ -92,19 +92,18 @@ use membership::Membership;
 use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
-/// Time for which something may hold the course back: an obstacle by the leash, or the joints'
-/// bounds. A goal that should finish but has made no progress by then is braked, and lands where it
-/// is.
+/// Time for which an obstacle, or the joints' bounds, may hold the course back. A goal that should
+/// finish but has made no progress by then is braked, and ends where it is.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// One session. It is created outside the thread, moved into the thread, and handed back when it
-/// has ended.
+/// One session of target control. It is created outside the thread, moved into the thread, and
+/// handed back when it has ended.
 #[derive(Debug)]
 pub struct TargetSession {
     model: Arc<Model>,
     goals: triple_buffer::Reader<Goal>,
     active: Option<RunningSession>,
-    /// A goal that waits for its common start.
+    /// A goal that waits for its common start with other robots.
     held: Option<Goal>,
     /// A goal whose common start failed, and the cause.
     unstarted: Option<(GoalId, StartFault)>,
@@ -118,17 +117,17 @@ pub struct TargetSession {
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     speed_cap: Option<f64>,
-    /// Action after a goal that is held had to be given up.
+    /// Action of the session after a held goal had to be given up.
     afterwards: OnArrival,
-    /// State of the gate that permits goals, from the newest state.
+    /// State of the gate of a common start, which lets goals begin, from the newest state.
     gate: Gate,
     /// Values learned about the arm in earlier sessions.
     known: Learned,
 }
 
 impl TargetSession {
-    /// Creates a session that follows the goals written to `goals`, for a robot that speaks
-    /// `version`. The first goal must be there before the session runs.
+    /// Creates a session that follows the goals written to `goals`, for a robot with protocol
+    /// `version`. The first goal must be written before the session runs.
     pub fn new(model: Arc<Model>, version: Version, goals: triple_buffer::Reader<Goal>) -> Self {
         Self {
             model,
@@ -234,47 +233,51 @@ impl TargetSession {
         }
     }
 
-    /// Lets the session take up chunks.
+    /// Lets the session follow chunks.
     ///
     /// The newest chunk of the goal in force moves the arm; the goal's own target has no effect
-    /// then. Where the chunk ends, the arm rests, and [`OnArrival`] applies.
+    /// meanwhile. At the end of the chunk, the arm rests, and [`OnArrival`] applies.
     ///
-    /// Send the first chunk before its goal is written, so that the arm does not set out for the
-    /// goal's target. [`Target::Rest`] suits most such goals.
+    /// Send the first chunk before its goal is written, so that the arm does not start to move to
+    /// the goal's target. [`Target::Rest`] suits most such goals.
     #[must_use]
     pub fn with_chunks(mut self, chunks: ChunkReader) -> Self {
         self.chunks = Some(chunks);
         self
     }
 
-    /// Returns the newest goal that the session has taken up. An older goal came too late.
+    /// Returns the newest goal that the session has accepted. Newer goals in the slot came too
+    /// late.
     pub fn last_goal(&self) -> Option<GoalId> {
         let active = self.active.as_ref().map(|active| active.goal.id);
         self.held.map(|held| held.id).or(active)
     }
 
-    /// Distance of the arm from its target at the release, before the robot's controller took over.
+    /// Returns the distance of the arm from its target at the release, before the robot's
+    /// controller took over.
     pub(crate) fn released(&self) -> Option<PoseError> {
         self.active.as_ref()?.released()
     }
 
-    /// Takes the path of `goal` out of a session that has ended before it saw that goal.
+    /// Removes the path of `goal` from a session that has ended before it saw that goal.
     pub(crate) fn take_path(&mut self, goal: GoalId) -> Option<Chunk> {
         self.chunks.as_mut()?.take(goal)
     }
 
-    /// True if all values of `state` that the session uses are finite, besides measured joints and
-    /// torques.
+    /// True if all values of `state` that the session uses are finite, except for measured joints
+    /// and torques, which are checked elsewhere.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {
         self.backend.can_read(state)
     }
 
     /// Answers one state, using the results of [`Self::prepare`]. Bounded work, no allocation.
     ///
-    /// While the gate is closed the session holds the arm where it is, with the gains of the
-    /// waiting goal. If the gate is broken, the arm lands there, unless another goal arrives.
+    /// While the gate of a common start is closed, the session holds the arm where it is, with the
+    /// gains of the waiting goal. If the start fails, the arm lands there, unless another goal
+    /// arrives.
     ///
-    /// The report is left in `event`. A return value of 280 bytes would be copied in every cycle.
+    /// The report is left in `event`, because a return value of 280 bytes would be copied in every
+    /// cycle.
     pub(crate) fn answer(
         &mut self,
         gate: Gate,
@@ -330,8 +333,8 @@ impl TargetSession {
         step
     }
 
-    /// Computes everything that does not depend on the next state: takes up goals and chunks,
-    /// plans, and moves the reference by one step. Bounded work, no allocation.
+    /// Computes everything that does not depend on the next state: accepts goals and chunks, plans,
+    /// and moves the reference by one step. Bounded work, no allocation.
     pub(crate) fn prepare(&mut self) {
         if let Some(active) = &self.active {
             let next = active.newest() + 1;
@@ -376,8 +379,8 @@ impl TargetSession {
         goal.target == Target::Rest || before.is_some_and(|before| before.id != goal.id)
     }
 
-    /// Returns the newest goal, or its substitute before the common start, if it has not been taken
-    /// up.
+    /// Returns the newest goal, or its substitute before the common start, if the session has not
+    /// begun it.
     fn newer(&mut self) -> Option<Goal> {
         match self.gate {
             Gate::Open => {

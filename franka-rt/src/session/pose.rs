@@ -4,8 +4,8 @@
 //! The orientation is generated in a chart around the orientation where the plan began, `R =
 //! exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation vector and
 //! angular velocity are related by the left Jacobian of the rotation group, `omega = J(phi) phi'`.
-//! At `phi = 0` it is the identity and does not influence the acceleration either. So a plan that
-//! begins in motion starts exactly if the chart is anchored at its beginning.
+//! At `phi = 0` that Jacobian is the identity and does not influence the acceleration either. A
+//! plan that begins in motion therefore starts exactly if the chart is anchored at its beginning.
 //!
 //! A moving target is at rest in a frame that moves with it, and the plan is made there. Once a
 //! pose has arrived in that frame, it moves with the target.
@@ -59,7 +59,7 @@ impl MovingPose {
         Self { pose, ..self }
     }
 
-    /// True if `other` is the same: exactly at rest, except for rounding in motion.
+    /// True if `other` is the same: exactly equal at rest, equal except for rounding in motion.
     fn is(&self, other: &Self) -> bool {
         let apart = || {
             let way = self.pose.translation.vector - other.pose.translation.vector;
@@ -101,14 +101,14 @@ pub(crate) struct PoseGenerator {
 }
 
 impl PoseGenerator {
-    /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the
+    /// Begins at `start` and moves to `target` within `budget`. A start that moves faster than the
     /// budget allows is braked with more than the budget's acceleration, up to the robot's `most`.
     /// For a target that moves at the budget's speed or faster, the pose follows at the budget's
     /// speed minus a reserve.
     ///
     /// # Errors
-    /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
-    /// one.
+    /// As for [`Generator`]. Goals are checked when they are accepted, so only a defect can cause
+    /// an error.
     pub(crate) fn new(
         start: &PoseState,
         target: MovingPose,
@@ -127,8 +127,8 @@ impl PoseGenerator {
         })
     }
 
-    /// Heads for another target, at another pace. With the same target and pace the plan stays as
-    /// it is.
+    /// Moves to another target, at another pace. With the same target and pace the plan stays as it
+    /// is.
     ///
     /// # Errors
     /// See [`Self::new`]; the motion in progress continues.
@@ -242,7 +242,7 @@ impl PoseGenerator {
         rotation::exp(&(parts(&self.twist).1 * self.time()))
     }
 
-    /// Seconds since the plan was made.
+    /// Returns the seconds since the plan was made.
     fn time(&self) -> f64 {
         f64::from(self.cycles) * CYCLE
     }
@@ -260,7 +260,7 @@ impl PoseGenerator {
         moved(&in_frame, &self.twist, self.time())
     }
 
-    /// Limits of the approach to the target.
+    /// Returns the limits of the approach to the target.
     pub(crate) fn budget(&self) -> &Budget {
         &self.budget
     }

@@ -13,7 +13,7 @@ use crate::session::{Budget, GoalError, Target, check};
 /// [`Condition::then`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// Checked in every cycle until the goal has ended.
+    /// Condition, checked in every cycle until the goal has ended.
     pub condition: Condition,
     /// Target once the condition is true: [`Target::Rest`], joint positions or a pose.
     pub then: Target,
@@ -29,10 +29,10 @@ pub struct Reacted {
     pub after: Duration,
     /// `message_id` of that state, `[ms]` of the robot's clock.
     pub time: u64,
-    /// External wrench in it, in base axes with its torque about the origin of the stiffness frame,
-    /// `[N, N m]`. Positive values mean that the arm exerts the wrench.
+    /// External wrench in that state, in base axes with its torque about the origin of the
+    /// stiffness frame, `[N, N m]`. Positive values mean that the arm exerts the wrench.
     pub wrench: [f64; 6],
-    /// Pose of the end effector in it, base frame, from the measured joints.
+    /// Pose of the end effector in that state, base frame, from the measured joints.
     pub pose: Isometry3<f64>,
 }
 

@@ -19,14 +19,14 @@ use crate::session::rigid;
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY};
 use distance::{apart, differs, is_off, joint_drift, pose_drift, unchanged};
 
-/// Share of the limiter's result that is kept when joints are held back: the limiter works along a
-/// straight line.
+/// Share of the limiter's result that is kept when joints are held back, because the limiter works
+/// along a straight line.
 const EASE: f64 = 0.95;
 
 /// Number of times that joints are held back anew in a cycle.
 const EASINGS: usize = 3;
 
-/// Share of a drift that velocities make up for per second, `[1/s]`.
+/// Share of a drift that velocities remove per second, `[1/s]`.
 const RETURN: f64 = 10.0;
 
 /// Streams setpoints to the robot's controller.
@@ -39,11 +39,11 @@ pub(super) struct SetpointStream {
     last: Option<MotionCommand>,
     /// Start of the velocities: joint positions of the last reference, or the robot's own.
     from: JointVector,
-    /// Drift that velocities make up for.
+    /// Drift that velocities must remove.
     drift: Drift,
 }
 
-/// Distance of the robot's integrated position from the reference, in the coordinates that matter.
+/// Distance of the robot's integrated position from the reference, in the relevant coordinates.
 #[derive(Clone, Copy, Debug)]
 enum Drift {
     /// Drift of the joints, `[rad]`.
@@ -87,7 +87,8 @@ impl SetpointStream {
 
     /// Returns the robot's own commanded pose relative to the pose of `hand` at the joint positions
     /// `q`, which came from the robot. Poses and twists continue from it with an end effector moved
-    /// by this correction. `None` for setpoints of joints, and if it is no rigid transform.
+    /// by this correction. `None` for setpoints of joints, and if the pose is not a rigid
+    /// transformation.
     ///
     /// The correction applies until the reference is taken from the robot again: a correction that
     /// followed the robot would hide a drift.
@@ -103,10 +104,11 @@ impl SetpointStream {
     }
 
     /// Returns the robot's setpoint, if it differs from the setpoint of `reference`, the last one
-    /// sent. Cartesian setpoints are compared as commanded, and the robot's own joints are taken
-    /// over.
+    /// sent. Cartesian setpoints are compared as commanded, and the result has the robot's own
+    /// joints.
     ///
-    /// The robot's integrated position may differ slightly; the next velocities make up for it.
+    /// The robot's integrated position may differ slightly; the next velocities remove the
+    /// difference.
     pub(super) fn echo(
         &mut self,
         model: &Model,
@@ -145,9 +147,9 @@ impl SetpointStream {
     }
 
     /// Returns the command for `reference`, and true if the backstop changed it. If a command
-    /// cannot be shaped, as from a non-finite reference, the command that holds the arm is
-    /// returned. The `last` velocity of a motion is zero: it is repeated until the robot has ended
-    /// the motion.
+    /// cannot be shaped, for example from a non-finite reference, returns the command that holds
+    /// the arm. The `last` velocity of a motion is zero, because it is repeated until the robot has
+    /// ended the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,
@@ -192,8 +194,7 @@ impl SetpointStream {
         (command, changed)
     }
 
-    /// Returns the setpoint that leads to the joint positions `q`; velocities start at the pose
-    /// `from`.
+    /// Returns the setpoint for the joint positions `q`; velocities start at the pose `from`.
     fn setpoint(
         &self,
         model: &Model,
@@ -234,9 +235,9 @@ impl SetpointStream {
 /// Returns the setpoint of `reference` within the limits of pose and elbow, and true if that
 /// required a change.
 ///
-/// If the limiter changed a pose, the robot would find other joints, with no limits applied. So the
-/// joints are held back instead: towards the place that they reach from the last reference `from`
-/// without a jerk, by the share by which the limiter held back their pose.
+/// If the limiter changed a pose, the robot would find other joints, with no limits applied. The
+/// joints are held back instead. They move towards the place that they reach from the last
+/// reference `from` without a jerk, by the share by which the limiter held back their pose.
 fn eased(
     wish: impl Fn(&JointVector) -> MotionCommand,
     shape: impl Fn(&MotionCommand) -> MotionCommand,
@@ -270,7 +271,7 @@ fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
 }
 
-/// Returns the robot's own commanded pose; `None` if it is no rigid transform.
+/// Returns the robot's own commanded pose; `None` if it is not a rigid transformation.
 fn commanded_pose(state: &RobotState) -> Option<Isometry3<f64>> {
     transform::isometry_from_array(state.commanded_pose())
 }

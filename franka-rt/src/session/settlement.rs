@@ -22,9 +22,9 @@ pub enum SessionEvent {
         goal: GoalId,
         /// Kind of end.
         settlement: Settlement,
-        /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
+        /// Time from the first cycle that saw the goal to its end, `[ms]` of the robot's clock.
         duration_ms: u64,
-        /// Torques that compensate friction and bias there, `[N m]`; `None` where the robot's
+        /// Torques that compensate friction and bias at the end, `[N m]`; `None` if the robot's
         /// controller turns setpoints into torques.
         compensation: Option<[f64; 7]>,
         /// The reaction that caused this end, if any.
@@ -34,8 +34,8 @@ pub enum SessionEvent {
     /// is not finite. The session ends without sending a torque.
     BadTool,
     /// The arm was released and does not stop, so the motion cannot finish. The lifecycle must
-    /// command the robot to stop. Until it stops, the session answers states and takes no more
-    /// goals.
+    /// command the robot to stop. Until the robot stops, the session answers states and accepts no
+    /// more goals.
     Restless,
 }
 
@@ -43,19 +43,20 @@ pub enum SessionEvent {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settlement {
-    /// At the target, within the tolerance, at rest and held there.
+    /// The arm is within the tolerance of the target, at rest, and held there.
     Arrived(PoseError),
-    /// At rest where it braked. Alternatively only the reference rests, and something outside moves
-    /// the arm.
+    /// The arm rests where it braked. Alternatively only the reference rests, and something outside
+    /// moves the arm.
     AtRest,
-    /// The reference reached the target, the arm did not: something holds it, or its load differs
-    /// from the declared load.
+    /// The reference reached the target, the arm did not: something holds the arm, or its load
+    /// differs from the declared load.
     TargetNotReached(Shortfall),
-    /// Given up, and held at the last target, or where it stopped when its deadman failed.
+    /// The goal was given up. The arm is held at the last target, or where it stopped when its
+    /// deadman failed.
     Held(Lapse),
-    /// Given up, and braked. The arm is held where it stopped.
+    /// The goal was given up and the arm braked. The arm is held where it stopped.
     Braked(Lapse),
-    /// At rest where it was held, because the common start failed.
+    /// The arm rests where it was held, because the common start failed.
     Unstarted(StartFault),
 }
 
@@ -64,25 +65,25 @@ pub enum Settlement {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Lapse {
-    /// Its targets stopped arriving: see [`Watchdog`](super::Watchdog).
+    /// The goal's targets stopped arriving: see [`Watchdog`](super::Watchdog).
     Silent {
         /// Time without a target, by the robot's clock.
         silence: Duration,
     },
     /// The [`Deadman`](super::Deadman) that the session is bound to fell silent, or was dropped.
     Deadman,
-    /// Something pushed the arm further from its path than the distance that it may swing back
-    /// alone: [`Deviation`](super::Deviation).
+    /// Something pushed the arm further from its path than [`Deviation`](super::Deviation) allows.
+    /// From further away, the arm must not return by itself.
     Displaced,
-    /// The path comes too near the arm itself or a keep-out region: see
+    /// The path comes too near to the arm itself or a keep-out region: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
     Blocked {
         /// The region, from 1, in the order in which the session got them; `None` for the arm
         /// itself.
         region: Option<usize>,
     },
-    /// The joints cannot continue to the target from where the arm stopped: one is at the end of
-    /// its range, or the arm is stretched.
+    /// The joints cannot continue to the target from where the arm stopped: a joint is at the end
+    /// of its range, or the arm is stretched.
     OutOfReach {
         /// The joint at the end of its range, from 1, if any.
         joint: Option<usize>,
@@ -92,7 +93,7 @@ pub enum Lapse {
     /// The arm was faster than the speed cap of its session.
     TooFast,
     /// The arm stood still under commands that should have moved it, and the robot reported no
-    /// error. Either its brakes are closed or its controller has stopped.
+    /// error. Its brakes are closed, or its controller has stopped.
     Unresponsive,
 }
 
@@ -113,7 +114,7 @@ impl Lapse {
 }
 
 impl Lapse {
-    /// Returns the name of the row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this reason's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Silent { .. } => "lapse-silent",

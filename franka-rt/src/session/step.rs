@@ -13,16 +13,16 @@ use crate::control::{MotionCommand, Torques};
 pub(crate) struct SessionStep {
     pub(crate) answer: SessionCommand,
     pub(crate) trace: Trace,
-    /// True for the last command: the motion ends once the robot has taken it.
+    /// True for the last command: the motion ends once the robot has accepted it.
     pub(crate) finished: bool,
 }
 
-/// Values of the session for the record of a cycle; all zero where the session follows no goal.
+/// Values of the session for the record of a cycle; all zero if the session follows no goal.
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
     pub(crate) reference: Reference,
-    /// Present place of the target; `None` where the session follows no goal.
+    /// Present place of the target; `None` if the session follows no goal.
     pub(crate) target: Option<Target>,
     /// Time since the session first saw the goal.
     pub(crate) elapsed: Duration,

@@ -15,7 +15,7 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// Tolerance with gains that compensate friction: 1 mm and 3 mrad.
+    /// Returns the tolerance for gains that compensate friction: 1 mm and 3 mrad.
     fn default() -> Self {
         Self {
             translation: 1e-3,
@@ -26,7 +26,7 @@ impl Default for Tolerance {
 
 impl Tolerance {
     /// Greatest value that [`of`](Self::of) returns: 3 cm and 0.15 rad. Springs that leave larger
-    /// errors cannot hold an arm in place.
+    /// errors are too soft to hold an arm in place.
     pub const MOST: Self = Self {
         translation: 0.03,
         rotation: 0.15,

@@ -6,11 +6,11 @@ use franka_model::{JointVector, RobotKind};
 use crate::shaping::CYCLE;
 use crate::shaping::limiter::{AxisBounds, CartesianBounds, JointBounds};
 
-/// Bounds of a robot's commands: its nominal limits less a margin.
+/// Bounds of a robot's commands: its nominal limits minus a margin.
 ///
-/// Every bound is the nominal one, which the robot checks, less [`CLIENT_MARGIN`]. On the FER a
-/// velocity also leaves room for what three lost commands add at the greatest acceleration. Source:
-/// libfranka 0.21 and 0.9, `rate_limiting.h`.
+/// Every bound is the nominal limit, which the robot checks, minus [`CLIENT_MARGIN`]. On the FER a
+/// velocity also leaves room for the effect of three lost commands at the greatest acceleration.
+/// Source: libfranka 0.21 and 0.9, `rate_limiting.h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Rate of each joint's torque, `[N m/s]`.
@@ -34,11 +34,11 @@ pub struct Bounds {
     reason = "one per control loop, which copies it once; a box would not be Copy"
 )]
 pub enum VelocityBounds {
-    /// The same at every position, in both directions.
+    /// The bounds are the same at every position, in both directions.
     Everywhere([f64; 7]),
-    /// Less near the ends of the joints' ranges.
+    /// The bounds are lower near the ends of the joints' ranges.
     Envelope {
-        /// The joints, with their envelope.
+        /// Limits of the joints, with their envelope.
         joints: JointLimits,
         /// Reduction of the envelope on both sides, `[rad/s]`.
         margin: f64,
@@ -46,7 +46,8 @@ pub enum VelocityBounds {
 }
 
 impl VelocityBounds {
-    /// Least and greatest velocities at the positions `q` `[rad]`: `(lower, upper)`, `[rad/s]`.
+    /// Returns least and greatest velocities at the positions `q` `[rad]`: `(lower, upper)`,
+    /// `[rad/s]`.
     pub fn at(&self, q: &[f64; 7]) -> ([f64; 7], [f64; 7]) {
         match self {
             Self::Everywhere(upper) => (upper.map(|upper| -upper), *upper),
@@ -59,13 +60,13 @@ impl VelocityBounds {
 }
 
 impl Bounds {
-    /// Bounds of the FR3: velocities of the joints depend on their positions, and no lost command
-    /// is provided for.
+    /// Returns the bounds of the FR3: velocities of the joints depend on their positions. They
+    /// leave no room for lost commands.
     pub fn fr3() -> Self {
         Self::new(RobotKind::Fr3, 0.0)
     }
 
-    /// Bounds of the FER: velocities of the joints leave room for three lost commands.
+    /// Returns the bounds of the FER: velocities of the joints leave room for three lost commands.
     pub fn fer() -> Self {
         Self::new(RobotKind::Fer, 3.0)
     }
@@ -108,8 +109,8 @@ impl Bounds {
         }
     }
 
-    /// The same with the velocities of `joints`, such as those from the description that a robot
-    /// serves. An FR3's client takes nothing else from there.
+    /// Returns the same bounds with the velocities of `joints`, for example from a robot's
+    /// description. An FR3's client uses nothing else from the description.
     #[must_use]
     pub fn with_envelope_of(mut self, joints: &JointLimits) -> Self {
         self.joint_velocity = VelocityBounds::Envelope {
@@ -119,7 +120,7 @@ impl Bounds {
         self
     }
 
-    /// Bounds of the joints at the positions `q`, `[rad]`.
+    /// Returns the bounds of the joints at the positions `q`, `[rad]`.
     pub fn joints_at(&self, q: &[f64; 7]) -> JointBounds {
         let (lower_velocity, upper_velocity) = self.joint_velocity.at(q);
         JointBounds {

@@ -44,7 +44,7 @@ pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// True if a 4x4 matrix, column-major, passes for a transformation. Its last row is exactly `0 0 0
+/// True if a 4x4 matrix, column-major, counts as a transformation. Its last row is exactly `0 0 0
 /// 1`, and each row and column of its rotation has length 1 within [`ORTHONORMAL_TOLERANCE`].
 ///
 /// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Reason why a command cannot be sent. The texts are taken from libfranka 0.21, to the letter.
+/// Reason why a command cannot be sent. The texts are exactly libfranka 0.21's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidCommand {
@@ -12,7 +12,7 @@ pub enum InvalidCommand {
     /// The scalar given to the velocity limiter is not finite.
     #[error("commanded_velocity is infinite or NaN.")]
     Velocity,
-    /// The scalar given to the position limiter, such as an elbow's angle, is not finite.
+    /// The scalar given to the position limiter, for example an elbow's angle, is not finite.
     #[error("commanded_position is infinite or NaN.")]
     Position,
     /// A joint velocity given to the limiter is not finite.
@@ -59,7 +59,7 @@ pub enum Signal {
     Pose,
 }
 
-/// Its name in an error text, before the filter's.
+/// Prints the name in an error text, before the filter's.
 impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -78,7 +78,8 @@ pub enum FilterFault {
     /// The cutoff frequency is not positive, or not finite.
     #[error("cutoff_frequency is zero, negative, infinite or NaN.")]
     CutoffFrequency,
-    /// The command, or the value of the state that it is filtered against, is not finite.
+    /// The command, or the value of the state that the filter uses as the last value, is not
+    /// finite.
     #[error("current or past input value of the signal to be filtered is infinite or NaN.")]
     Value,
 }

@@ -13,7 +13,7 @@ use crate::shaping::{FilterFault, InvalidCommand, Signal};
 /// `lowpass_filter.h`).
 pub const MAX_CUTOFF_FREQUENCY: f64 = 1000.0;
 
-/// Cutoff frequency of a control loop by default, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
+/// Default cutoff frequency of a control loop, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
 pub const DEFAULT_CUTOFF_FREQUENCY: f64 = 100.0;
 
 /// Filters a number: `last` is the last filtered value, `sample_time` is in `[s]` and may be 0,
@@ -49,8 +49,8 @@ pub fn low_pass_each<const N: usize>(
     Ok(core::array::from_fn(|i| mix(gain, current[i], last[i])))
 }
 
-/// Filters a pose, column-major: the translation as [`low_pass`], the orientation along the arc
-/// from the orientation of `last`.
+/// Filters a pose, column-major: the translation as [`low_pass`] does, the orientation along the
+/// arc from the orientation of `last`.
 ///
 /// The orientations are the nearest rotations of both poses; the last row is copied from `current`.
 ///
@@ -92,12 +92,12 @@ pub(crate) fn low_pass_rigid(
     })
 }
 
-/// Share of the new value.
+/// Returns the share of the new value.
 pub(crate) const fn gain(sample_time: f64, cutoff_frequency: f64) -> f64 {
     sample_time / (sample_time + (1.0 / (2.0 * PI * cutoff_frequency)))
 }
 
-/// The new value and the last one, mixed by the share of the new one.
+/// Returns the new value and the last one, mixed by the share of the new one.
 pub(crate) fn mix(gain: f64, current: f64, last: f64) -> f64 {
     gain * current + (1.0 - gain) * last
 }

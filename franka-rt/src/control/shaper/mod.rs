@@ -1,4 +1,4 @@
-//! Filter, limiter and check of a control function's commands; for torques, the limiter bounds
+//! Filter, limiter and check of a control function's commands. For torques, the limiter bounds
 //! their rate. The limiter is on by default for an FER and off for an FR3, as in libfranka.
 
 #[cfg(test)]
@@ -39,21 +39,21 @@ pub struct Shaper {
     echo: Echo,
 }
 
-/// Reference for filtering and limiting the first position or pose of a motion.
+/// Reference of the filter and the limiter for the first position or pose of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FirstReference {
-    /// Itself: it passes as it is if the state is at rest (libfranka 0.21).
+    /// The command itself, which passes unchanged if the state is at rest (libfranka 0.21).
     Itself,
-    /// The state, as for all later ones (libfranka 0.9).
+    /// The state, as for all later commands (libfranka 0.9).
     State,
 }
 
-/// Precision of the last torques in the state.
+/// Precision of the robot's echo of the last torques in the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Echo {
-    /// As they were sent, or taken for that.
+    /// The torques exactly as they were sent, or assumed to be.
     Exact,
-    /// Rounded to `f32`, for which the bound of their rate leaves room.
+    /// The torques rounded to `f32`, for which the bound of their rate leaves room.
     Rounded,
 }
 
@@ -85,11 +85,11 @@ impl Conventions {
 }
 
 impl Shaper {
-    /// The shaper of a robot that speaks `version`: with or without limiter, and with a filter if
-    /// `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
+    /// Returns the shaper of a robot that speaks `version`, with or without limiter. It has a
+    /// filter if `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
-    /// A cutoff frequency that is not positive is reported with the first command, as in libfranka.
-    /// So is a cutoff frequency that is not a number, of which libfranka makes no filter.
+    /// The first command reports a cutoff frequency that is not positive, as in libfranka. It also
+    /// reports a cutoff frequency that is not a number, of which libfranka makes no filter.
     pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
         let Conventions {
             bounds,
@@ -107,20 +107,21 @@ impl Shaper {
         }
     }
 
-    /// The shaper that libfranka's control loops use by default: [`DEFAULT_CUTOFF_FREQUENCY`], and
-    /// a limiter if [`limits_by_default`](Self::limits_by_default) is true.
+    /// Returns the shaper that libfranka's control loops use by default:
+    /// [`DEFAULT_CUTOFF_FREQUENCY`], and a limiter if
+    /// [`limits_by_default`](Self::limits_by_default) is true.
     pub fn by_default(version: Version) -> Self {
         let limit_rate = Self::limits_by_default(version);
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
     }
 
     /// True if libfranka's control loops limit by default: up to version 0.9 for the FER they do,
-    /// for the FR3 not.
+    /// for the FR3 they do not.
     pub fn limits_by_default(version: Version) -> bool {
         Conventions::of(version).limit_rate
     }
 
-    /// Replaces the bounds; by default the bounds of the robot that speaks the version.
+    /// Replaces the bounds; by default the bounds of the robot that has the version.
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
@@ -128,8 +129,8 @@ impl Shaper {
     }
 
     /// Replaces the velocity limits of the joints by the limits of `joints`, from the robot's
-    /// description, also with other [bounds](Self::with_bounds). Without effect on a robot whose
-    /// velocity limits do not depend on position.
+    /// description. They also replace the velocity limits of other [bounds](Self::with_bounds). Has
+    /// no effect on a robot whose velocity limits do not depend on position.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         self.limits = Some(*joints);
@@ -145,15 +146,15 @@ impl Shaper {
         self
     }
 
-    /// Limits torque rates without the margin for the rounding of their echo, as libfranka does:
-    /// see [`limiter::within_echo`]. Only protocol 10 rounds.
+    /// Limits torque rates without the margin for the rounding of the echoed torques, as libfranka
+    /// does: see [`limiter::within_echo`]. Only protocol 10 rounds.
     #[must_use]
     pub fn trusting_the_echo(mut self) -> Self {
         self.echo = Echo::Exact;
         self
     }
 
-    /// Shapes torques, with the last ones, `tau_J_d` of the state, as reference.
+    /// Shapes torques. The reference is the last torques, `tau_J_d` of the state.
     ///
     /// # Errors
     /// [`InvalidCommand`] if a number of the command, or of its references, is not finite.
@@ -176,8 +177,8 @@ impl Shaper {
         Ok(Torques(tau))
     }
 
-    /// Shapes joint positions, with the last ones, `q_d` of the state and its derivatives, as
-    /// reference. `first` is true for the first command of the motion.
+    /// Shapes joint positions. The reference is the last positions, `q_d` of the state and its
+    /// derivatives. `first` is true for the first command of the motion.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques).
@@ -201,8 +202,8 @@ impl Shaper {
         Ok(JointPositions(q))
     }
 
-    /// Shapes joint velocities, with the last ones, `dq_d` of the state and their derivatives, as
-    /// reference.
+    /// Shapes joint velocities. The reference is the last velocities, `dq_d` of the state and their
+    /// derivatives.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques).
@@ -220,9 +221,9 @@ impl Shaper {
         Ok(JointVelocities(dq))
     }
 
-    /// Shapes a pose against the last one, [`RobotState::commanded_pose`] and its derivatives, and
-    /// its elbow against [`RobotState::commanded_elbow`]. `first` is true for the first command of
-    /// the motion.
+    /// Shapes a pose. The reference is the last pose, [`RobotState::commanded_pose`] and its
+    /// derivatives, and for the elbow [`RobotState::commanded_elbow`]. `first` is true for the
+    /// first command of the motion.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques); also if the pose is not a transformation, or the elbow
@@ -251,8 +252,8 @@ impl Shaper {
         })
     }
 
-    /// Shapes a twist against the last one, `O_dP_EE_c` of the state and its derivative, and its
-    /// elbow against [`RobotState::commanded_elbow`].
+    /// Shapes a twist. The reference is the last twist, `O_dP_EE_c` of the state and its
+    /// derivative, and for the elbow [`RobotState::commanded_elbow`].
     ///
     /// # Errors
     /// As for [`torques`](Self::torques); also if the elbow has no sign.
@@ -277,7 +278,7 @@ impl Shaper {
         })
     }
 
-    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a fair
+    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a large
     /// share of the work, so the second step reuses the rotations of the first.
     fn pose(
         &self,

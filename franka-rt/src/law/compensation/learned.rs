@@ -1,10 +1,10 @@
-//! Torque of each joint in steady motion: friction, which opposes the motion, and bias, which does
-//! not depend on its direction.
+//! Torque of each joint in steady motion that its model does not have: friction, which opposes the
+//! motion, and bias, which does not depend on the direction.
 //!
-//! In one direction only their sum is visible. A Kalman filter of two states per joint separates
-//! them: `takes = direction * friction + bias`. Friction changes slowly, bias quickly, because a
-//! load weighs differently in every pose. Covariances are in parts of the noise density of the
-//! measurement, `[1/s]`, so they are the rates of learning.
+//! In one direction only the sum of friction and bias is visible. A Kalman filter of two states per
+//! joint separates them: `takes = direction * friction + bias`. Friction changes slowly, bias
+//! quickly, because a load weighs differently in every pose. Covariances are relative to the noise
+//! density of the measurement, `[1/s]`, so they are the rates of learning.
 
 use crate::shaping::CYCLE;
 
@@ -34,7 +34,7 @@ impl Default for Joint {
 }
 
 impl Learned {
-    /// Begins with a friction and a bias of each joint, and their deviations, `[N m]`.
+    /// Begins with a friction and a bias of each joint, and their standard deviations, `[N m]`.
     pub(crate) fn known(joints: [((f64, f64), (f64, f64)); 7]) -> Self {
         Self(joints.map(|((friction, of_friction), (bias, of_bias))| {
             let covariance = |deviation: f64, most: f64| (deviation * deviation / NOISE).min(most);
@@ -52,8 +52,8 @@ impl Learned {
 
     /// Returns friction and bias of a joint, `[N m]`.
     ///
-    /// Even an arm without friction takes a little torque, because its torques lag. For such an arm
-    /// both are zero.
+    /// Even an arm without friction needs a little torque, because its torques lag. For such an arm
+    /// both values are zero.
     pub(crate) fn of(&self, joint: usize) -> (f64, f64) {
         let Joint { friction, bias, .. } = self.0[joint];
         let sticks = (friction / SMOOTH - 1.0).clamp(0.0, 1.0);
@@ -61,13 +61,13 @@ impl Learned {
         (friction * sticks, bias - unsure)
     }
 
-    /// Returns the uncertainty of a joint: 1 until it has moved both ways, then down to 0.
+    /// Returns the uncertainty of a joint: 1 until it has moved in both directions, then down to 0.
     pub(super) fn unknown(&self, joint: usize) -> f64 {
         let [of_friction, ..] = self.0[joint].covariance;
         (of_friction / KNOWN - 1.0).clamp(0.0, 1.0)
     }
 
-    /// Learns from a joint that moves in the direction of `sign` and takes this torque, `[N m]`.
+    /// Learns from a joint that moves in the direction of `sign` and needs this torque, `[N m]`.
     pub(super) fn learn(&mut self, joint: usize, sign: f64, takes: f64) {
         let Joint {
             friction,
@@ -88,21 +88,21 @@ impl Learned {
     }
 }
 
-/// Friction up to which a joint counts as smooth, `[N m]`. From twice this value a joint sticks.
+/// Friction up to which a joint counts as smooth, `[N m]`. From twice this value the joint sticks.
 const SMOOTH: f64 = 0.1;
 
-/// Bias of a smooth joint that is left to springs and integral, `[N m]`.
+/// Bias of a smooth joint that springs and integral compensate alone, `[N m]`.
 pub(super) const UNBIASED: f64 = 0.1;
 
 /// Initial covariance of friction and bias, for an unknown arm, `[1/s]`.
 const UNKNOWN: [f64; 2] = [5.0, 3.0];
 
-/// Noise density of the torque that a joint takes, `[N^2 m^2 s]`. Then an unknown friction is some
-/// 1 N m.
+/// Noise density of the measured torque of a joint, `[N^2 m^2 s]`. With it, the prior of an unknown
+/// friction is some 1 N m.
 const NOISE: f64 = 0.2;
 
-/// Covariance of the friction of a joint that has moved both ways, `[1/s]`. In one direction it
-/// does not fall below twice this value.
+/// Covariance of the friction of a joint that has moved in both directions, `[1/s]`. With one
+/// direction only, the covariance does not fall below twice this value.
 const KNOWN: f64 = 0.9;
 
 /// Growth of the covariances of friction and bias, `[1/s^2]`.

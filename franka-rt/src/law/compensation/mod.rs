@@ -1,8 +1,8 @@
-//! Torques that springs cannot exert: against friction, and against an undeclared load or a biased
+//! Torques in addition to the springs: against friction, and against an undeclared load or a biased
 //! torque sensor.
 //!
-//! A joint with friction leaves a spring stretched by its static torque over the stiffness. Under a
-//! spring that is soft enough to push a person with, that is millimetres. Three torques per joint
+//! A joint with friction leaves a spring stretched by its static torque over the stiffness. If the
+//! spring is soft enough for a person to push the arm, this is millimetres. Three torques per joint
 //! compensate it:
 //!
 //! ```text
@@ -12,26 +12,26 @@
 //!     + i                                         what is still missing at rest
 //! ```
 //!
-//! - `c` and `b` are [`learned`] in motion, from the torque that the springs exert there in
-//!   addition to them. On an arm without friction and bias both are zero.
+//! - `c` and `b` are [`learned`] in motion, from the torque that the springs exert in addition to
+//!   them. On an arm without friction and bias both are zero.
 //! - `i` is an integral that grows where the arm rests outside its [`DEAD_ZONE`], or creeps to its
-//!   target. It decays in motion. Inside the dead zone it stands still, so that nothing hunts.
+//!   target. It decays in motion. Inside the dead zone it stays constant, to avoid limit cycles.
 //!   Springs and integral together are limited to the torque that friction can explain, counted
-//!   from where the arm stopped, and the way back to zero is free. So a push on the arm meets
-//!   little more than the springs, and leaves nothing behind. Until the arm has stopped, its
-//!   unknown torques and a possible new grip count, too, for a while.
-//! - The second line is a spring that ends at 0.6 of the friction. So for every delay of the torque
-//!   loop it puts less energy into a swing than friction removes. It also shortens the slip of a
-//!   joint that breaks away, even where the springs are soft.
+//!   from where the arm stopped; the integral may always return to zero. A push on the arm
+//!   therefore meets little more than the springs, and leaves nothing behind. Until the arm has
+//!   stopped, its unknown torques and a possible new grip also count for a while.
+//! - The second line is a spring that saturates at 0.6 of the friction. For every delay of the
+//!   torque loop it therefore adds less energy to an oscillation than friction removes. It also
+//!   shortens the slip of a joint that breaks away, even where the springs are soft.
 //!
-//! [`Gains::compensation`](crate::law::Gains::compensation) bounds the sum for each joint, and the
-//! sum counts as part of the springs under clamp and force cap.
+//! [`Gains::compensation`](crate::law::Gains::compensation) bounds the sum for each joint. Torque
+//! clamp and force cap treat the sum as part of the springs.
 //!
-//! Something holds the arm if springs demand more than that bound or a guard binds. Then nothing is
-//! learned, the torques against friction at rest fade, and the integral returns to the value that
-//! held the arm at rest. After a goal has reacted to a contact, nothing is learned until the next
-//! goal. A push on the arm then is neither friction nor a load, and later motions would end short
-//! of their targets.
+//! Something holds the arm if the springs demand more than that bound or a guard bounds them. Then
+//! nothing is learned, the torques against friction at rest fade, and the integral returns to the
+//! value that held the arm at rest. After a goal has reacted to a contact, nothing is learned until
+//! the next goal: a push on the arm would look like friction or a load, and later motions would end
+//! short of their targets.
 
 mod learned;
 
@@ -48,26 +48,26 @@ pub(crate) struct Compensation {
     learned: Learned,
     /// The integral at rest, `[N m]`.
     rest: JointVector,
-    /// Share of the sum that acts: it rises from zero at the start, and falls to zero at the end.
+    /// Share of the sum that acts. It rises from zero at the start, and falls to zero at the end.
     acting: f64,
-    /// Share of the torques that fade where something holds the arm.
+    /// Share of the torques that fade while something holds the arm.
     free: f64,
-    /// Cycles for which each joint has rested, and its reference.
+    /// Number of cycles for which each joint and its reference have rested.
     rested: [u32; 7],
     approach: Approach,
-    /// True if the integral of a joint runs.
+    /// True if the integral of any joint changes.
     is_working: bool,
 }
 
-/// Progress of the arm to rest at its target.
+/// Progress of the arm towards rest at its target.
 #[derive(Debug)]
 enum Approach {
-    /// The arm has not stopped there yet.
+    /// The arm has not stopped at its target yet.
     Arriving {
-        /// Cycles for which the reference has rested. Beyond [`ARRIVES`], which a push also reaches
-        /// at once, unknown torques of the arm no longer count.
+        /// Number of cycles for which the reference has rested. Beyond [`ARRIVES`], unknown torques
+        /// of the arm no longer count. A push sets the number beyond it at once.
         cycles: u32,
-        /// Least distance at which each joint has rested meanwhile, `[rad]`.
+        /// Least distance from the target at which each joint has rested meanwhile, `[rad]`.
         nearest: JointVector,
     },
     /// The arm has stopped, with this integral, `[N m]`.
@@ -75,7 +75,7 @@ enum Approach {
 }
 
 impl Approach {
-    /// Approach to a moving target.
+    /// Returns the approach to a moving target.
     fn under_way() -> Self {
         Self::Arriving {
             cycles: 0,
@@ -101,14 +101,14 @@ pub(crate) struct Demand<'a> {
     pub(crate) bounds: &'a [f64; 7],
     /// True if a guard of the interaction binds.
     pub(crate) held: bool,
-    /// True if the goal has reacted to something that the arm has met. Nothing is learned then.
+    /// True if the goal has reacted to a contact. Nothing is learned then.
     pub(crate) met: bool,
-    /// True if the motion is about to end, without a torque.
+    /// True if the motion is about to end, which requires zero torque.
     pub(crate) ending: bool,
 }
 
 impl Compensation {
-    /// Starts with the known values of the arm.
+    /// Returns a compensation that starts with the known values of the arm.
     pub(crate) fn new(learned: Learned) -> Self {
         Self {
             learned,
@@ -130,7 +130,7 @@ impl Compensation {
         self.is_working
     }
 
-    /// Records the torques that held the arm when it stopped at its target.
+    /// Records the torques that hold the arm when it stops at its target.
     fn settle(&mut self, demand: &Demand<'_>) {
         let rests = |i: usize| self.rested[i] > SETTLED && demand.error[i].abs() < DEAD_ZONE[i];
         if demand.dq_ref.amax() > MOVING {
@@ -257,21 +257,21 @@ impl Compensation {
     }
 }
 
-/// Distances from the reference within which a joint is left alone at rest, `[rad]`. Together they
-/// are some 0.3 mm and 1 mrad at the end effector.
+/// Distances from the reference within which a resting joint is not corrected, `[rad]`. Together
+/// they are some 0.3 mm and 1 mrad at the end effector.
 pub(crate) const DEAD_ZONE: [f64; 7] = [3e-4, 3e-4, 3e-4, 3e-4, 5e-4, 5e-4, 5e-4];
 
 /// Velocity of the reference above which a joint counts as moving, `[rad/s]`.
 const MOVING: f64 = 0.02;
 
-/// Velocity of the reference below which it rests, `[rad/s]`.
+/// Velocity of the reference below which the reference rests, `[rad/s]`.
 const REFERENCE_RESTS: f64 = 1e-3;
 
 /// Acceleration of the reference above which nothing is learned, `[rad/s^2]`. Above it, the springs
-/// also supply the error of the inertia.
+/// also compensate the error of the inertia.
 const STEADY: f64 = 2.5;
 
-/// Share of its reference's velocity below which a joint learns nothing.
+/// Share of its reference's velocity below which a joint does not learn.
 const KEEPS_UP: f64 = 0.2;
 
 /// Velocity of the reference at which friction is compensated by 76 %, `[rad/s]`.
@@ -281,30 +281,31 @@ const SIGN_VELOCITY: f64 = 0.01;
 const SIGN_ERROR: f64 = 1e-3;
 
 /// Share of the friction that is compensated towards the target at rest. The learned value includes
-/// viscous friction, up to a third on the simulated arms. Even with it the share is below 1.
+/// viscous friction, up to a third on the simulated arms. Even with that part the share is below 1.
 const AT_REST: f64 = 0.6;
 
-/// Rate of the integral per torque of the springs, `[1/s]`: slower than the springs settle.
+/// Rate of the integral per torque of the springs, `[1/s]`: slower than the settling of the
+/// springs.
 const INTEGRAL: f64 = 5.0;
 
 /// Least rate outside the dead zone of a joint with friction, in parts of the friction per second.
 const BREAK_AWAY: f64 = 2.5;
 
-/// Velocity below which a joint of the arm rests, `[rad/s]`.
+/// Velocity below which a joint of the arm counts as resting, `[rad/s]`.
 const REST_VELOCITY: f64 = 0.01;
 
-/// Velocity up to which a joint that has not settled yet counts as resting, in parts of its error,
-/// `[1/s]`. At that velocity it would take longer to its target than its springs do.
+/// Velocity up to which a joint that has not settled yet counts as resting, relative to its error,
+/// `[1/s]`. At that velocity the joint would reach its target later than its springs do.
 const CREEP: f64 = 2.0;
 
 /// Cycles of rest after which the integral grows, for a joint without known friction and for a
-/// joint with it. The springs alone have brought the former as near as they can.
+/// joint with known friction. The springs alone have moved the former as near as they can.
 const RESTED: [u32; 2] = [150, 20];
 
-/// Factor of its speed back to zero where it pulls away from the target.
+/// Factor of the integral's speed back to zero if it pulls away from the target.
 const UNWIND: f64 = 4.0;
 
-/// Time in which the integral decays in motion and where something holds the arm, `[s]`.
+/// Time in which the integral decays in motion and while something holds the arm, `[s]`.
 const FORGET: f64 = 0.15;
 
 /// Cycles of rest after which an arm no longer moves without a push.
@@ -319,31 +320,32 @@ const PUSHED: f64 = 5e-3;
 /// Greatest ratio of the breakaway torque of a joint to its learned friction.
 const FRICTION_SPREAD: f64 = 2.0;
 
-/// Torque at which the joints of a realistic arm break away at most, `[N m]`: the middle of the
-/// family times 1.38, the ends of its two spreads.
+/// Largest breakaway torque of the joints of a realistic arm, `[N m]`: the middle of the family
+/// times 1.38, the ends of its two spreads.
 pub(crate) const STATIC_FRICTION: [f64; 7] = [1.31, 1.59, 1.31, 1.79, 1.45, 0.83, 0.69];
 
-/// Greatest ratio of what holds a joint, of which nothing is known, to this: its bias comes on top.
-/// Without it, nine of ten arms that were pushed before they had moved stayed millimetres away.
+/// Largest ratio of the torque that holds an unknown joint to its [`STATIC_FRICTION`]: its bias
+/// adds to the friction. Without this factor, nine of ten arms that were pushed before they had
+/// moved stayed millimetres away.
 const UNKNOWN_SPREAD: f64 = 1.5;
 
-/// Share of a bias by which it may differ in another pose.
+/// Largest relative difference of a bias between two poses.
 const BIAS_SPREAD: f64 = 0.5;
 
 /// Greatest change of the integral of a joint without friction after the arm has stopped, `[N m]`.
 const FELT: f64 = 0.3;
 
-/// Greatest change of a joint's load from one motion to the next, `[N m]`: the torque of 0.3 kg,
-/// half a metre away.
+/// Greatest change of a joint's load from one motion to the next, `[N m]`: the torque of 0.3 kg at
+/// half a metre.
 const LOADED: f64 = 1.6;
 
 /// Change of the acting share at the start and the end, per cycle.
 const RAMP: f64 = 0.01;
 
-/// Share by which the torques at rest fade per cycle where something holds the arm.
+/// Share by which the torques at rest fade per cycle while something holds the arm.
 const LET_GO: f64 = 0.02;
 
-/// Share by which they return.
+/// Share by which the torques at rest return per cycle.
 const TAKE_UP: f64 = 1.0 / 300.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The course of a reference that follows chunks.
+//! The course of a reference that follows chunks: how the reference advances in each cycle.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, Model, rotation};
@@ -40,21 +40,22 @@ enum Play {
         player: Player<PoseState>,
         state: PoseState,
         drift: Drift,
-        /// For a path, which was checked with it: joint positions when the path was taken up.
+        /// For a path, which was checked with this posture: joint positions at the start of the
+        /// path.
         posture: Option<Posture>,
         translation: AxisLimits,
         rotation: AxisLimits,
     },
 }
 
-/// Situation in which a chunk is taken up.
+/// Situation at the moment when the session begins to follow a chunk.
 #[derive(Debug)]
 pub(in crate::session) struct ChunkStart<'a> {
     /// Reference in the previous answer.
     pub(in crate::session) reference: &'a Reference,
     /// Pose that the reference follows, or the pose of its end effector.
     pub(in crate::session) pose: PoseState,
-    /// Remainder of a motion over the joints.
+    /// Remainder of a motion of the joints.
     pub(in crate::session) drift: Drift,
     /// The previous chunk.
     pub(in crate::session) before: Option<&'a ChunkCourse>,
@@ -63,7 +64,7 @@ pub(in crate::session) struct ChunkStart<'a> {
 }
 
 impl ChunkCourse {
-    /// Takes up `chunk`.
+    /// Begins to follow `chunk`.
     pub(in crate::session) fn new(
         model: &Model,
         goal: GoalId,
@@ -133,8 +134,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Continues from `reference` within another budget. The chunk keeps its times: a lag under a
-    /// slower budget is made up for.
+    /// Continues from `reference` within another budget. The chunk keeps its times: a lag from a
+    /// slower budget is caught up later.
     pub(in crate::session) fn keep_to(
         &mut self,
         model: &Model,
@@ -167,8 +168,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Continues from `reference`, and the `pose` of its end effector, which something else has
-    /// moved.
+    /// Continues from `reference`, and the `pose` of its end effector, after something else has
+    /// moved them.
     pub(in crate::session) fn begin_again(
         &mut self,
         model: &Model,
@@ -245,7 +246,7 @@ impl ChunkCourse {
     }
 
     /// Returns the pose that the joint reference follows, if the chunk moves a pose, and the
-    /// remainder of motions over the joints.
+    /// remainder of a motion of the joints.
     pub(in crate::session) fn pose(&self) -> Option<(PoseState, Drift)> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -253,7 +254,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Moves that pose to `pose` with its velocity kept. The course makes up for the lag that this
+    /// Moves that pose to `pose` and keeps its velocity. The course catches up the lag that this
     /// causes.
     pub(in crate::session) fn reanchor(&mut self, pose: Isometry3<f64>) {
         if let Play::Poses { state, .. } = &mut self.play {
@@ -269,7 +270,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Time from `now` to the last point, `[s]`.
+    /// Returns the time from `now` to the last point, `[s]`.
     pub(in crate::session) fn remaining(&self, now: u64) -> f64 {
         match &self.play {
             Play::Joints { player, .. } => player.remaining(now),
@@ -277,7 +278,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Target at which the chunk ends at rest.
+    /// Returns the target at which the chunk ends at rest.
     pub(in crate::session) fn target(&self) -> Target {
         match &self.play {
             Play::Joints { player, .. } => Target::Joints(player.curve().last().q.into()),
@@ -285,7 +286,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Gives the chunk back, because the course has ended by `now`.
+    /// Returns the chunk to the writer, because the course has ended by `now`.
     pub(in crate::session) fn end(self, chunks: &mut ChunkReader, now: u64) {
         let fate = if self.is_over(now) {
             Fate::Ended
@@ -306,9 +307,9 @@ fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
-/// Returns the limits of each joint on a path through points of this `extent`. They are its budget,
-/// unless its present motion exceeds the budget. They are gentle enough for the points nearest to
-/// the ends of its range.
+/// Returns the limits of each joint on a path through points of this `extent`. They are the joint's
+/// budget, unless its present motion exceeds the budget. They are gentle enough for the points
+/// nearest to the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
     extent: &JointExtent,
@@ -328,8 +329,8 @@ fn joint_limits(
     })
 }
 
-/// Follows with each joint alone. Where the motion between points leaves a joint's range, the joint
-/// waits at the end of the range.
+/// Advances each joint alone. If the motion between points leaves a joint's range, the joint waits
+/// at the end of the range.
 fn follow_joints(
     robot: &JointLimits,
     limits: &[AxisLimits; 7],
@@ -357,9 +358,9 @@ fn follow_joints(
     next
 }
 
-/// Follows translation and rotation, each by its norm. Angular velocity and acceleration are in
-/// base axes, so that they keep the budget there. The rotation vector of a cycle differs from them
-/// only in the third order.
+/// Advances translation and rotation, each limited by its norm. Angular velocity and acceleration
+/// are in base axes, so that they keep the budget there. The rotation vector of a cycle differs
+/// from them only in the third order.
 fn follow_pose(
     translation: &AxisLimits,
     turning: &AxisLimits,

@@ -1,9 +1,9 @@
 //! The motion through the points of a chunk, twice continuously differentiable.
 //!
-//! Each point gets a velocity and an acceleration from its neighbours, and two points are joined by
-//! the fifth-degree polynomial that meets all six values. Orientations are joined as rotation
-//! vectors in the chart around the earlier of the two, so that no total turn of the end effector
-//! leads to a singularity. The motion rests at its last point.
+//! Each point gets a velocity and an acceleration from its neighbours. Two points are joined by the
+//! fifth-degree polynomial that meets all six values. Orientations are joined as rotation vectors
+//! in the chart around the earlier of the two, so that no total turn of the end effector leads to a
+//! singularity. The motion rests at its last point.
 
 use super::curve_state::CurveState;
 
@@ -12,8 +12,8 @@ use super::curve_state::CurveState;
 pub(super) struct Curve<M: CurveState> {
     times: Vec<f64>,
     states: Vec<M>,
-    /// Computed here, outside the thread: the cycle that takes up a chunk has no time for all
-    /// points.
+    /// Range of the points. Computed when the curve is made, outside the thread, because the cycle
+    /// that begins a chunk has no time to visit all points.
     extent: M::Extent,
 }
 

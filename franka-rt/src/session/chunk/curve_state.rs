@@ -1,5 +1,5 @@
-//! States along a chunk: joints, or a pose. They define the transition between two states, and the
-//! fading of a distance between two.
+//! States along a chunk, of joints or a pose: the transition between two states, and the fading of
+//! a distance between them.
 
 use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, SVector, Translation3, Vector3};
@@ -30,7 +30,7 @@ pub(super) trait CurveState: Copy {
     /// Returns the distance from `base` to this state.
     fn gap_from(&self, base: &Self) -> Self::Gap;
 
-    /// Returns this state, displaced by the rest of `gap` at `t` if the gap closes within
+    /// Returns this state, displaced by the rest of `gap` at `t`, if the gap closes within
     /// `duration`.
     fn displaced(&self, gap: &Self::Gap, duration: f64, t: f64) -> Self;
 
@@ -38,10 +38,11 @@ pub(super) trait CurveState: Copy {
     /// `[1/s]`.
     fn paced(&self, rate: f64, change: f64) -> Self;
 
-    /// Distance behind `target`, or beside its path, in units of the permitted distance on a path.
+    /// Returns the distance behind `target`, or from its path, in units of the permitted distance
+    /// on a path.
     fn lag(&self, target: &Self) -> f64;
 
-    /// Distance from `other`, in the same units.
+    /// Returns the distance from `other`, in the same units.
     fn distance(&self, other: &Self) -> f64;
 
     /// Returns the same place, with the motion of `other`.
@@ -57,8 +58,8 @@ pub(super) trait CurveState: Copy {
     fn points(curve: Curve<Self>) -> Points;
 }
 
-/// Length of `gap` to a point that moves at `velocity`, without the part ahead of that point. If a
-/// path waited for a reference ahead of it, it would drive the reference further ahead.
+/// Returns the length of `gap` to a point that moves at `velocity`, without the part ahead of that
+/// point. If a path waited for a reference ahead of it, it would drive the reference further ahead.
 fn behind<const D: usize>(gap: &SVector<f64, D>, velocity: &SVector<f64, D>) -> f64 {
     let along = gap.dot(velocity);
     let ahead = if along < 0.0 {
@@ -162,8 +163,8 @@ impl From<PointState<7>> for Reference {
     }
 }
 
-/// Translation and rotation of one pose against another: the rotation vector turns the other one
-/// into this one.
+/// Translation and rotation of one pose relative to another. The rotation vector turns the other
+/// pose into this one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseGap {
     translation: PointState<3>,
@@ -275,7 +276,7 @@ impl CurveState for PoseState {
 }
 
 impl PoseState {
-    /// Position, velocity and acceleration of the frame's origin.
+    /// Returns position, velocity and acceleration of the frame's origin.
     pub(super) fn translation(&self) -> PointState<3> {
         PointState {
             p: self.pose.translation.vector,
@@ -284,8 +285,8 @@ impl PoseState {
         }
     }
 
-    /// Angular velocity and acceleration, which equal the derivatives of the rotation vector in the
-    /// chart around this orientation.
+    /// Returns angular velocity and acceleration, which equal the derivatives of the rotation
+    /// vector in the chart around this orientation.
     pub(super) fn rotation(&self) -> PointState<3> {
         PointState {
             p: Vector3::zeros(),

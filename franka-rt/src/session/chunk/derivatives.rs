@@ -8,14 +8,14 @@ use nalgebra::SVector;
 /// Maximum number of samples in one derivative.
 const SAMPLES: usize = 5;
 
-/// Greatest ratio of two intervals for which five samples are used: on less even grids a
-/// fourth-degree polynomial swings.
+/// Greatest ratio of two intervals for which five samples are used. On less even grids a
+/// fourth-degree polynomial oscillates.
 const EVEN: f64 = 3.0;
 
 /// Returns first and second derivative at sample `i` of the values at `times`. `value` returns a
 /// sample in coordinates of the caller's choice.
 ///
-/// Uses five samples where there are two on each side at similar distances, otherwise three, or the
+/// Uses five samples if there are two on each side at similar distances, otherwise three, or the
 /// slope of two. A single sample has no motion.
 pub(super) fn at<const D: usize>(
     times: &[f64],

@@ -42,7 +42,7 @@ pub enum ChunkError {
     TooClose {
         /// The point, from 1.
         point: usize,
-        /// Its time.
+        /// Time of the point.
         time: Duration,
         /// Time of the previous point.
         before: Duration,
@@ -56,7 +56,7 @@ pub enum ChunkError {
     TooLate {
         /// The point, from 1.
         point: usize,
-        /// Its time.
+        /// Time of the point.
         time: Duration,
     },
     /// Between two points the end effector turns so far that the direction of the turn is

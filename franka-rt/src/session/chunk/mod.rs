@@ -10,8 +10,8 @@
 //! * `value`, `error`: the chunk and its valid contents; `derivatives`, `curve`, `quintic`,
 //!   `curve_state`: the motion through its points, computed outside the thread.
 //! * `ring`: transfer to the thread and back.
-//! * `player`: the wanted state at a time of the robot, and the takeover of a new chunk. Lost
-//!   states need nothing special: the time jumps, and the servo makes up for the distance.
+//! * `player`: the wanted state at a time of the robot, and the transition to a new chunk. Lost
+//!   states need no special treatment: the time jumps, and the servo closes the distance.
 //! * `path`, `pace`: places without times are timed and checked outside the thread, and then
 //!   followed as a chunk whose time can wait.
 //! * `servo`: a reference that follows the wanted state within the limits. `course`: player and

@@ -45,7 +45,7 @@ pub(super) struct PathTime {
     /// Time, seconds of the path.
     pub(super) time: f64,
     pace: Pace,
-    /// 1 at full pace, 0 when paused.
+    /// Speed of the path's time: 1 at full pace, 0 when paused.
     axis: Generator<1>,
     /// Remaining share of the pace while the arm lags.
     share: f64,
@@ -87,7 +87,7 @@ impl PathTime {
         self.axis.state().position[0].clamp(0.0, 1.0) * self.share
     }
 
-    /// Derivative of [`rate`](Self::rate), `[1/s]`, without the part from the lag.
+    /// Returns the derivative of [`rate`](Self::rate), `[1/s]`, without the part from the lag.
     pub(super) fn change(&self) -> f64 {
         self.axis.state().velocity[0] * self.share
     }

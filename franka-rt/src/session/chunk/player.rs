@@ -12,25 +12,25 @@ use crate::shaping::CYCLE;
 /// this limit the previous motion would continue for half of the time to a distant point.
 const LET_GO: f64 = 1.0;
 
-/// A chunk that was taken up.
+/// A chunk that the session follows or followed.
 #[derive(Debug)]
 pub(super) struct Player<M: CurveState> {
     curve: Curve<M>,
     /// Robot time of the curve's origin, `message_id`.
     origin: u64,
-    /// Original values of the chunk, for giving it back.
+    /// Original values of the chunk, for returning it to the writer.
     asked: (Origin, Duration, Option<Pace>),
     /// Time of a path.
     own: Option<PathTime>,
     entry: Entry<M>,
 }
 
-/// Transition from the previous motion into the curve, with times as in the curve.
+/// Transition from the previous motion to the curve, with times as in the curve.
 #[derive(Debug)]
 enum Entry<M: CurveState> {
-    /// Immediate.
+    /// The reference follows the curve at once.
     Turn,
-    /// The first point lies in the future. The arm approaches it since `since`.
+    /// The first point is in the future. The arm has been approaching it since `since`.
     Approach { from: M, since: f64 },
     /// The distance from the curve at `since` fades out in `duration`.
     Blend {
@@ -41,14 +41,15 @@ enum Entry<M: CurveState> {
 }
 
 impl<M: CurveState> Player<M> {
-    /// Takes up a chunk through `curve` in the answer to the state `now`. In the previous answer
-    /// the reference was at `reference`, and the previous chunk wanted it at `wanted`.
+    /// Begins to follow a chunk through `curve` in the answer to the state `now`. In the previous
+    /// answer the reference was at `reference`, and the previous chunk wanted it at `wanted`.
     ///
-    /// The motion begins at the place that is nearer to the chunk. The reference makes up for its
-    /// lag behind the previous chunk within its limits, and continues to do so. Reaching a new
-    /// chunk in time from the lagging reference would require more than the limits allow, and each
-    /// chunk would amplify the swing. A chunk that begins at the arm's place continues from there.
-    /// The velocity is the reference's, because a chunk may want any velocity.
+    /// The motion begins at whichever of these two places is nearer to the chunk. The reference
+    /// catches up its lag behind the previous chunk within its limits, also with the new chunk.
+    /// Reaching a new chunk in time from the lagging reference would require more than the limits
+    /// allow, and each chunk would amplify the oscillation. A chunk that begins at the arm's place
+    /// continues from there. The initial velocity is the reference's, because a chunk may want any
+    /// velocity.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),
@@ -107,15 +108,15 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Advances the time of a path by one cycle, for an arm that is behind by `lag` in units of the
-    /// permitted lag.
+    /// Advances the time of a path by one cycle, for an arm that is behind by `lag`, in units of
+    /// the permitted lag.
     pub(super) fn step(&mut self, lag: f64) {
         if let Some(own) = &mut self.own {
             own.step(lag);
         }
     }
 
-    /// Stops or resumes the time of a path. Points that have times do not wait.
+    /// Stops or resumes the time of a path. Points with fixed times do not wait.
     pub(super) fn set_paused(&mut self, paused: bool) {
         if let Some(own) = &mut self.own {
             own.set_paused(paused);
@@ -142,7 +143,7 @@ impl<M: CurveState> Player<M> {
         entered && t >= self.curve.end()
     }
 
-    /// Time from `now` to the last point, `[s]`.
+    /// Returns the time from `now` to the last point, `[s]`.
     pub(super) fn remaining(&self, now: u64) -> f64 {
         (self.curve.end() - self.time(now)).max(0.0)
     }

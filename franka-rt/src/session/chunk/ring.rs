@@ -1,24 +1,24 @@
-//! Two rings by which chunks cross into the thread and back, because the thread may neither
-//! allocate nor free the heap memory of their points.
+//! Two rings that pass chunks into the thread and back, because the thread may neither allocate nor
+//! free the heap memory of their points.
 //!
 //! ```text
 //! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
 //!             <- ring of returns <-              what is done with, and what became of it
 //! ```
 //!
-//! Every chunk that went in comes back, so the writer knows how many are out. It sends no more than
-//! the return ring holds, so the thread's end of that ring is never full.
+//! Every chunk that was sent comes back, so the writer knows how many are still with the thread. It
+//! sends no more than the return ring holds, so the thread's end of that ring is never full.
 
 use super::value::Chunk;
 use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 use crate::shaping::CYCLE;
 
-/// A chunk that waited, and that another chunk may have superseded since.
+/// A chunk that waits for its beginning. Another chunk may have superseded it meanwhile.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     goal: GoalId,
-    /// Due time of its beginning, by the robot's clock.
+    /// Time at which the chunk should begin, by the robot's clock.
     begin: u64,
     /// Planned waiting time, `[s]`.
     wait: f64,
@@ -39,12 +39,12 @@ pub enum Fate {
     Replaced,
     /// The arm followed the chunk to its end.
     Ended,
-    /// A newer chunk of the same goal arrived before this one was taken up.
+    /// A newer chunk of the same goal arrived before the session began this one.
     Superseded,
-    /// All of its points had passed when it could have been taken up.
+    /// All points of the chunk had passed before the session could begin it.
     Late,
-    /// Its goal no longer follows a chunk, or a chunk of another goal arrived before this one was
-    /// taken up.
+    /// The goal no longer follows a chunk, or a chunk of another goal arrived before the session
+    /// began this one.
     Obsolete,
 }
 
@@ -59,8 +59,7 @@ pub struct Returned {
     pub chunk: Chunk,
 }
 
-/// The ring has no room for another chunk: the thread has not taken up or given back the earlier
-/// chunks.
+/// The ring has no room for another chunk: the thread has not begun or returned the earlier chunks.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "got more chunks at once than the control thread accepts, expected {} at most: send fewer",
@@ -79,14 +78,14 @@ pub struct ChunkWriter {
     under_way: usize,
 }
 
-/// The end in the session.
+/// The end of the channel in the session.
 #[derive(Debug)]
 pub struct ChunkReader {
     chunks: Receiver<Sent>,
     returns: Sender<Returned>,
-    /// The newest chunk, until the session takes it up.
+    /// The newest chunk, until the session begins it.
     newest: Option<Sent>,
-    /// Among the chunks that waited since the last take-up, the chunk that was due first.
+    /// Of the chunks that waited since a chunk last began, the chunk that was due first.
     due: Option<Waiting>,
 }
 
@@ -111,8 +110,8 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
 impl ChunkWriter {
     /// Sends `chunk` for `goal`. It replaces the previous chunk.
     ///
-    /// Send the first chunk of a goal before its goal is written to the goals' slot. It is kept
-    /// until that goal is in force, or another chunk arrives.
+    /// Send the first chunk of a goal before its goal is written to the goals' slot. The chunk is
+    /// kept until that goal is in force, or another chunk arrives.
     ///
     /// # Errors
     /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] chunks have not been
@@ -146,7 +145,7 @@ impl ChunkWriter {
         Some(returned)
     }
 
-    /// True if the session is gone. It will take up no chunk any more.
+    /// True if the session is gone, so no chunk begins any more.
     pub fn is_abandoned(&self) -> bool {
         self.chunks.is_abandoned()
     }
@@ -154,16 +153,15 @@ impl ChunkWriter {
 
 impl ChunkReader {
     /// Returns the newest chunk for `goal`, the goal in force at the robot's time `now`, if the
-    /// chunk is new and may begin. It may begin once its first point is due, or if `idle`, because
-    /// no other chunk runs.
+    /// chunk is new and may begin. It may begin once its first point is due. If `idle`, it may
+    /// begin at once, because no other chunk runs.
     ///
-    /// If it has superseded a chunk whose time has come, it may begin early, by at most the waiting
-    /// time of that chunk. Otherwise the arm would never follow a policy whose first point lies
-    /// further ahead than its next prediction.
+    /// A chunk that has superseded another one may begin early, once that chunk was due, by at most
+    /// the waiting time of that chunk. Otherwise the arm would never follow a policy whose first
+    /// point is further ahead than its next prediction.
     ///
-    /// Chunks that this makes superfluous go back. A chunk of another goal is kept, because that
-    /// goal may be still to come. Names of goals have no order: a goal may be named long before it
-    /// is written.
+    /// Returns superfluous chunks to the writer. A chunk of another goal is kept, because that goal
+    /// may still come. Names of goals have no order: a goal may be named long before it is written.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
         self.receive();
         let chunk = self.take_newest(goal)?;
@@ -191,7 +189,8 @@ impl ChunkReader {
         None
     }
 
-    /// Gives back the chunks that have arrived for `goal`, which takes up no chunk any more.
+    /// Returns the chunks that have arrived for `goal` to the writer; that goal begins no chunk any
+    /// more.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         self.due = None;
@@ -200,7 +199,7 @@ impl ChunkReader {
         }
     }
 
-    /// Removes the chunk of `goal` that was not taken up, for a session that has ended.
+    /// Removes the chunk of `goal` that has not begun, for a session that has ended.
     pub(in crate::session) fn take(&mut self, goal: GoalId) -> Option<Chunk> {
         self.receive();
         self.take_newest(goal)
@@ -227,7 +226,7 @@ impl ChunkReader {
         }
     }
 
-    /// Gives back a chunk that is no longer needed.
+    /// Returns a chunk that is no longer needed to the writer.
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {

@@ -7,13 +7,13 @@
 //! ```
 //!
 //! On the target, a target that keeps the limits is followed exactly: all of its motion is fed
-//! forward. Off the target, the distance decays, evenly decelerated from afar and exponentially at
-//! the end.
+//! forward. Off the target, the distance decays: with even deceleration from afar and exponentially
+//! at the end.
 //!
-//! A generator that plans anew in each cycle for the target of the next cycle does not do this. A
-//! micrometre off, it cannot get there in one millisecond. It passes through the target's place
-//! later, or all axes wait for the slowest one and start again. A plan to a later point of the
-//! chunk would arrive early where the chunk is slow.
+//! A generator that plans anew in each cycle for the target of the next cycle cannot do this. When
+//! it is a micrometre off, it cannot reach the target in one millisecond. It passes through the
+//! target's place later, or all axes wait for the slowest one and start again. A plan to a later
+//! point of the chunk would arrive early where the chunk is slow.
 //!
 //! **Limits.** A state is admissible if acceleration and velocity keep their limits, and still do
 //! while the acceleration is removed as fast as the jerk allows, in whole cycles. Removing the
@@ -29,14 +29,15 @@ use nalgebra::SVector;
 use super::quintic::PointState;
 use crate::shaping::CYCLE;
 
-/// Greatest rate at which a missing velocity is made up for, `[1/s]`.
+/// Greatest rate at which a missing velocity is compensated, `[1/s]`.
 const RATE_MAX: f64 = 100.0;
 
 /// Share of the quotient of jerk and acceleration that the rate uses: the rate at which the
 /// acceleration can change.
 const RATE_SHARE: f64 = 0.5;
 
-/// Ratio between the decay times of the distance and of the missing velocity. At 3 nothing swings.
+/// Ratio between the decay times of the distance and of the missing velocity. At 3 nothing
+/// oscillates.
 const SLOWER: f64 = 3.0;
 
 /// Share of the acceleration with which an approach from afar brakes. The rest is for the target's
@@ -76,9 +77,9 @@ pub(super) fn follow<const D: usize>(
     admissible(now, jerk, limits)
 }
 
-/// Returns the velocity at which the distance to the target is made up for, and its derivative
-/// while the distance changes at `change`. The velocity is `rate` times the distance. From afar it
-/// is the velocity that `braking` can stop.
+/// Returns the velocity at which the distance to the target is closed, and its derivative while the
+/// distance changes at `change`. The velocity is `rate` times the distance. From afar it is the
+/// velocity from which `braking` can stop.
 fn approach<const D: usize>(
     distance: &SVector<f64, D>,
     change: &SVector<f64, D>,
@@ -139,7 +140,7 @@ fn admissible<const D: usize>(
     now.after(&(back + (jerk - back) * kept), CYCLE)
 }
 
-/// Returns the velocity left when the acceleration has been removed.
+/// Returns the velocity that remains when the acceleration has been removed.
 fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D> {
     state.v + state.a * (0.5 * CYCLE * cycles(state, jerk))
 }

@@ -28,7 +28,7 @@ pub(super) const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
 /// Origin of a chunk's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// The cycle that takes the chunk up.
+    /// The cycle in which the session begins to follow the chunk.
     TakeUp,
     /// A time of the robot, `message_id`.
     Robot(u64),
@@ -44,12 +44,12 @@ pub(super) enum Origin {
 /// the last one ends.
 ///
 /// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points
-///   whose time has passed at take-up are skipped, and the arm enters the motion at the robot's
-///   present time.
+///   whose time has passed when the chunk begins are skipped. The arm enters the motion at the
+///   robot's present time.
 /// - **Receding horizon.** A newer chunk replaces the current chunk as soon as the newer chunk's
-///   first point is due, or at once if none is running. If it has superseded a chunk that waited,
-///   it takes over when that chunk was due. It is then early by at most that chunk's waiting time:
-///   after a wait of 40 ms, by up to 40 ms. It is blended in over [`Chunk::BLEND`]; see
+///   first point is due, or at once if none is running. If it has superseded a waiting chunk, it
+///   begins when that chunk was due. It is then early by at most that chunk's waiting time: after a
+///   wait of 40 ms, by up to 40 ms. The new chunk is blended in over [`Chunk::BLEND`]; see
 ///   [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
@@ -71,10 +71,10 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
-    /// True if the caller gave the velocities of the points. They are checked before the chunk is
-    /// sent.
+    /// True if the caller gave the velocities of the points, which are then checked before the
+    /// chunk is sent.
     pub(super) with_velocities: bool,
-    /// Pace at which a path waits and pauses; `None` for points that have times.
+    /// Pace at which a path waits and pauses; `None` for points with fixed times.
     pub(super) pace: Option<Pace>,
 }
 
@@ -93,7 +93,7 @@ impl Chunk {
     pub const UNDER_WAY_MAX: usize = 8;
 
     /// Latest time of a point after its chunk's origin, and of that origin after the robot's newest
-    /// state. A later time is a mistake of units or clocks.
+    /// state. A later time is probably a mistake of units or clocks.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
     /// Default time over which a chunk is blended with the present motion: as long as one inference
@@ -213,7 +213,7 @@ impl Chunk {
     }
 
     /// Counts the points' times from the robot's state `message_id`, `[ms]`, which the policy saw.
-    /// Without this call they count from the cycle that takes up the chunk.
+    /// Without this call they count from the cycle in which the chunk begins.
     #[must_use]
     pub fn observed_at(mut self, message_id: u64) -> Self {
         self.origin = Origin::Robot(message_id);
@@ -224,24 +224,24 @@ impl Chunk {
     /// The arm first continues with its velocity and acceleration, and its difference to the chunk
     /// then fades out.
     ///
-    /// An arm may lag behind another chunk at that instant. If that chunk's reference is nearer to
-    /// the new chunk, the blend begins there. The arm then makes up for its lag at the pace of the
-    /// budget, not within the blend.
+    /// The arm may lag behind another chunk at that instant. If that chunk's reference is nearer to
+    /// the new chunk, the blend begins at that reference. The arm then catches up its lag within
+    /// the budget, not within the blend.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
         self.blend = over.min(Self::OFFSET_MAX);
         self
     }
 
-    /// Does not blend: the arm turns to the chunk as fast as the budget allows. Use this for chunks
-    /// that correct the previous chunk.
+    /// Switches blending off: the arm turns to the chunk as fast as the budget allows. Use this for
+    /// chunks that correct the previous chunk.
     #[must_use]
     pub fn replace(self) -> Self {
         self.blend(Duration::ZERO)
     }
 
     /// Returns the time from the robot's state `now`, `message_id`, to the last point; zero if that
-    /// has passed.
+    /// point has passed.
     pub fn end_after(&self, now: u64) -> Duration {
         Duration::try_from_secs_f64(self.end() - self.since_origin(now)).unwrap_or(Duration::ZERO)
     }
@@ -252,7 +252,7 @@ impl Chunk {
         Duration::try_from_secs_f64(self.since_origin(now) - self.end()).unwrap_or(Duration::ZERO)
     }
 
-    /// Target at which the arm rests after the last point.
+    /// Returns the target at which the arm rests after the last point.
     pub fn target(&self) -> Target {
         match &self.points {
             Points::Joints(curve) => Target::Joints(curve.last().q.into()),
@@ -293,7 +293,7 @@ impl Chunk {
         }
     }
 
-    /// Returns the state that the policy saw, `message_id`, if named.
+    /// Returns the `message_id` of the state that the policy saw, if it is named.
     pub(crate) fn observation(&self) -> Option<u64> {
         match self.origin {
             Origin::TakeUp => None,
@@ -301,8 +301,8 @@ impl Chunk {
         }
     }
 
-    /// Returns the seconds from the origin to the robot's time `now`; a chunk without an origin
-    /// begins then.
+    /// Returns the seconds from the origin to the robot's time `now`. A chunk without an origin
+    /// begins at `now`.
     pub(super) fn since_origin(&self, now: u64) -> f64 {
         match self.origin {
             Origin::TakeUp => 0.0,
@@ -310,12 +310,12 @@ impl Chunk {
         }
     }
 
-    /// True if the times count from the cycle that takes up the chunk.
+    /// True if the times count from the cycle in which the chunk begins.
     pub(super) fn begins_at_take_up(&self) -> bool {
         self.origin == Origin::TakeUp
     }
 
-    /// Due time of the first point, seconds from the origin.
+    /// Returns the due time of the first point, seconds from the origin.
     pub(super) fn begin(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.begin(),
@@ -323,7 +323,7 @@ impl Chunk {
         }
     }
 
-    /// Due time of the last point, seconds from the origin.
+    /// Returns the due time of the last point, seconds from the origin.
     pub(super) fn end(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.end(),
@@ -350,13 +350,15 @@ impl Chunk {
     }
 }
 
-/// Time from `origin` to `now`, `message_id` both, in seconds; negative if `now` is earlier.
+/// Returns the time from `origin` to `now`, both a `message_id`, in seconds; negative if `now` is
+/// earlier.
 pub(super) fn milliseconds(now: u64, origin: u64) -> f64 {
     let distance = now.abs_diff(origin) as f64 * 1e-3;
     if now < origin { -distance } else { distance }
 }
 
-/// Times and values of the points, checked; `check` gets the number of the point as well.
+/// Returns the checked times and values of the points. `check` also receives the number of the
+/// point.
 fn collect<T>(
     points: impl IntoIterator<Item = (Duration, T)>,
     check: impl Fn(usize, &T) -> Result<(), ChunkError>,

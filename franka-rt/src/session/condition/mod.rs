@@ -47,7 +47,7 @@ pub(super) use watch::{Observed, Watch};
 /// operators. A condition that does not fit or is invalid is refused when the motion begins: see
 /// [`Self::check`].
 ///
-/// A robot does not send quantities that are not finite. Such a quantity fulfils neither a
+/// A robot may not have an estimate, which is then not finite. Such a quantity fulfils neither a
 /// comparison nor its negation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
@@ -65,11 +65,11 @@ type Offset = [f64; 13];
 /// Reference of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Since {
-    /// The value.
+    /// The value of the quantity itself.
     Never,
-    /// Its change since the first state of the goal.
+    /// The change of the quantity since the first state of the goal.
     Beginning,
-    /// Its change since a tare.
+    /// The change of the quantity since a tare.
     Tare,
 }
 
@@ -117,7 +117,7 @@ enum Flag {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionError {
-    /// It has too many comparisons and operators.
+    /// The condition has too many comparisons and operators.
     #[error(
         "the condition has {got} comparisons and operators, expected at most {}",
         Condition::ROOM
@@ -134,16 +134,16 @@ pub enum ConditionError {
     Threshold {
         /// Quantity of the comparison.
         quantity: Quantity,
-        /// The value given.
+        /// The given value.
         got: f64,
     },
     /// The arm has no such joint.
     #[error("the condition names joint {got}, expected 1 to 7")]
     Joint {
-        /// The number given.
+        /// The given number of the joint.
         got: u8,
     },
-    /// The tare is not finite, or the condition has two different ones.
+    /// The tare is not finite, or the condition has two different tares.
     #[error(
         "the condition has several tares, or a tare that is not finite; expected one finite tare \
          for all its comparisons"
@@ -156,8 +156,9 @@ pub enum ConditionError {
     Guided,
 }
 
-/// True while the external force along x is at or beyond `newtons`, in either direction. Its
-/// siblings compare y and z. [`Quantity`] has comparisons with a sign, and more quantities.
+/// True while the external force along x is at or beyond `newtons`, in either direction. For the
+/// other axes see [`force_y`] and [`force_z`]. [`Quantity`] has signed comparisons, and more
+/// quantities.
 pub fn force_x(newtons: f64) -> Condition {
     Quantity::Force(Axis::X).beyond(newtons)
 }
@@ -187,8 +188,8 @@ pub fn joint_torques(newton_metres: f64) -> Condition {
     Quantity::LargestJointTorque.beyond(newton_metres)
 }
 
-/// True while the robot reports any contact, of a joint or at the end effector: an estimate is
-/// above a lower threshold of its collision behaviour.
+/// True while the robot reports any contact, of a joint or at the end effector: an estimate exceeds
+/// a lower threshold of the robot's collision behaviour.
 pub fn contact() -> Condition {
     Node::Flag(Flag::Contact).into()
 }
@@ -222,11 +223,11 @@ impl Condition {
     /// Compares changes since the first state of the goal instead of values, in every comparison of
     /// this condition. For norms, it compares the norm of the change.
     ///
-    /// Use this for undeclared loads, whose weight shows in the robot's estimate, for
+    /// Use this for undeclared loads, whose weight is part of the robot's estimate, for
     /// displacements, and for offsets of torque sensors. Friction changes as the arm begins to
-    /// move, so a force needs the same threshold as without: see the [module](self). A goal that
-    /// takes over in mid-motion, in a session, compares with the friction in motion. It needs about
-    /// two thirds of that threshold.
+    /// move, so a force needs the same threshold as without this option: see the [module](self). If
+    /// a goal of a session takes over in mid-motion, the change counts from the friction in motion.
+    /// It needs about two thirds of that threshold.
     #[must_use]
     pub fn relative(mut self) -> Self {
         for node in &mut self.nodes {
@@ -238,13 +239,13 @@ impl Condition {
     }
 
     /// Subtracts a tare from the forces, moments and joint torques of this condition. Other
-    /// comparisons stay as they are. Changes have no tare, so [`relative`](Self::relative)
-    /// comparisons ignore it, whichever call comes first. The moment is then about the origin of
-    /// the stiffness frame.
+    /// comparisons stay as they are. [`relative`](Self::relative) comparisons ignore the tare,
+    /// regardless of the order of the calls. The moment is then about the origin of the stiffness
+    /// frame.
     ///
     /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Near a
-    /// singularity the robot has no estimate. No tared comparison of the wrench is true there, and
-    /// no negation of one.
+    /// singularity the robot has no estimate. There, neither a tared comparison of the wrench nor
+    /// its negation is true.
     #[must_use]
     pub fn tared(mut self, tare: &WrenchTare) -> Self {
         for node in &mut self.nodes {

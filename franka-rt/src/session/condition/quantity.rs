@@ -47,9 +47,9 @@ pub enum Quantity {
     LargestJointTorque,
     /// Position of the end effector along an axis, from the measured joints, `[m]`.
     Position(Axis),
-    /// Its velocity along an axis, from the measured joint velocities, `[m/s]`.
+    /// Velocity of the end effector along an axis, from the measured joint velocities, `[m/s]`.
     Velocity(Axis),
-    /// Norm of that velocity, `[m/s]`.
+    /// Norm of the end effector's linear velocity, `[m/s]`.
     Speed,
     /// Angular velocity of the end effector about an axis, `[rad/s]`.
     AngularVelocity(Axis),
@@ -62,22 +62,22 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// True while it is at or above `value`.
+    /// True while the quantity is at or above `value`.
     pub fn above(self, value: f64) -> Condition {
         Node::compare(self, Bound::Above, value).into()
     }
 
-    /// True while it is at or below `value`.
+    /// True while the quantity is at or below `value`.
     pub fn below(self, value: f64) -> Condition {
         Node::compare(self, Bound::Below, value).into()
     }
 
-    /// True while its magnitude is at or above `value`, which must be above zero.
+    /// True while the magnitude of the quantity is at or above `value`, which must be above zero.
     pub fn beyond(self, value: f64) -> Condition {
         Node::compare(self, Bound::Beyond, value).into()
     }
 
-    /// True if it is one of the robot's estimates, which accept a tare.
+    /// True if the quantity is one of the robot's estimates, which accept a tare.
     pub(super) fn is_estimate(self) -> bool {
         matches!(
             self,
@@ -90,7 +90,7 @@ impl Quantity {
         )
     }
 
-    /// Joint of the quantity, if it has one.
+    /// Returns the joint of the quantity, if it has one.
     pub(super) fn joint(self) -> Option<u8> {
         match self {
             Self::JointTorque(joint) | Self::JointPosition(joint) | Self::JointVelocity(joint) => {
@@ -100,7 +100,8 @@ impl Quantity {
         }
     }
 
-    /// Value in a sample; not finite where the sample is not, or has no such joint.
+    /// Returns the value in a sample; not finite if the sample's is not, or if there is no such
+    /// joint.
     pub(super) fn of(self, sample: &Sample) -> f64 {
         let along = |first: usize, axis: Axis| sample.0[first + axis as usize];
         let joint = |first: usize, joint: u8| match joint {
@@ -139,7 +140,7 @@ impl Quantity {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample([f64; LENGTH]);
 
-/// Beginning of each part of a sample.
+/// Start index of each part of a sample.
 const FORCE: usize = 0;
 const TORQUE: usize = 3;
 const JOINT_TORQUE: usize = 6;

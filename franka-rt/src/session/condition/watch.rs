@@ -6,10 +6,10 @@ use super::quantity::Sample;
 use super::{Bound, Condition, Flag, Node, Since};
 use crate::session::running::Measured;
 
-/// Parts of a state that conditions need, besides the joints and the pose that the session
+/// Parts of a state that conditions need, in addition to the joints and the pose that the session
 /// measures.
 ///
-/// Copied before the answer to the state leaves, and evaluated afterwards.
+/// This copy is made before the answer to the state leaves; it is evaluated afterwards.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::session) struct Observed {
     /// Wrench in base axes, with its torque about the origin of the stiffness frame.
@@ -46,7 +46,7 @@ pub(in crate::session) struct Watch {
     since: u64,
     /// The first state of the goal.
     first: Option<Sample>,
-    /// Time since which the operand of a node has been true, `message_id` of the state.
+    /// Time since when the operand of a node has been true, `message_id` of the state.
     held: [Option<u64>; Condition::ROOM],
 }
 
@@ -62,8 +62,8 @@ impl Watch {
         }
     }
 
-    /// True if the condition is true in this state, with the arm as measured in it. Bounded work,
-    /// the same in every cycle.
+    /// True if the condition is true in this state, with the arm as measured in it. The work is
+    /// bounded, and the same in every cycle.
     pub(in crate::session) fn is_met(&mut self, state: &Observed, arm: &Measured) -> bool {
         let now = Sample::of(state, arm);
         let first = self.first.get_or_insert(now);
@@ -128,7 +128,7 @@ impl Bound {
 }
 
 impl Flag {
-    /// `None` if a number that decides is NaN.
+    /// Returns whether the flag is set; `None` if a number that decides is NaN.
     fn is_set(self, state: &Observed) -> Option<bool> {
         let any = |flags: &[f64]| {
             let set = flags.iter().any(|&flag| flag > 0.0);
@@ -152,8 +152,8 @@ impl Flag {
     }
 }
 
-/// Operands during the evaluation of a condition, the newest in bit 0: true, false or, without
-/// either bit, unknown.
+/// Operands during the evaluation of a condition, the newest in bit 0. An operand without either
+/// bit is unknown.
 #[derive(Debug, Default)]
 struct Stack {
     yes: u32,

@@ -1,6 +1,6 @@
-//! Guards that bound a command: a field of every record.
+//! Guards that bound a command; every record has this field.
 
-/// A guard that can hold a command back.
+/// A guard that can hold a command back or give up a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
@@ -19,9 +19,9 @@ pub enum Guard {
     VelocityBarrier,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
-    /// The targets stopped arriving. The arm brakes or rests for that reason.
+    /// The targets stopped arriving, so the arm brakes or rests.
     Watchdog,
-    /// The deadman is silent. The arm brakes or rests for that reason.
+    /// The deadman is silent, so the arm brakes or rests.
     Deadman,
     /// The limiter before the robot's own controller changed a setpoint.
     Backstop,
@@ -30,22 +30,22 @@ pub enum Guard {
     /// On the way to a pose a joint reached the end of its range, or had to keep enough distance to
     /// stop before the end.
     PositionEnvelope,
-    /// The arm came near itself or a keep-out region. The reference slows down, or stops before it.
+    /// The arm came near itself or a keep-out region. The reference slows down, or stops before
+    /// that.
     Clearance,
     /// The arm was displaced from its path, and its goal was given up.
     Deviation,
     /// The target was further ahead of the arm than the lead allows, and was drawn nearer.
     Lead,
-    /// No plan could be made to the target (only by a defect). The previous course continues.
+    /// No plan to the target could be made (only by a defect). The previous course continues.
     PlanFailure,
-    /// The condition of the goal was true. For that reason the arm brakes, moves to the other
-    /// target, or is there.
+    /// The condition of the goal was true. The arm therefore brakes, moves to the other target, or
+    /// has reached it.
     Reaction,
-    /// A member of the team has a fault, or the team was stopped. The arm brakes or rests for that
-    /// reason.
+    /// A member of the team has a fault, or the team was stopped, so the arm brakes or rests.
     Team,
     /// On the way to a pose a point of the arm reached the session's speed cap and the joints were
-    /// slowed. Alternatively, the arm was faster, and its goal was given up.
+    /// slowed. Otherwise the arm exceeded the cap, and its goal was given up.
     SpeedCap,
     /// The arm stood still under commands that should have moved it, without an error, and its goal
     /// was given up.
@@ -120,7 +120,7 @@ impl Bindings {
         self.0 |= u32::from(binds) << guard as u32;
     }
 
-    /// The set of these guards.
+    /// Returns the set of these guards.
     pub fn of(guards: &[Guard]) -> Self {
         let mut bindings = Self::default();
         guards.iter().for_each(|guard| bindings.insert(*guard));

@@ -1,4 +1,4 @@
-//! A course that slows down and brakes before the arm itself and before keep-out regions.
+//! A course that keeps clear of the arm itself and of keep-out regions.
 
 use franka_model::{EndEffector, Model};
 
@@ -53,11 +53,12 @@ pub(in crate::session) struct ClearCourse {
 
 #[derive(Debug)]
 enum Pace {
-    /// The goal's own pace.
+    /// The goal continues at its own pace.
     Full,
-    /// Slow. The value is the number of cycles without an obstacle ahead.
+    /// The goal continues slowly. The value is the number of cycles without an obstacle ahead.
     Slow(u32),
-    /// Braked before an obstacle that was too near. The value is the number of cycles since then.
+    /// The course was braked before an obstacle that was too near. The value is the number of
+    /// cycles since then.
     Braked(u32),
 }
 
@@ -82,7 +83,7 @@ impl ClearCourse {
         }
     }
 
-    /// Makes the course be planned anew before its next step.
+    /// Requests a new plan of the course before its next step.
     pub(in crate::session) fn outdate(&mut self) {
         self.stale = true;
     }
@@ -101,7 +102,7 @@ impl ClearCourse {
         self.stale = false;
     }
 
-    /// Plans the course towards `aim` from the reference; a chunk in force is kept, within the
+    /// Plans the course towards `aim` from the reference. A chunk in force is kept, within the
     /// budget of `aim`. The pace is kept; after a brake it is slow.
     fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         let paced = self.paced(aim);
@@ -171,7 +172,7 @@ impl ClearCourse {
         }
     }
 
-    /// Returns `aim` with its joint limits raised to the limits of the last clear check, where they
+    /// Returns `aim` with its joint limits raised to the limits of the last clear check, if they
     /// are lower. The braking distance is then no longer than the checked distance.
     fn braking(&self, aim: &Aim) -> Aim {
         let mut budget = aim.budget;
@@ -307,7 +308,7 @@ impl ClearCourse {
         !matches!(self.pace, Pace::Full)
     }
 
-    /// Obstacle that keeps the course from its goal, or did so a moment ago.
+    /// Returns the obstacle that keeps the course from its goal, or did so a moment ago.
     pub(in crate::session) fn hindrance(&self) -> Option<Lapse> {
         let region = self.obstacle.map(|index| index + 1);
         (self.hindered > 0).then_some(Lapse::Blocked { region })

@@ -1,14 +1,14 @@
 //! Clearance: the reference slows down towards the arm itself and towards keep-out regions, and
 //! stops before it is too near.
 //!
-//! The whole path to rest must stay clear. Before the reference takes a step, the brake after that
+//! The whole path to rest must stay clear. Before the reference makes a step, the brake after that
 //! step is planned. Its postures at rest and half way there are checked against the arm's shape. A
-//! step after which the arm could not stop in time is not taken. The reference brakes from its
-//! place instead, and the check of the previous step has shown that this is clear.
+//! step after which the arm could not stop in time is not made. The reference brakes from its place
+//! instead; the check of the previous step has shown that this brake is clear.
 //!
-//! So the distance is kept for every kind of motion, under the generator's own brake, which keeps
-//! the robot's limits. Between the two checked postures the path may sag: by less than a tenth of a
-//! millimetre at the default pace, and by half a millimetre at a quick pace.
+//! The distance is therefore kept for every kind of motion, under the generator's own brake, which
+//! keeps the robot's limits. Between the two checked postures the path may sag: by less than a
+//! tenth of a millimetre at the default pace, and by half a millimetre at a quick pace.
 //!
 //! Only approaches are held back. A motion out of a zone is free, even for an arm that begins
 //! inside.
@@ -19,8 +19,8 @@ use franka_model::collision::{
 use franka_model::{JointVector, Model};
 
 /// Distance kept between two links that have two other links between them, `[m]`. The robot's
-/// self-collision avoidance is assumed to require 0.05. The rest is for the arm, which is a spring
-/// and swings past its reference.
+/// self-collision avoidance is assumed to require 0.05. The rest is for the arm, which follows like
+/// a spring and overshoots its reference.
 pub const SELF_STOP: f64 = 0.06;
 
 /// Distance kept between the capsules around the links and a keep-out region, `[m]`.
@@ -43,7 +43,7 @@ const APART: u8 = 3;
 /// first cycle of a motion from rest.
 const NEARER: f64 = 1e-9;
 
-/// Surroundings that one session keeps clear of.
+/// Surroundings of which one session keeps clear.
 #[derive(Debug)]
 pub(crate) struct Clearance {
     /// Distances within the arm, and between its capsules and the regions.
@@ -54,9 +54,9 @@ pub(crate) struct Clearance {
 /// Result of the last full check, at a posture on the path of the arm.
 #[derive(Debug)]
 struct Known {
-    /// Bound on the turns of the joints from there before a distance is small.
+    /// Bound on the turns of the joints from that posture before a distance is small.
     bound: MotionBound,
-    /// Distances that could be small on the path from there to rest.
+    /// Distances that could be small on the path from that posture to rest.
     candidates: CandidateMask,
 }
 
@@ -67,13 +67,13 @@ pub(crate) enum Ahead {
     Clear,
     /// An obstacle that is approached slowly.
     Near,
-    /// An obstacle that must not be approached: the region with this index, or the arm itself.
+    /// An obstacle that the arm must not approach: the region with this index, or the arm itself.
     TooNear(Option<usize>),
 }
 
 impl Clearance {
-    /// Creates the clearance of an arm with this model, with the vendor's Hand on its flange or
-    /// nothing.
+    /// Creates the clearance of an arm with this model. With `hand`, the vendor's Hand is on its
+    /// flange, otherwise nothing.
     pub(crate) fn new(model: &Model, hand: bool, keep_out: KeepOut) -> Self {
         let shapes = [Shape::vendor(), Shape::covering(model.kind())];
         let [arm, cover] = shapes.map(|shape| shape.with_lengths(*model.lengths()));
@@ -133,11 +133,11 @@ impl Clearance {
         })
     }
 
-    /// Checks the path from `now` to `half` and to `end`, where only distances of the candidates
-    /// may be small.
+    /// Checks the path from `now` to `half` and to `end`. Only distances of the candidates may be
+    /// small on it.
     ///
-    /// Only distances that are small there are compared with their present values. Once an obstacle
-    /// is known to be near, only distances that would be too small can change the result.
+    /// Only distances that are small on the path are compared with their present values. Once an
+    /// obstacle is known to be near, only distances that would be too small can change the result.
     fn on_the_way(
         &self,
         now: &JointVector,
@@ -165,8 +165,8 @@ impl Clearance {
     }
 }
 
-/// Classifies a margin to a region, or within the arm, that changes from `now` to `then`, both in
-/// metres.
+/// Classifies a margin that changes from `now` to `then`, both in metres: to a region, or within
+/// the arm.
 fn judge(region: Option<usize>, now: f64, then: f64) -> Ahead {
     if then >= SLOW_ZONE || then >= now - NEARER {
         Ahead::Clear

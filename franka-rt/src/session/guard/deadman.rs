@@ -1,4 +1,5 @@
-//! The deadman: a token that must be kept alive. The arm brakes when its owner is silent or gone.
+//! The deadman: a token that the program must keep alive. The arm brakes when its owner is silent
+//! or gone.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
@@ -15,25 +16,27 @@ const NEVER: u64 = u64::MAX - 1;
 /// Shared state of the two ends of a deadman.
 #[derive(Debug)]
 pub struct Pulse {
-    /// Number of times that the token was kept alive.
+    /// Number of times that the owner kept the token alive.
     beats: AtomicU64,
     /// Count at which the thread last found the token silent.
     silent: AtomicU64,
 }
 
 impl Pulse {
-    /// True if the control thread has found the token silent, and no one has kept it alive since.
+    /// True if the control thread has found the token silent, and the owner has not kept it alive
+    /// since.
     pub fn is_silent(&self) -> bool {
         // Relaxed, as below.
         self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
     }
 }
 
-/// The token of a session. Call [`Self::keep_alive`] at least once every `silence`. Otherwise, and
-/// once the token is dropped, the arm brakes and holds, and every goal ends as held. This lasts
-/// until the token is kept alive again. A dropped token never returns.
+/// The owner's end of a deadman, a token bound to a session. Call [`Self::keep_alive`] at least
+/// once every `silence`. Otherwise, and once the token is dropped, the arm brakes and holds, and
+/// every goal ends as held. This lasts until the token is kept alive again. A dropped token never
+/// returns.
 ///
-/// The control thread watches the token by the robot's clock, independent of the rest of the
+/// The control thread checks the token by the robot's clock, independently of the rest of the
 /// program.
 #[derive(Debug)]
 #[must_use = "dropping the deadman brakes the arm"]
@@ -56,8 +59,8 @@ impl Deadman {
     /// The shortest silence that a session accepts.
     pub const SILENCE_MIN: Duration = Goal::SILENCE_MIN;
 
-    /// Returns a token that may be silent for `silence`, in whole milliseconds, and its end for a
-    /// session.
+    /// Returns a token that may be silent for `silence`, in whole milliseconds, and its monitor for
+    /// a session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
         let pulse = Arc::new(Pulse {
             beats: AtomicU64::new(0),
@@ -81,7 +84,7 @@ impl Deadman {
         self.pulse.beats.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Longest permitted silence.
+    /// Returns the longest permitted silence.
     pub fn silence(&self) -> Duration {
         self.silence
     }
@@ -95,7 +98,7 @@ impl Drop for Deadman {
 }
 
 impl DeadmanMonitor {
-    /// Longest permitted silence of the token.
+    /// Returns the longest permitted silence of the token.
     pub fn silence(&self) -> Duration {
         self.silence
     }
@@ -106,7 +109,7 @@ impl DeadmanMonitor {
         self.pulse.beats.load(Ordering::Relaxed) == GONE
     }
 
-    /// True if the token is alive at the robot's time `now`, `[ms]`. Its silence counts from the
+    /// True if the token is alive at the robot's time `now`, `[ms]`. The silence counts from the
     /// first call.
     pub(crate) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.pulse.beats.load(Ordering::Relaxed);

@@ -1,18 +1,18 @@
 //! Deviation: prevents an arm that was displaced too far from swinging back.
 //!
 //! The leash moves the reference along with a pushed arm, and the course begins again wherever the
-//! arm is released. So only this guard bounds the displacement of the arm, and its motion after the
-//! release.
+//! arm is released. Only this guard therefore bounds the displacement of the arm, and its motion
+//! after the release.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use nalgebra::{Isometry3, Vector3};
 
 use crate::session::{Target, rigid};
 
-/// Greatest displacement of the arm from its path. The path begins where the reference was last
-/// free and ends at the target. A motion with a greater displacement is given up. Infinite numbers
-/// switch the guard off. A distance within the [`Leash`](crate::session::Leash) is never a
-/// deviation.
+/// Greatest displacement of the arm from its path. The path begins at the last free reference,
+/// which the leash did not hold, and ends at the target. A motion with a greater displacement is
+/// given up. Infinite numbers switch the guard off. A distance within the
+/// [`Leash`](crate::session::Leash) is never a deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
     /// Translation of the end effector, `[m]`.
@@ -24,7 +24,7 @@ pub struct Deviation {
 }
 
 impl Default for Deviation {
-    /// 30 cm, 0.5 rad and 1 rad.
+    /// Returns 30 cm, 0.5 rad and 1 rad.
     fn default() -> Self {
         Self {
             translation: 0.3,

@@ -1,28 +1,28 @@
-//! The force cap limits the force of springs and dampers together on a hand that holds the end
+//! The force cap: limits the joint force of springs and dampers on a hand that holds the end
 //! effector.
 //!
-//! The leash bounds only the spring. In a quick push the damper adds to it, and the springs of the
-//! joints press at the end effector too. This guard limits their sum and nothing else: the torques
-//! of the motion itself, inertia and Coriolis torques, are added after it.
+//! The leash bounds only the spring. In a quick push the damper adds to the spring, and the springs
+//! of the joints press at the end effector, too. This guard limits their sum only: the torques of
+//! the motion itself, inertia and Coriolis torques, are added after the guard.
 //!
-//! The force is the one on a hand that holds the end effector at a point, `Lambda J M^-1 tau` with
-//! the `J` and `Lambda` of its position alone. It follows from the equations of motion for a point
-//! that does not move while the rest of the arm may. At rest against a wall it is the force on the
-//! wall. It does not count torques that only turn the hand or move the elbow.
+//! The limited force is the force on a hand that holds the end effector at a point, `Lambda J M^-1
+//! tau` with the `J` and `Lambda` of its position alone. It follows from the equations of motion
+//! for a point that does not move while the rest of the arm may. At rest against a wall it is the
+//! force on the wall. It does not count torques that only turn the hand or move the elbow.
 //!
-//! Near a singularity a small torque may cause any force along the lost direction. There the force
-//! is damped and reads low. Singularities of the position are few. If the rotation were held as
-//! well there would be many more, and a joint's path between two postures leads through them. There
-//! every torque would count as thousands of newtons.
+//! Near a singularity a small torque may cause any force along the lost direction. There the
+//! computed force is damped and too low. Singularities of the position are few. If the rotation
+//! were held as well there would be many more, and paths of the joints between two postures pass
+//! through them. There every torque would count as thousands of newtons.
 //!
-//! First the spring is cut down to the cap, then its sum with the damper. So at full force the
-//! damper still brakes an arm that returns to its reference, and only the excess over the cap is
-//! lost. If spring and damper were scaled together, they would be one constant force without
+//! First the spring is reduced to the cap, then its sum with the damper. Therefore, at full force,
+//! the damper still brakes an arm that returns to its reference, and only the excess over the cap
+//! is removed. If spring and damper were scaled together, they would be one constant force without
 //! damping.
 //!
 //! The excess over the cap is removed as a force at the end effector, `J' (F - F')`. The torques
-//! that turn the hand and move the elbow remain, and so does the balance of an arm that leans on
-//! something. In the metric of the inertia, neither the torques of the springs nor the torques of
+//! that turn the hand and move the elbow remain, and so does the balance of an arm that leans on an
+//! obstacle. In the metric of the inertia, neither the torques of the springs nor the torques of
 //! the dampers grow.
 
 use core::ops::RangeInclusive;
@@ -34,9 +34,9 @@ use crate::law::task_space::TaskSpace;
 
 /// Greatest force of springs and dampers at the end effector.
 ///
-/// Only the session's own law keeps it. A goal with [`Self::Newtons`] is refused where the robot's
-/// controller turns setpoints into torques
-/// ([`Backend::RobotController`](crate::session::Backend::RobotController)).
+/// Only the session's own law keeps the cap. If the robot's controller turns setpoints into torques
+/// ([`Backend::RobotController`](crate::session::Backend::RobotController)), a goal with
+/// [`Self::Newtons`] is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ForceCap {
     /// The cap is [`Self::DEFAULT_NEWTONS`].
@@ -55,15 +55,15 @@ impl ForceCap {
 
     /// Default force cap of goals, `[N]`.
     ///
-    /// It lies just above the weight of the robot's whole payload of 3 kg. It also lies above the
-    /// force of the default gains when the arm is held back without a push.
+    /// The default is just above the weight of the robot's whole payload of 3 kg. It is also above
+    /// the force of the default gains when the arm is held back without a push.
     ///
     /// Simulated motions within the default budget never reached it, even with 3 kg declared or 0.5
-    /// kg undeclared. A hand that pushes against a held arm at 0.25 m/s would otherwise meet 40 to
-    /// 54 N, and 67 to 115 N with stiff joints.
+    /// kg undeclared. Without a cap, a hand that pushes against a held arm at 0.25 m/s would meet
+    /// 40 to 54 N, and 67 to 115 N with stiff joints.
     pub const DEFAULT_NEWTONS: f64 = 30.0;
 
-    /// Returns the cap, `[N]`, if there is one.
+    /// Returns the cap, `[N]`; `None` without a cap.
     pub fn newtons(self) -> Option<f64> {
         match self {
             Self::Default => Some(Self::DEFAULT_NEWTONS),
@@ -74,7 +74,7 @@ impl ForceCap {
 }
 
 /// Limits the force of the torques of `springs` and `dampers`, `[N m]`, to `cap`, `[N]`. Returns
-/// the sum of the torques, and true if the cap bound.
+/// the sum of the torques, and true if the cap changed it.
 pub(crate) fn hold(
     springs: &JointVector,
     dampers: &JointVector,

@@ -11,9 +11,9 @@ use crate::shaping::CYCLE;
 const VELOCITY_CAP: f64 = 0.7;
 
 /// Factor by which a joint may exceed its budget's velocity on the way to a pose. On a straight
-/// line near a singular posture, joints turn fast while the hand hardly moves, which a person
-/// beside the arm does not expect. A factor of 2 holds back an arm needlessly that stretches at the
-/// default pace.
+/// line near a singular posture, joints turn fast while the hand hardly moves, which a person next
+/// to the arm does not expect. A factor of 2 would needlessly hold back an arm that stretches at
+/// the default pace.
 const HASTE: f64 = 3.0;
 
 /// Share of each joint's acceleration limit that the reference may use.
@@ -22,20 +22,21 @@ const ACCELERATION_CAP: f64 = 0.9;
 /// Share of each joint's jerk limit that the reference may use.
 const JERK_CAP: f64 = 0.9;
 
-/// The same in the first cycle after a plan of the joints. The acceleration of a plan grows within
-/// a cycle, and steps here between two. The robot differences positions: it sees five sixths of the
-/// jerk of the plan's last two cycles and half of this step at once.
+/// Share of the jerk limit in the first cycle after a plan of the joints. The acceleration of a
+/// plan grows within a cycle, but steps here between two cycles. The robot differentiates positions
+/// numerically: it sees five sixths of the jerk of the plan's last two cycles and half of this step
+/// at once.
 const TAKE_OVER_JERK_CAP: f64 = 1.0 / 3.0;
 
 /// Distance kept from the ends of each joint's range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.05;
 
 /// Deceleration with which a joint must be able to stop before that margin, `[rad/s^2]`. It is less
-/// than half of the value in the robot's velocity envelope at joint 2, its gentlest (2.585). The
-/// arm is a spring behind the reference and swings past it where the reference slows down.
+/// than half of the value in the robot's velocity envelope at joint 2, its gentlest joint (2.585).
+/// The arm follows the reference like a spring and overshoots where the reference slows down.
 pub(crate) const BRAKING: f64 = 1.2;
 
-/// Bounds that held joints back in a cycle.
+/// Bounds that held joints back in a cycle: true, or a value, for each bound that did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BoundsReached {
     /// Velocity of the joints.
@@ -44,22 +45,23 @@ pub(crate) struct BoundsReached {
     pub(crate) position: bool,
     /// Acceleration or jerk of the joints.
     pub(crate) acceleration: bool,
-    /// Speed of a point of the arm: the share of the joints' velocities that remained.
+    /// Share of the joints' velocities that remained because of the speed of a point of the arm.
     pub(crate) speed: Option<f64>,
 }
 
 impl BoundsReached {
-    /// True if any bound did.
+    /// True if any bound held a joint back.
     pub(crate) fn any(self) -> bool {
         self != Self::default()
     }
 }
 
-/// Velocities open to a joint in the next cycle.
+/// Velocities that a joint may have in the next cycle.
 ///
-/// The joint keeps below its cap and able to stop before the end of its range, with an acceleration
-/// that can be removed in time. If the bounds contradict each other, jerk wins over acceleration,
-/// and both win over velocity and position: those two act on the robot at once.
+/// The joint stays below its cap and able to stop before the end of its range, with an acceleration
+/// that can be removed in time. If the bounds contradict each other, jerk takes precedence over
+/// acceleration, and both over velocity and position, because jerk and acceleration act on the
+/// robot at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenVelocities {
     pub(crate) lower: Bound,
@@ -82,8 +84,8 @@ pub(crate) enum Cause {
 }
 
 impl OpenVelocities {
-    /// Bounds for joint `i`. With `takes_over`, a plan of the joints moved it so far, or it was at
-    /// rest.
+    /// Returns the bounds for joint `i`. `takes_over` is true if a plan of the joints moved it so
+    /// far, or it was at rest.
     pub(crate) fn of(
         i: usize,
         limits: &JointLimits,
@@ -126,7 +128,7 @@ impl OpenVelocities {
     }
 }
 
-/// Returns how far each joint at `q` may turn down and up, `[rad]`, without a limit of time: to the
+/// Returns how far each joint at `q` may turn down and up, `[rad]`, without a time limit: to the
 /// margin of its range, or not at all beyond the margin.
 pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, JointVector) {
     let lower = limits.lower.add_scalar(POSITION_MARGIN) - q;
@@ -137,7 +139,7 @@ pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, Joint
     )
 }
 
-/// Returns the first joint, from 1, that is at an end of its range in `q`, minus the margin.
+/// Returns the first joint, from 1, that is at an end of its range in `q`, margin included.
 pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
     let (lower, upper) = room(limits, q);
     (0..7)
@@ -161,7 +163,7 @@ fn fastest(room: f64, ramp: f64) -> f64 {
 }
 
 /// Same as [`fastest`], below a bound that falls with the deceleration of a joint that stops. At
-/// the bound the joint need not slow down before it moves.
+/// the bound the joint need not slow down before the bound moves.
 fn towards_stop(room: f64, ramp: f64) -> f64 {
     (fastest(room, ramp) - BRAKING).max((room / CYCLE).min(0.0))
 }

@@ -1,4 +1,4 @@
-//! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wrong target
+//! Lead: a streamed target that is far ahead of the arm is moved closer, so that one wrong target
 //! cannot move the arm far once the stream stops.
 
 use franka_model::JointVector;
@@ -9,10 +9,10 @@ use crate::session::guard::leash;
 
 /// Greatest distance of a target ahead of the measured arm.
 ///
-/// A target that is further ahead is drawn nearer on the straight line to it. This repeats in every
+/// A target that is further ahead is moved closer on the straight line to it. This repeats in every
 /// cycle while targets arrive: for [`Self::FRESH_MS`] after the newest target, including
-/// repetitions of the same target. Then the target stays where it was last drawn to. So an arm
-/// whose targets stop arriving continues by no more than this distance.
+/// repetitions of the same target. Then the target stays at its last place. If targets stop
+/// arriving, the arm therefore continues by no more than this distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
     /// Translation of the end effector, for poses, `[m]`.
@@ -24,12 +24,12 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// Time after the newest target for which it is drawn anew, `[ms]`. The arm follows a stream of
-    /// 5 Hz without a pause.
+    /// Time after the newest target for which the target is moved closer in every cycle, `[ms]`.
+    /// The arm follows a stream of 5 Hz without a pause.
     pub const FRESH_MS: u64 = 200;
 
-    /// Returns the place to which `target` is drawn for an arm at `q` and `measured`; `None` if it
-    /// is near enough.
+    /// Returns the place to which `target` is moved for an arm at `q` and `measured`; `None` if the
+    /// target is near enough.
     pub(crate) fn drawn(
         &self,
         target: &Target,

@@ -1,5 +1,5 @@
-//! The leash limits the distance of the reference ahead of the measured arm. An arm that is held
-//! back is pulled by a bounded spring, and does not leap when it is released.
+//! The leash: limits the distance of the reference ahead of the measured arm. A bounded spring
+//! pulls an arm that is held back, so the arm does not leap when it is released.
 
 use franka_model::{JointVector, rotation};
 use franka_otg::PlanError;
@@ -12,20 +12,20 @@ use crate::session::reference::Reference;
 use crate::session::running::Measured;
 
 /// Greatest distance of the reference ahead of the measured arm. An obstacle that holds the arm
-/// back feels the springs at that length, and no more. A leash shorter than the normal lag of the
-/// arm slows the motion.
+/// back feels the springs stretched by that distance, and no more. A leash shorter than the normal
+/// lag of the arm slows the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leash {
-    /// Translation of the end effector, where the reference follows poses, `[m]`.
+    /// Translation of the end effector, if the reference follows poses, `[m]`.
     pub translation: f64,
-    /// Rotation of the end effector, where the reference follows poses, `[rad]`.
+    /// Rotation of the end effector, if the reference follows poses, `[rad]`.
     pub rotation: f64,
     /// Distance of each joint, `[rad]`.
     pub joints: f64,
 }
 
 impl Default for Leash {
-    /// 25 mm, 0.15 rad and 0.1 rad.
+    /// Returns 25 mm, 0.15 rad and 0.1 rad.
     fn default() -> Self {
         Self {
             translation: 0.025,
@@ -51,7 +51,7 @@ impl Leash {
     };
 }
 
-/// A leash fades to its new length. An immediate change to a shorter one would jerk a reference
+/// A leash fades to its new length. An immediate change to a shorter leash would jerk a reference
 /// that is far ahead towards the arm.
 impl Blend for Leash {
     fn blend(&self, other: &Self, share: f64) -> Self {
@@ -63,12 +63,12 @@ impl Blend for Leash {
     }
 }
 
-/// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`.
-/// Between half a millimetre and five the value makes little difference; this is the tolerance of a
-/// goal.
+/// Longest distance from the end effector of the joint reference to the pose that it follows,
+/// `[m]`. Between half a millimetre and five the value makes little difference; this is the
+/// tolerance of a goal.
 const TRANSLATION_TETHER: f64 = 1e-3;
 
-/// Largest angle between the two, `[rad]`.
+/// Largest angle between that end effector and that pose, `[rad]`.
 const ROTATION_TETHER: f64 = 5e-3;
 
 /// Parts of the reference that the leash held in a cycle.
@@ -108,7 +108,7 @@ impl Held {
     /// from there, so the arm follows smoothly once it is free.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only; the course continues as planned.
+    /// [`PlanError`], by a defect only; the course then continues as planned.
     pub(crate) fn move_course(self, course: &mut Course) -> Result<(), PlanError> {
         match (course, self.pose) {
             (Course::Joints(generator), _) => generator.set_positions(self.q.into()),
@@ -122,14 +122,14 @@ impl Held {
     }
 }
 
-/// Holds a pose that runs ahead of its joints, where the joints' bounds keep them from it.
+/// Keeps a pose from running ahead of its joints, if the joints' bounds keep them from it.
 /// `reached` is the pose of the joint reference. Returns true if the pose moved.
 ///
-/// Without this the pose would continue to its target, and the joints would chase it off the line,
-/// all of them at their bounds.
+/// Otherwise the pose would continue to its target, and the joints would chase it off the line, all
+/// of them at their bounds.
 ///
 /// # Errors
-/// [`PlanError`], by a defect only; the pose continues as planned.
+/// [`PlanError`], by a defect only; the pose then continues as planned.
 pub(crate) fn tether(
     generator: &mut PoseGenerator,
     reached: &Isometry3<f64>,

@@ -17,7 +17,7 @@
 //! | backstop: the limiter of setpoints | `backstop` |
 //! | response: an arm that ignores its commands | `unresponsive` |
 //!
-//! `binding` names them, for the record of each cycle.
+//! `binding` has a name for each of them, for the record of each cycle.
 
 pub(super) mod backstop;
 mod binding;

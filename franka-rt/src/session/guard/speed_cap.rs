@@ -1,29 +1,29 @@
-//! The speed cap limits the speed of all joints, the flange and the end effector, in every posture
+//! The speed cap: limits the speed of all joints, the flange and the end effector, in every posture
 //! of the arm.
 //!
-//! On the way to a pose the reference keeps below the cap by a reserve. All its joints are slowed
-//! alike where one of its points would be faster. The pose that they follow is slowed with them, so
-//! that the hand stays on its line and arrives later. From [`ONSET`] of that speed on, the limit
-//! sets in without a corner:
+//! On the way to a pose the reference stays below the cap by a reserve. If one of its points would
+//! be faster, all joints are slowed alike. The pose that they follow is slowed with them, so that
+//! the hand stays on its line and arrives later. From [`ONSET`] of that speed on, the limit sets in
+//! smoothly:
 //!
 //! ```text
 //! speed' = onset + (most - onset) (1 - exp(-(speed - onset) / (most - onset)))
 //! ```
 //!
-//! The arm may still exceed the cap on a path over joints or along a chunk, or because something
-//! throws it. It then gives up its goal and brakes.
+//! The arm may still exceed the cap on a path of the joints or along a chunk, or because something
+//! pushes it. It then gives up its goal and brakes.
 
 use franka_model::{EndEffector, Jacobian, JointVector, Model};
 
-/// Share of the cap that the reference keeps on the way to a pose. The rest is for the arm, which
-/// swings about its reference.
+/// Share of the cap that the reference may use on the way to a pose. The rest is for the arm, which
+/// oscillates about its reference.
 const SHARE: f64 = 0.94;
 
 /// Least reserve for the arm, `[m/s]`: an arm with friction breaks loose with a jolt, even at low
 /// speeds.
 const RESERVE: f64 = 0.03;
 
-/// Share of the kept speed from which on the reference is slowed.
+/// Share of the reference's highest speed from which on the reference is slowed.
 const ONSET: f64 = 0.9;
 
 /// The lowest accepted cap, `[m/s]`: measured joint velocities have noise.
@@ -42,9 +42,9 @@ pub(crate) struct SpeedCap<'a> {
 }
 
 impl SpeedCap<'_> {
-    /// Share of the velocities `dq`, `[rad/s]`, that joints at `q` may have; `None` if they may
-    /// have all. `jacobian` belongs to the frame that follows a pose: the hand, or an object in it.
-    /// That frame keeps the cap, too.
+    /// Returns the share of the velocities `dq`, `[rad/s]`, that joints at `q` may have; `None` if
+    /// they may have all. `jacobian` belongs to the frame that follows a pose: the hand, or an
+    /// object in it. That frame keeps the cap, too.
     pub(crate) fn share(
         self,
         model: &Model,

@@ -1,21 +1,21 @@
-//! The torque clamp bounds the torque of each joint.
+//! The torque clamp: bounds the torque of each joint.
 
 use franka_model::JointVector;
 
-/// Bounds each torque by `most`, `[N m]`. Returns true if that changed any.
+/// Bounds each torque by `most`, `[N m]`. Returns true if any torque changed.
 pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
     let clamped = tau.zip_map(most, |tau, most| tau.clamp(-most, most));
     (clamped, clamped != *tau)
 }
 
 /// A joint at rest that gets no more torque than its limit, although its springs and compensation
-/// ask for more.
+/// demand more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LimitedTorque {
-    /// Its number, from 1.
+    /// Number of the joint, from 1.
     pub joint: usize,
-    /// Its limit in [`Gains::torque_limits`](crate::law::Gains::torque_limits), `[N m]`.
+    /// Limit of the joint in [`Gains::torque_limits`](crate::law::Gains::torque_limits), `[N m]`.
     pub limit: f64,
     /// Torque that the joint would get without the limit, `[N m]`.
     pub asked: f64,

@@ -7,7 +7,8 @@ use franka_model::limits::CLIENT_MARGIN;
 
 use crate::shaping::limiter;
 
-/// Limits the change from the torques that the robot last took. Returns true if the limit bound.
+/// Limits the change from the last torques that the robot accepted. Returns true if this changed a
+/// torque.
 ///
 /// Two margins are subtracted from `rate`, the robot's limit `[N m/s]`: the usual one, and the
 /// error that an echo rounded to `f32` may hide.

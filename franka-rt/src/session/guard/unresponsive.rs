@@ -2,17 +2,17 @@
 //!
 //! Closed brakes and a controller that has stopped look like that. An arm can also stand still
 //! because something holds it, which shows as an external torque, or because of friction, which
-//! yields above a few N m. So an arm ignores its commands if all its joints stand still for
-//! [`HOLD`] cycles in a row and in each of them one of these is true:
+//! yields above a few N m. Therefore an arm ignores its commands if all its joints stand still for
+//! [`HOLD`] cycles in a row and, in each of these cycles, one of these conditions is true:
 //!
-//! | back end | condition |
+//! | backend | condition |
 //! |---|---|
 //! | the session's own law | at one joint, the torque of the law and the external torque differ by more than [`RESISTS`] |
 //! | the robot's joint controller | at one joint, the setpoint is further away than [`APART`], and the external torque below [`FELT`] |
 //! | the robot's Cartesian controller | the commanded pose is further away than [`AWAY`], and all external torques below [`FELT`] |
-//! | both controllers of the robot | the robot's setpoint stands still, and it keeps refusing the setpoints it is sent |
+//! | both controllers of the robot | the robot's setpoint stands still, and the robot keeps refusing the setpoints sent to it |
 //!
-//! Friction may hold an arm against smaller commands. The guard does not judge those.
+//! Friction may hold an arm against smaller commands. The guard ignores those commands.
 
 use franka_model::JointVector;
 use franka_proto::RobotState;
@@ -29,18 +29,18 @@ pub(crate) struct Unresponsive {
     still: u32,
     /// Cycles in which the robot refused its setpoints.
     refusing: u32,
-    /// Cycles since the robot last had another setpoint than the one it was sent.
+    /// Cycles since the robot's setpoint last differed from the sent setpoint.
     since_refused: u32,
     /// The robot's setpoint in the last state, `[rad]`.
     setpoint: JointVector,
-    /// True if the last command was not the setpoint that the session asked for.
+    /// True if the last command was not the setpoint that the session requested.
     changed: bool,
 }
 
 /// The command of one cycle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Commanded<'a> {
-    /// Torques without gravity, `[N m]`: as the law demands them, before they are smoothed.
+    /// Torques without gravity, `[N m]`, as the law demands them, before they are smoothed.
     Torques(&'a JointVector),
     /// A setpoint for a controller of the robot.
     Setpoint {
@@ -107,7 +107,7 @@ impl Unresponsive {
     }
 
     /// True if the robot's setpoint has not moved, and the robot refused a setpoint a short time
-    /// ago. Where the backstop changed a setpoint, the robot's setpoint differs in any case.
+    /// ago. If the backstop changed a setpoint, the robot's setpoint differs in any case.
     fn is_refused(&mut self, setpoint: &[f64; 7], differs: bool) -> bool {
         let setpoint = JointVector::from(*setpoint);
         let stays = core::mem::replace(&mut self.setpoint, setpoint) == setpoint;
@@ -119,7 +119,7 @@ impl Unresponsive {
     }
 }
 
-/// Distance of the measured end effector from its commanded pose, `[m]`.
+/// Returns the distance of the measured end effector from its commanded pose, `[m]`.
 fn distance(state: &RobotState) -> f64 {
     let at = |pose: &[f64; 16]| Vector3::new(pose[12], pose[13], pose[14]);
     (at(state.commanded_pose()) - at(&state.O_T_EE)).norm()
@@ -128,21 +128,21 @@ fn distance(state: &RobotState) -> f64 {
 /// Cycles after which an arm that stands still counts as unresponsive.
 const HOLD: u32 = 200;
 
-/// Cycles for which a refused setpoint counts. A slow motion that begins from rest again and again
-/// takes tens of cycles until its setpoint differs from the robot's by more than rounding.
+/// Cycles for which a refused setpoint counts. A slow motion that repeatedly begins from rest takes
+/// tens of cycles until its setpoint differs from the robot's by more than rounding.
 const REFUSED_WITHIN: u32 = 100;
 
 /// Difference between commanded and external torque that friction and bias may explain, `[N m]`:
 /// the friction of the worst simulated arms and the bias of half a kilogram.
 const RESISTS: [f64; 7] = Gains::COMPENSATION;
 
-/// Distance of a joint from the robot's setpoint that friction does not explain, `[rad]`, unless
-/// the user made the controller softer than about 25 N m/rad.
+/// Distance of a joint from the robot's setpoint that friction does not explain, `[rad]`.
+/// Exception: the user made the controller softer than about 25 N m/rad.
 const APART: f64 = 0.1;
 
-/// Distance of the hand from the commanded pose that friction does not explain, `[m]`, unless the
-/// user made the controller softer than about 200 N/m. The joints do not count: this controller
-/// hardly holds the elbow.
+/// Distance of the hand from the commanded pose that friction does not explain, `[m]`. Exception:
+/// the user made the controller softer than about 200 N/m. The joints do not count, because this
+/// controller hardly holds the elbow.
 const AWAY: f64 = 0.05;
 
 /// External torque that the robot may estimate at an untouched joint, `[N m]`: friction at the

@@ -1,17 +1,16 @@
-//! The velocity barrier brakes a joint that comes near the robot's velocity limit, regardless of
+//! The velocity barrier: brakes a joint that comes near the robot's velocity limit, regardless of
 //! the cause.
 //!
-//! The generators keep the reference inside the limits. The arm itself may be faster, thrown by a
-//! hand or by a stretched spring, and then the robot stops with a reflex. From [`ONSET`] of the
-//! limit on, the torque of a joint is blended from the law's torque to full braking, reached at the
-//! limit:
+//! The generators keep the reference inside the limits. A hand or a stretched spring may accelerate
+//! the arm itself further, and then the robot stops with a reflex. From [`ONSET`] of the limit on,
+//! the torque of a joint is blended from the law's torque to full braking, reached at the limit:
 //!
 //! ```text
 //! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| / limit - 0.85) / 0.15)
 //! ```
 //!
-//! So even a law that drives the joint with its full torque is balanced half way. `s` and its slope
-//! are continuous.
+//! Even a law that drives the joint with its full torque is therefore balanced half way. `s` and
+//! its slope are continuous.
 //!
 //! The rate of the torque bounds the torque that the barrier can hold: the robot accepts 1 N m per
 //! millisecond. While a torque `tau` on an inertia `I` is removed, it adds `tau^2 / (2 I 1000 N
@@ -24,8 +23,9 @@ use franka_model::JointVector;
 /// Share of the velocity limit from which on a joint is braked.
 pub const ONSET: f64 = 0.85;
 
-/// Brakes the joints that are too fast. Returns true if there were any. `dq` is measured and
-/// `limit` the robot's, `[rad/s]`; `most` is the torque of full braking, `[N m]`.
+/// Brakes the joints that are too fast. Returns true if there were any. `dq` is the measured
+/// velocity and `limit` the robot's limit, `[rad/s]`; `most` is the torque of full braking, `[N
+/// m]`.
 pub(crate) fn brake(
     tau: &JointVector,
     dq: &JointVector,

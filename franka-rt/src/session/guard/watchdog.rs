@@ -6,9 +6,9 @@ use core::time::Duration;
 /// Gives up a goal whose targets stop arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watchdog {
-    /// The longest time without a target, by the robot's clock in whole milliseconds.
+    /// The longest accepted time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// Action of the arm after that. The motion ends once the arm rests, unless its session
+    /// Action of the arm after that time. The motion ends once the arm rests, unless its session
     /// continues from goal to goal.
     pub on_timeout: OnTimeout,
 }

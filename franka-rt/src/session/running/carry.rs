@@ -14,8 +14,8 @@ use crate::team::Carrying;
 /// nothing holds stay within half of it: 7.4 mm at most (as for [`NEAR`], at full speed).
 const LAG: f64 = 0.015;
 
-/// Distance within which the arm no longer lags, `[m]`. Arms that nothing holds stop within 5.0 mm
-/// of the reference, where they disagree.
+/// Distance within which the arm no longer lags, `[m]`. Arms that hold one object and disagree
+/// about its place, and that nothing else holds, stop within 5.0 mm of the reference.
 const CAUGHT_UP: f64 = 0.012;
 
 /// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
@@ -32,8 +32,8 @@ const RAMP: f64 = 0.025;
 const LEVER: f64 = 0.2;
 
 /// Least tolerance of arms that hold one object. Their knowledge of themselves differs, so the
-/// object keeps them from reaching their targets all at once. In 48 motions of 12 pairs of
-/// realistic arms (`tests/lockstep/carrying`) the errors were at most 3.1 mm and 5.3 mrad. Their
+/// object prevents them from reaching their targets all at once. In 48 motions of 12 pairs of
+/// realistic arms (`tests/lockstep/carrying`) the errors were at most 3.1 mm and 5.3 mrad. The
 /// force caps were 20 N.
 const NEAR: Tolerance = Tolerance {
     translation: 5e-3,
@@ -41,8 +41,8 @@ const NEAR: Tolerance = Tolerance {
 };
 
 impl RunningSession {
-    /// Continues from the object of the goal, or from the hand. The joint reference stays as it is,
-    /// and the goal is planned from there.
+    /// Continues from the pose of the goal's object, or of the hand. The joint reference stays as
+    /// it is, and the goal is planned from there.
     pub(super) fn take_hold(&mut self) {
         let grasp = self.goal.grasp;
         if grasp == self.grasp {
@@ -77,7 +77,7 @@ impl RunningSession {
         with_others.then_some(NEAR)
     }
 
-    /// Returns the progress with the carried object; `None` if the arm carries none.
+    /// Returns the progress with the carried object; `None` if the arm carries no object.
     pub(in crate::session) fn carrying(&mut self) -> Option<Carrying> {
         self.grasp?;
         let (Course::Pose(generator, _), Target::Pose(target)) =
@@ -113,7 +113,7 @@ pub(super) fn quick_to_halt(budget: Budget) -> Budget {
     }
 }
 
-/// Distance of two poses, `[m]`.
+/// Returns the distance of two poses, `[m]`.
 fn apart(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let way = a.translation.vector - b.translation.vector;
     way.norm() + LEVER * rotation::error(&a.rotation, &b.rotation).norm()

@@ -1,4 +1,4 @@
-//! Chunks of a session: take-up, continuation and return.
+//! Chunks of a session: their beginning, continuation and return.
 
 use franka_model::Model;
 
@@ -9,8 +9,8 @@ use crate::session::course::Course;
 use crate::session::{OnArrival, Target};
 
 impl RunningSession {
-    /// Takes up a newer chunk of the goal if there is one, and continues to rest after a chunk that
-    /// is over.
+    /// Begins a newer chunk of the goal if there is one, and continues to rest after a chunk that
+    /// has ended.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
@@ -54,7 +54,7 @@ impl RunningSession {
         }
     }
 
-    /// Target at which the reference will stop.
+    /// Returns the target at which the reference will stop.
     pub(super) fn heading(&self) -> Target {
         match &self.route.course {
             Course::Chunk(chunk) => chunk.target(),

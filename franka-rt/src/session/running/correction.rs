@@ -1,11 +1,11 @@
-//! Poses as the robot reports them.
+//! Correction of poses to poses as the robot reports them.
 //!
-//! Goals lead the hand to a pose in the robot's own report. The robot computes its poses with its
-//! own geometry, so goals lead a frame that is the hand moved by a correction. The correction is
-//! taken where a goal begins, and once more where the reference has arrived.
+//! Goals move the hand to a pose in the robot's own report. The robot computes its poses with its
+//! own geometry, so goals move a frame that is the hand moved by a correction. The correction is
+//! computed when a goal begins, and once more when the reference has arrived.
 //!
 //! Under Cartesian setpoints the robot follows the setpoint in its own geometry, so the correction
-//! belongs to the setpoint. It is taken where the reference is taken from the robot.
+//! belongs to the setpoint. It is computed when the reference is taken from the robot.
 
 use nalgebra::Isometry3;
 
@@ -14,12 +14,12 @@ use crate::session::Target;
 use crate::session::course::Course;
 use crate::session::geometry::{self, RESIDUAL_MAX};
 
-/// Greatest error of the report where the reference has arrived, `[m]`, turns at 0.1 m. A greater
-/// error is worth another move.
+/// Greatest error of the report when the reference has arrived, `[m]`, with rotations at 0.1 m. A
+/// greater error is corrected by another move.
 const REFINED: f64 = 1e-5;
 
 impl Measured {
-    /// Pose of the hand as the robot reports it.
+    /// Returns the pose of the hand as the robot reports it.
     pub(super) fn as_reported(&self) -> Isometry3<f64> {
         self.modelled * geometry::correction(&self.modelled, &self.reported)
     }
@@ -31,7 +31,7 @@ impl RunningSession {
         self.renew_correction_beyond(RESIDUAL_MAX);
     }
 
-    /// Same if the error exceeds `most`, `[m]`. Returns true if it does.
+    /// Renews the correction if its error exceeds `most`, `[m]`. Returns true if so.
     fn renew_correction_beyond(&mut self, most: f64) -> bool {
         let commanded = match &self.drive {
             Drive::Torques(_) => false,
@@ -46,14 +46,14 @@ impl RunningSession {
         true
     }
 
-    /// Makes goals lead the hand moved by `correction`. The joint reference stays as it is, and the
-    /// goal must be planned from there.
+    /// Makes goals move the hand shifted by `correction`. The joint reference stays as it is, and
+    /// the goal must be planned from there.
     pub(super) fn correct(&mut self, correction: Isometry3<f64>) {
         self.correction = correction;
         self.place_object();
     }
 
-    /// Sets the frame that goals lead.
+    /// Sets the frame that goals move.
     pub(super) fn place_object(&mut self) {
         let object = self.grasp.unwrap_or_default();
         self.arm.pose = self.arm.modelled * self.correction;
@@ -68,8 +68,8 @@ impl RunningSession {
         }
     }
 
-    /// Moves on to a pose at which the reference has arrived, if the robot's report is off there,
-    /// once for each target. Returns true if it does.
+    /// Moves on to a pose at which the reference has arrived, if the robot's report is wrong there,
+    /// once for each target. Returns true if so.
     pub(super) fn refine(&mut self, heading: &Target) -> bool {
         if self.is_refined || !matches!(heading, Target::Pose(_)) || self.is_given_up() {
             return false;

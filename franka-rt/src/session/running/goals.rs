@@ -1,4 +1,4 @@
-//! Goals: take-up, tuning, aim.
+//! Goals of a session: their beginning, tuning and aim.
 
 use franka_model::Model;
 
@@ -8,7 +8,7 @@ use crate::session::aim::Aim;
 use crate::session::{Budget, Goal, OnArrival, Target};
 
 impl RunningSession {
-    /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
+    /// Accepts a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
     pub(super) fn take_up(&mut self, goal: &Goal, now: u64) {
         if matches!(self.stage, GoalStage::Restless | GoalStage::Finished(_)) {
@@ -49,7 +49,7 @@ impl RunningSession {
     }
 
     /// Keeps the target, and uses budget, gains, tolerance and guards from `goal`. Gains for
-    /// guiding would release an arm that is already held.
+    /// guiding are not used, because they would release an arm that is already held.
     fn tune(&mut self, goal: &Goal) {
         let Goal {
             target, on_arrival, ..
@@ -82,7 +82,7 @@ impl RunningSession {
         }
     }
 
-    /// Sets out for the target of the goal, or along its path once that has arrived.
+    /// Starts the motion to the target of the goal, or along its path once the path has arrived.
     pub(super) fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
         self.is_refined = false;
@@ -94,21 +94,21 @@ impl RunningSession {
         });
     }
 
-    /// Ends the course, so that the next one is planned to `target`.
+    /// Ends the course, so that the next course is planned to `target`.
     pub(super) fn turn_to(&mut self, target: Target) {
         self.route.turn();
         self.aim = target;
         self.halted = false;
     }
 
-    /// Present target of the reference, at its place at `now`.
+    /// Returns the present target of the reference, at its place at `now`.
     pub(super) fn target_at(&self, now: u64) -> Target {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
         self.aim.after(since)
     }
 
-    /// Present aim of the reference at `now`. After a reaction a deliberately slow goal is left
-    /// quickly.
+    /// Returns the present aim of the reference at `now`. After a reaction, the arm does not
+    /// continue at the pace of a deliberately slow goal.
     pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
         let mut aim = Aim {
             goal: self.goal.id,

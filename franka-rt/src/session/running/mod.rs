@@ -1,7 +1,7 @@
-//! A session under way: the reference, the course that moves it, and the torques that follow it.
+//! A running session: the reference, the course that moves it, and the torques that follow it.
 //!
-//! The law, the leash and the judgement of the arrival need the newest state, so they run in its
-//! answer. Everything else is prepared after the previous answer: goals, plans and the reference's
+//! The law, the leash and the decision about the arrival need the newest state, so they run in its
+//! answer. All other parts are prepared after the previous answer: goals, plans and the reference's
 //! next step.
 
 mod carry;
@@ -51,17 +51,17 @@ use stages::GoalStage;
 /// The part of a session that exists from its first state.
 #[derive(Debug)]
 pub(super) struct RunningSession {
-    /// Hand as in the robot's state. Springs and dampers act there.
+    /// Hand according to the robot's state. Springs and dampers act there.
     hand: EndEffector,
-    /// Frame that goals lead: the hand as the robot reports it, or an object in it.
+    /// Frame that goals move: the hand as the robot reports it, or an object in the hand.
     ee: EndEffector,
-    /// Pose of the reported hand in the hand.
+    /// Pose of the reported hand relative to the hand.
     correction: Isometry3<f64>,
-    /// True once the correction was renewed where the reference has arrived.
+    /// True once the correction was renewed after the reference has arrived.
     is_refined: bool,
     grasp: Option<Isometry3<f64>>,
     load: Load,
-    /// Joint positions at the beginning, `[rad]`: the posture of goals without one.
+    /// Joint positions at the beginning, `[rad]`: the default posture of goals.
     posture: JointVector,
     pub(super) goal: Goal,
     /// The arm in the newest state that was answered.
@@ -74,7 +74,7 @@ pub(super) struct RunningSession {
     held: Option<Held>,
     /// Time when the goal was first seen, `message_id` of the state.
     since: u64,
-    /// Aim of the reference: the goal's target, or a nearer one, or rest.
+    /// Aim of the reference: the goal's target, a target moved closer by the lead, or rest.
     aim: Target,
     /// True if a moving target got no update for too long.
     halted: bool,
@@ -85,7 +85,7 @@ pub(super) struct RunningSession {
     response: Unresponsive,
     /// True if the arm ignored its commands in the last answer.
     ignores: bool,
-    /// Action after a held goal had to be given up.
+    /// Action of the session after a held goal had to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
     /// Time of the last update of the goal, `message_id` of the state.
@@ -93,13 +93,14 @@ pub(super) struct RunningSession {
     standing: Standing,
     /// The reaction of the goal, until its condition was true.
     reacting: Option<Reacting>,
-    /// True if the arm stops or rests on something that it may have met in a reaction.
+    /// True if the arm stops or rests at a possible contact after a reaction.
     yields: bool,
-    /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other cycle.
+    /// Counter that grows by 1 in a cycle in which the course is held back, and falls by 1
+    /// otherwise.
     held_back: u64,
-    /// Same for cycles in which the leash holds it back.
+    /// Counter of the same kind for cycles in which the leash holds the course back.
     leashed: u64,
-    /// True if for that reason its goal landed short of its target.
+    /// True if the goal landed short of its target because the course was held back.
     obstructed: bool,
     /// True if the reference waits for the other arms that carry the same object.
     waits: bool,
@@ -112,18 +113,19 @@ pub(super) struct RunningSession {
 /// State of the goal.
 #[derive(Clone, Copy, Debug)]
 enum Standing {
-    /// It is pursued.
+    /// The session pursues the goal.
     InForce,
-    /// It was replaced by a stop. Chunks that wait for their time are discarded.
+    /// The goal was replaced by a stop. Chunks that wait for their time are discarded.
     TakenBack,
-    /// It was given up for `cause`. The arm holds the last target, or brakes.
+    /// The goal was given up for `cause`. The arm holds the last target, or brakes.
     GivenUp {
         action: OnTimeout,
         cause: Lapse,
-        /// Set if its condition had been true by then.
+        /// Set if the goal's condition had been true by then.
         reacted: Option<Reacted>,
     },
-    /// Its condition was true. The arm brakes, and continues to the other target if there is one.
+    /// The goal's condition was true. The arm brakes, and continues to the other target if there is
+    /// one.
     Reacted(Reacted),
 }
 
@@ -141,9 +143,9 @@ enum Drive {
 /// Prepared values for the answer to the next state.
 #[derive(Debug, Default)]
 struct Next {
-    /// Step of the course; none where the course follows the measured arm.
+    /// Step of the course; `None` if the course follows the measured arm.
     step: Option<CourseStep>,
-    /// The guards that have bound so far.
+    /// The guards that have held the command back so far.
     bindings: Bindings,
 }
 
@@ -154,13 +156,13 @@ pub(super) struct Measured {
     pub(super) time: u64,
     pub(super) q: JointVector,
     pub(super) dq: JointVector,
-    /// Pose in the model.
+    /// Pose of the end effector according to the model.
     pub(super) modelled: Isometry3<f64>,
     /// `O_T_EE`, column-major, unchecked.
     pub(super) reported: [f64; 16],
     /// Pose of the hand as the robot reports it, computed from the model and the correction.
     pub(super) pose: Isometry3<f64>,
-    /// Pose of the frame that goals lead: the object in the hand, or the hand.
+    /// Pose of the frame that goals move: the object in the hand, or the hand.
     pub(super) object: Isometry3<f64>,
     /// Jacobian of the end effector in the base frame.
     pub(super) jacobian: Jacobian,
@@ -283,11 +285,11 @@ impl RunningSession {
         }
     }
 
-    /// Prepares the answer to the state `now`, `message_id`. It takes up a `newer` goal, if there
-    /// is one, plans, and moves the reference by one step. `alive` is false once the deadman of the
+    /// Prepares the answer to the state `now`, `message_id`. Begins a `newer` goal, if there is
+    /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
     /// session is silent or dropped. `stop` is present in the cycle that sees that the session's
-    /// team has stopped. `waits` is true while the reference waits for others that carry the same
-    /// object.
+    /// team has stopped. `waits` is true while the reference waits for other arms that carry the
+    /// same object.
     pub(super) fn prepare(
         &mut self,
         model: &Model,
@@ -370,7 +372,7 @@ impl RunningSession {
         step
     }
 
-    /// Distance of the arm from its target at its release.
+    /// Returns the distance of the arm from its target at its release.
     pub(super) fn released(&self) -> Option<PoseError> {
         match self.stage {
             GoalStage::Finished(released) => released,
@@ -494,7 +496,7 @@ impl RunningSession {
     }
 
     /// Moves the reference to the setpoint of the robot's controller, if the two differ, and plans
-    /// the course anew from there. Returns true if it did.
+    /// the course anew from there. Returns true if so.
     fn reanchor(&mut self, model: &Model, state: &RobotState) -> bool {
         let Drive::Setpoints(stream) = &mut self.drive else {
             return false;

@@ -18,8 +18,8 @@ pub(super) struct Reacting {
 }
 
 impl Reacting {
-    /// Returns the reaction of a goal that begins with the state `since`, `message_id`, if it has
-    /// one.
+    /// Returns the reaction of a goal that begins with the state `since`, `message_id`; `None` if
+    /// the goal has none.
     pub(super) fn to(goal: &Goal, since: u64) -> Option<Self> {
         let Reaction { condition, then } = goal.reaction?;
         Some(Self {
@@ -76,7 +76,7 @@ impl RunningSession {
         self.reacting = None;
     }
 
-    /// True if a condition of the goal still counts: until the goal was reported, taken back or
+    /// True if a condition of the goal still counts: until the goal was reported, cancelled or
     /// braked.
     fn is_watched(&self) -> bool {
         let pursued = match self.standing {
@@ -87,12 +87,13 @@ impl RunningSession {
         pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
     }
 
-    /// True if the arm has finished the brake of a reaction, and not yet its motion to `heading`.
+    /// True if the arm has finished the brake of a reaction, but not yet its motion to `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
         self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
     }
 
-    /// Observations when the condition of the goal was true, even if the goal was given up since.
+    /// Returns the observations when the goal's condition was true, even if the goal was given up
+    /// since.
     pub(super) fn reacted(&self) -> Option<Reacted> {
         match self.standing {
             Standing::Reacted(reacted) => Some(reacted),
@@ -101,7 +102,7 @@ impl RunningSession {
         }
     }
 
-    /// True if the goal has a different end because its condition was true.
+    /// True if the goal has a different target because its condition was true.
     pub(super) fn has_reacted(&self) -> bool {
         matches!(self.standing, Standing::Reacted(_))
     }

@@ -1,4 +1,4 @@
-//! The guards that draw a goal's target nearer or give up the goal: lead, deviation, speed cap,
+//! The guards that move a goal's target closer or give up the goal: lead, deviation, speed cap,
 //! response, watchdog and deadman.
 
 use core::time::Duration;
@@ -12,7 +12,7 @@ use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 use crate::team::TeamStop;
 
 impl RunningSession {
-    /// Draws a target nearer that is too far ahead of the arm. Returns true if it is.
+    /// Moves a target closer that is too far ahead of the arm. Returns true if so.
     pub(super) fn draw_nearer(&mut self, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
             return false;
@@ -81,7 +81,7 @@ impl RunningSession {
         };
     }
 
-    /// Gives up a goal whose arm is displaced. Returns true if it is.
+    /// Gives up a goal whose arm is displaced. Returns true if so.
     pub(super) fn watch_deviation(&mut self, model: &Model, leashed: bool) -> bool {
         if !leashed {
             self.displacement.set_free(&self.reference.q);
@@ -124,7 +124,7 @@ impl RunningSession {
         too_fast
     }
 
-    /// Gives up a goal whose arm ignores its commands. Returns true if it does.
+    /// Gives up a goal whose arm ignores its commands. Returns true if so.
     pub(super) fn watch_response(&mut self) -> bool {
         let over = self.stage.lets_go();
         if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
@@ -137,8 +137,8 @@ impl RunningSession {
         self.ignores
     }
 
-    /// Moves a reference that is ahead of a still arm back to it. Otherwise the arm would leap when
-    /// it comes free.
+    /// Moves a reference that is ahead of a still arm back to the arm. Otherwise the arm would leap
+    /// when it can move again.
     fn return_to_arm(&mut self) {
         if (self.reference.q - self.arm.q).amax() < NEAR {
             return;
@@ -185,7 +185,7 @@ impl RunningSession {
         )
     }
 
-    /// Gives up the goal if its updates stay away or its deadman is silent.
+    /// Gives up the goal if its updates stop arriving or its deadman is silent.
     pub(super) fn watch(&mut self, alive: bool, now: u64) {
         let braked = self.has_braked();
         // A goal that stops the arm needs no deadman.
@@ -212,5 +212,5 @@ impl RunningSession {
     }
 }
 
-/// Distance from the reference at which an arm that comes free does not leap, `[rad]`.
+/// Distance from the reference at which an arm that can move again does not leap, `[rad]`.
 const NEAR: f64 = 2e-3;

@@ -10,8 +10,8 @@ use crate::control::{
 use crate::shaping::CYCLE;
 
 /// Greatest distance of the robot's setpoint from the sent setpoint at which the two count as the
-/// same. It is more than the rounding of the robot's echo, and less than any cycle of a motion that
-/// matters.
+/// same. It is more than the rounding of the robot's echo, and less than any relevant cycle of a
+/// motion.
 mod echo {
     /// Distance of joint positions, `[rad]`.
     pub(super) const JOINTS: f64 = 2e-6;
@@ -30,7 +30,7 @@ mod echo {
 }
 
 /// Distance of the robot's integrated position at which the reference moves to the robot's place.
-/// Velocities make up for smaller distances.
+/// Velocities remove smaller distances.
 pub(super) mod is_off {
     /// Distance of joint positions, `[rad]`.
     pub(crate) const JOINTS: f64 = 2e-5;
@@ -39,7 +39,7 @@ pub(super) mod is_off {
     pub(crate) const POSE: f64 = 3e-6;
 }
 
-/// Greatest change of a pose and an elbow by the limiter, `[m, rad]`, for them to count as
+/// Greatest change of a pose and an elbow by the limiter, `[m, rad]`, at which they count as
 /// unchanged. The change at the joints is some ten times as large, a jerk of 100 rad/s^3.
 const SAME: f64 = 1e-8;
 
@@ -80,8 +80,8 @@ pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     apart(shaped, asked).amax() <= most
 }
 
-/// Distance between two setpoints of the same kind: in the joints, `[rad]`; or in translation, in
-/// the elements of their rotation, in the elbow, `[m, rad]`.
+/// Returns the distance between two setpoints of the same kind: of the joints, `[rad]`, or of
+/// translation, elements of the rotation, and elbow, `[m, rad]`.
 pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     let squares = |a: &[f64], b: &[f64]| -> f64 {
         let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
@@ -116,13 +116,12 @@ pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     }
 }
 
-/// Returns the part of a joint drift to make up for, `[rad]`: zero where rounding explains the
-/// drift.
+/// Returns the part of a joint drift to remove, `[rad]`: zero if rounding explains the drift.
 pub(super) fn joint_drift(drift: &JointVector) -> JointVector {
     drift.map(|x| x - x.clamp(-echo::JOINTS, echo::JOINTS))
 }
 
-/// Same for a drift of the pose, base axes, `[m, rad]`.
+/// Returns the part of a pose drift to remove, base axes, `[m, rad]`.
 pub(super) fn pose_drift(drift: &Twist) -> Twist {
     drift.map(|x| x - x.clamp(-echo::POSE, echo::POSE))
 }

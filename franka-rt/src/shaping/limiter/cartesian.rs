@@ -15,13 +15,13 @@ pub const POSE_ROTATION_SHARE: f64 = 0.99;
 /// Bounds on the norms of the end effector's linear and angular motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CartesianBounds {
-    /// `[m/s, m/s^2, m/s^3]`.
+    /// Bounds of the linear motion, `[m/s, m/s^2, m/s^3]`.
     pub translation: MotionLimits,
-    /// `[rad/s, rad/s^2, rad/s^3]`.
+    /// Bounds of the angular motion, `[rad/s, rad/s^2, rad/s^3]`.
     pub rotation: MotionLimits,
 }
 
-/// Limits a twist: linear `[m/s]`, then angular velocity `[rad/s]`, in the base frame.
+/// Limits a twist in the base frame: linear velocity `[m/s]`, then angular velocity `[rad/s]`.
 ///
 /// # Errors
 /// [`InvalidCommand::Twist`] if a component of `command` is not finite.
@@ -42,14 +42,14 @@ pub fn cartesian_velocity(
     Ok([v.x, v.y, v.z, w.x, w.y, w.z])
 }
 
-/// Limits a pose, column-major, in the base frame, by the twist that leads there from `last_pose`.
+/// Limits a pose, column-major, in the base frame, by the twist from `last_pose` to it.
 ///
-/// Of both poses the nearest rotation counts. The rotational bounds are taken times
+/// Both poses are replaced by the nearest rotations. The rotational bounds are multiplied by
 /// [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
 ///
 /// # Errors
 /// [`InvalidCommand::Pose`] if an element of `command` is not finite, then
-/// [`InvalidCommand::LimiterTransformation`] if it is not a homogeneous transformation.
+/// [`InvalidCommand::LimiterTransformation`] if `command` is not a homogeneous transformation.
 pub fn cartesian_pose(
     bounds: &CartesianBounds,
     command: &[f64; 16],
@@ -105,7 +105,7 @@ pub(crate) fn limit_rigid(
     Ok(pose(&rotation, &translation, [0.0, 0.0, 0.0, 1.0]))
 }
 
-/// Both halves of a twist: linear, then angular.
+/// Returns both halves of a twist: linear, then angular.
 fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
     let [x, y, z, rx, ry, rz] = *twist;
     (Vector3::new(x, y, z), Vector3::new(rx, ry, rz))
@@ -113,12 +113,11 @@ fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
 
 /// Limits a velocity of three components by the norms of its derivatives.
 ///
-/// The acceleration keeps its direction and may be as large as the distance to the bound of the
-/// velocity, along that direction, allows: it falls with the distance at the rate of the jerk.
-/// Where the last velocity is so far outside that no acceleration in this direction leads back, the
-/// distance is NaN and does not bound.
+/// The acceleration keeps its direction. Its limit falls with the distance to the bound of the
+/// velocity along that direction, at the rate of the jerk. If the last velocity is so far outside
+/// that no acceleration in this direction leads back, the distance is NaN and does not limit.
 ///
-/// Computes with shares of the vectors, where libfranka computes with unit vectors times their
+/// The computation uses shares of the vectors, where libfranka uses unit vectors times their
 /// lengths. This takes half the time, and differs by rounding.
 #[inline(always)]
 fn limit_vector(

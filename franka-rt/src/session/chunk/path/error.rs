@@ -18,8 +18,8 @@ pub enum PathError {
         Waypoint::COUNT_MAX
     )]
     TooMany,
-    /// A waypoint is neither a pose nor joint positions, or it is not of the same kind as the first
-    /// one.
+    /// A waypoint is neither a pose nor joint positions, or its kind is not the kind of the first
+    /// waypoint.
     #[error(
         "waypoint {waypoint} is of another kind than the first waypoint, expected all poses or \
          all joint positions"
@@ -33,7 +33,7 @@ pub enum PathError {
     Blend {
         /// The waypoint.
         waypoint: usize,
-        /// The distance given.
+        /// The given distance.
         got: f64,
     },
     /// The arm cannot reach the waypoint.
@@ -69,19 +69,19 @@ pub enum PathError {
         OFF_ROTATION * 1e3
     )]
     Way {
-        /// The previous waypoint; 0 is the place of the arm when the path arrives.
+        /// The previous waypoint; 0 is the place of the arm when the path begins.
         from: usize,
         /// The next waypoint.
         to: usize,
-        /// Place on the path, base frame, `[m]`.
+        /// Coordinate x of the place on the path, base frame, `[m]`.
         x: f64,
-        /// See `x`.
+        /// Coordinate y of the place.
         y: f64,
-        /// See `x`.
+        /// Coordinate z of the place.
         z: f64,
         /// Distance of the arm from the path at that place, `[m]`.
         translation: f64,
-        /// Difference in orientation at that place, `[rad]`.
+        /// Difference in orientation from the path at that place, `[rad]`.
         rotation: f64,
         /// The joint at the end of its range, from 1; `None` if the limit is the arm's reach.
         joint: Option<usize>,

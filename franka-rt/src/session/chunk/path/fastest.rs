@@ -1,5 +1,5 @@
 //! Makes a timed path as fast as its limits allow. A stretch between two stops that has corners is
-//! retimed; a single straight line already is the fastest.
+//! retimed; a single straight line is already the fastest.
 
 use franka_otg::AxisLimits;
 use nalgebra::SMatrix;
@@ -35,11 +35,11 @@ const NODES: usize = 32;
 /// Maximum number of initial nodes.
 const NODES_MAX: usize = 1024;
 
-/// Number of times that parts are halved in which the acceleration changes.
+/// Number of times that parts with a changing acceleration are halved.
 const REFINEMENTS: usize = 2;
 
-/// Permitted excess of the duration over the least one, as shares: before the last refinement, and
-/// after it.
+/// Permitted excess of the duration over the least duration, as shares: before the last refinement,
+/// and after it.
 const GAPS: [f64; 2] = [0.03, 1e-3];
 
 /// Intervals of each part in which the limits are checked once more at the end.

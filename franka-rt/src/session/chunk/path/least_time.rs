@@ -1,7 +1,8 @@
 //! The fastest motion along a path: the same curve, as fast as its limits allow, jerk included.
 //!
-//! A motion `q(t)` that keeps the limits is passed at another rate. With `x = (dt/dT)^2`, `T` the
-//! new time, a dash for the derivative by `t` and `v, a, j` the derivatives of the given motion,
+//! A motion `q(t)` that keeps the limits is traversed at another rate. With `x = (dt/dT)^2`, `T`
+//! the new time, a dash for the derivative by `t` and `v, a, j` the derivatives of the given
+//! motion,
 //!
 //! ```text
 //! new velocity     = sqrt(x) v
@@ -11,9 +12,9 @@
 //! ```
 //!
 //! `x` is a quadratic spline: `x''` is constant between two of its nodes. Where the motion begins
-//! or ends at rest it does so with a jerk, so that `x` is finite there too. All limits except the
+//! or ends at rest it does so with a jerk, so that `x` is finite there, too. All limits except the
 //! jerk's are convex in `x`. The jerk's limit is `|x j + ..| <= J / sqrt(x)`, with a convex right
-//! side. The tangent of that side at the present `x` lies below it, so a motion that keeps the
+//! side. The tangent of that side at the present `x` is below it, so a motion that keeps the
 //! tangent keeps the limit (the convex-concave procedure).
 //!
 //! The minimum is found by Newton's method behind logarithmic barriers (S. Boyd and L.
@@ -65,8 +66,8 @@ struct Problem<const W: usize> {
 /// Places of the two points of Gauss's rule in a part.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
-/// Adds a row, unless an existing row binds in every case where the new row does. Drops rows that
-/// the new row makes superfluous.
+/// Adds a row, unless an existing row is at least as strict in every case. Drops rows that the new
+/// row makes superfluous.
 fn keep<const W: usize>(rows: &mut Vec<SMatrix<f64, W, 3>>, row: SMatrix<f64, W, 3>) {
     let gram = row.tr_mul(&row);
     let size = gram.trace();

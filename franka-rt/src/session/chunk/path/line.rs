@@ -1,10 +1,10 @@
 //! Straight lines to a pose: checks that the arm can follow a line from its present place, and
 //! finds the elbow for it.
 //!
-//! A reachable pose does not guarantee a straight path to it. With the elbow kept in its place,
-//! joints may reach the ends of their ranges on a line that turns the hand far, although they would
-//! not with another elbow. So the line is followed before anything moves, as for a path: first with
-//! the elbow kept, then drawn towards each of the postures that reach the pose.
+//! A reachable pose does not guarantee a straight path to it. On a line that turns the hand far,
+//! joints may reach the ends of their ranges with the present elbow, but not with another one.
+//! Therefore the line is followed before anything moves, as for a path: first with the elbow kept,
+//! then with the elbow drawn to each of the postures that reach the pose.
 
 use core::ops::ControlFlow;
 
@@ -25,18 +25,19 @@ use crate::session::pose::PoseState;
 use crate::session::{Budget, Goal, GoalError, Hindrance, OnArrival, Target, rigid};
 
 impl Goal {
-    /// Looks for a straight line from the joint positions `q`, `[rad]`, to the pose of a goal that
-    /// ends there. If the arm cannot follow the line with its elbow kept near `kept`, `[rad]`, but
-    /// can with its elbow drawn to another posture, the goal gets that [posture](Self::posture).
+    /// Searches a straight line from the joint positions `q`, `[rad]`, to the pose of a goal that
+    /// ends there. If the arm cannot follow the line with its elbow near `kept`, `[rad]`, but can
+    /// with its elbow drawn to another posture, the goal gets that [posture](Self::posture).
     ///
-    /// A goal that the arm reaches off the line stays as it is. The same applies to goals that do
-    /// not end at a pose, to goals with a [reaction](Self::reaction) or with an object in the hand,
-    /// and to goals that [`check`](Self::check) refuses. Keep-out regions are not considered.
+    /// A goal that the arm can reach, although not on the line, stays as it is. The same applies to
+    /// goals that do not end at a pose, to goals with a [reaction](Self::reaction) or with an
+    /// object in the hand, and to goals that [`check`](Self::check) refuses. Keep-out regions are
+    /// not considered.
     ///
-    /// This usually takes a millisecond, and up to ten. It is not for the control thread.
+    /// This usually takes a millisecond, and at most ten. Do not call it on the control thread.
     ///
     /// # Errors
-    /// [`GoalError::NoLine`] if the arm reaches the pose with none of these postures.
+    /// [`GoalError::NoLine`] if the arm does not reach the pose with any of these postures.
     pub fn plan_line(
         &mut self,
         q: &[f64; 7],
@@ -93,7 +94,7 @@ impl Goal {
 /// Number of postures that are tried for the elbow, nearest first.
 const LED: usize = 8;
 
-/// Steps along a line that a first look combines.
+/// Number of steps along a line that the first, coarse check combines.
 const GLANCE: f64 = 4.0;
 
 /// Greatest turn of a joint between two checks of the arm's distance to itself, `[rad]`.
@@ -159,7 +160,8 @@ impl<'a> Line<'a> {
         way.break_value().map_or(Ok(()), Err)
     }
 
-    /// True if the arm reaches the end of the line, clear of itself, when it may leave the line.
+    /// True if the arm, when it may leave the line, reaches the end of the line without coming too
+    /// close to itself.
     fn ends_there(&self, posture: &Posture) -> bool {
         let (mut last, mut off) = (self.q, 0.0);
         let way = self.arm(posture, 1.0).along(&self.way, self.q, |step| {
@@ -183,7 +185,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// True if the arm is not too near itself at `next`, or no nearer than at `now`.
+    /// True if the arm is not too near itself at `next`, or at least no nearer than at `now`.
     fn is_clear(&self, now: &JointVector, next: &JointVector) -> bool {
         self.clearance.too_near(now, next).is_none()
     }

@@ -83,12 +83,12 @@ impl<T: Into<Target>> From<T> for Waypoint {
 
 impl Chunk {
     /// Creates a path through `waypoints` without times, within the budget of `goal`, from the
-    /// joint positions `q`, `[rad]`. The path begins when it is taken up, waits while the arm is
-    /// held back, and can be paused.
+    /// joint positions `q`, `[rad]`. The path begins when the session takes it up, waits while the
+    /// arm is held back, and can be paused.
     ///
-    /// This takes some milliseconds for each rounded waypoint, and is not for the control thread.
-    /// The private module `fastest` defines how close the result is to the fastest motion, `reach`
-    /// what is checked.
+    /// This takes some milliseconds for each rounded waypoint. Do not call it on the control
+    /// thread. The private module `fastest` defines how close the result is to the fastest motion;
+    /// `reach` defines the checks.
     ///
     /// # Errors
     /// [`PathError`].
@@ -102,8 +102,8 @@ impl Chunk {
         Self::planned(waypoints, q, goal, model, state, |_, _| {})
     }
 
-    /// Same as [`Self::through`]. `pass` is called with the time, `[s]`, and the joint positions of
-    /// closely spaced places along the whole path, in their order.
+    /// Same as [`Self::through`]. Also calls `pass` with the time, `[s]`, and the joint positions
+    /// of closely spaced places along the whole path, in order.
     fn planned(
         waypoints: &[Waypoint],
         q: &[f64; 7],

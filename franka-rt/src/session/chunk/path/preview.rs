@@ -11,9 +11,9 @@ use crate::session::check::check_keep_out;
 use crate::session::guard::clearance::Clearance;
 use crate::session::{Chunk, Goal, GoalError};
 
-/// Predicted motion of an arm along a path: its joint positions at times. Between two of them no
-/// joint turns by more than a few hundredths of a radian. If the path is one of poses, the end
-/// effector moves by at most 5 mm between them.
+/// Predicted motion of an arm along a path: its joint positions at times. Between two entries no
+/// joint turns by more than a few hundredths of a radian. On a path of poses, the end effector
+/// moves by at most 5 mm between two entries.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Preview {
@@ -23,7 +23,7 @@ pub struct Preview {
 }
 
 impl Preview {
-    /// Predicts the motion of an arm at the joint positions `q`, `[rad]`. It takes as long as
+    /// Predicts the motion of an arm at the joint positions `q`, `[rad]`. The call takes as long as
     /// [`Chunk::through`], and refuses the same paths.
     ///
     /// # Errors
@@ -46,8 +46,9 @@ impl Preview {
         Ok(Self { postures })
     }
 
-    /// Time until the reference is at the end, if nothing delays it. Guards that bind delay it, and
-    /// so do poses that require more than a joint's limits. The arm settles after that.
+    /// Returns the time until the reference is at the end, if nothing delays it. Guards that hold
+    /// the reference back delay it, as do poses that require more than a joint's limits. The arm
+    /// settles after that.
     pub fn duration(&self) -> Duration {
         self.postures
             .last()
@@ -55,8 +56,8 @@ impl Preview {
     }
 
     /// Returns the place where the arm would come nearer than the guards allow to itself, or to a
-    /// keep-out region of a session; `None` if there is no such place. The guards stop the arm
-    /// before that place. `state` reports whether a hand is mounted.
+    /// keep-out region of a session; `None` without such a place. The guards stop the arm before
+    /// that place. `state` shows whether a hand is mounted.
     ///
     /// # Errors
     /// [`GoalError::KeepOut`], as for the session.
@@ -94,6 +95,6 @@ pub struct Blocked {
     pub time: Duration,
     /// The joint positions there, `[rad]`.
     pub q: [f64; 7],
-    /// Region, from 1; `None` where a link comes near another link.
+    /// Number of the keep-out region, from 1; `None` if a link comes near another link.
     pub region: Option<usize>,
 }

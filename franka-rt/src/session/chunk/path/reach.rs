@@ -3,7 +3,7 @@
 //! The joints follow the whole path, rounded corners included, in small steps from their present
 //! positions. They use the inverse kinematics of the control cycle: with its damping, its rule for
 //! the arm's free direction, and the ends of the joints' ranges. The cycle's other limits do not
-//! decide which poses the arm reaches. If a pose requires too much velocity or acceleration from
+//! change which poses the arm reaches. If a pose requires too much velocity or acceleration from
 //! joints, the path waits.
 //!
 //! Joint positions need no such check: if two of them are in range, so are all positions between
@@ -27,13 +27,13 @@ use crate::session::rigid;
 /// Greatest distance of the end effector from the path, `[m]`: the tolerance of a goal.
 pub(super) const OFF_TRANSLATION: f64 = 1e-3;
 
-/// Same for its orientation, `[rad]`.
+/// Greatest difference of the end effector's orientation from the path, `[rad]`.
 pub(super) const OFF_ROTATION: f64 = 5e-3;
 
 /// Longest step along the path, `[m]`.
 const STEP_TRANSLATION: f64 = 5e-3;
 
-/// Same for the orientation, `[rad]`.
+/// Largest change of orientation in a step along the path, `[rad]`.
 const STEP_ROTATION: f64 = 0.02;
 
 /// Distance that counts as zero, in units of the permitted distance.
@@ -43,8 +43,8 @@ const THERE: f64 = 0.02;
 /// attempts make enough progress.
 const ATTEMPTS: usize = 60;
 
-/// Maximum number of steps between two states of a path. With the steps above a path has no more,
-/// unless its numbers make no sense.
+/// Maximum number of steps between two states of a path. With the largest steps above, a path has
+/// more only if its numbers are nonsensical.
 const STEPS_MAX: f64 = 1e4;
 
 /// Greatest turn of a joint in one attempt, `[rad]`.

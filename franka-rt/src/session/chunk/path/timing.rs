@@ -1,7 +1,7 @@
 //! Timing of a path: as fast as its limits allow, with each corner rounded or stopped at.
 //!
-//! A leg is passed along its straight line, with a profile of constant jerks. Around a corner the
-//! velocity changes from one leg's to the next leg's along a smoothstep, evenly in time:
+//! A leg is traversed along its straight line, with a profile of constant jerks. Around a corner
+//! the velocity changes from one leg's to the next leg's along a smoothstep, evenly in time:
 //!
 //! ```text
 //! v(t) = v1 + (v2 - v1) s(t / 2T)    from T before the corner to T after it, s(u) = 3 u^2 - 2 u^3
@@ -120,7 +120,7 @@ pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner
     knots
 }
 
-/// Shares per second at the beginning and the end of the straight part of leg `i`.
+/// Returns the shares per second at the beginning and the end of the straight part of leg `i`.
 fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -130,7 +130,7 @@ fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     )
 }
 
-/// Share of leg `i` that is passed along its line.
+/// Returns the share of leg `i` that is traversed along its line.
 fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -138,14 +138,14 @@ fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     (1.0 - cut).max(0.0)
 }
 
-/// Distance of a change from one speed to another, both without acceleration.
+/// Returns the distance of a change from one speed to another, both without acceleration.
 fn way(from: f64, to: f64, limits: &AxisLimits) -> f64 {
     let (build_up, hold) = ramp(from, to, limits);
     0.5 * (from + to) * (2.0 * build_up + hold)
 }
 
-/// Time for building up or removing the acceleration in a change of speed, and time between the
-/// two.
+/// Returns the time for building up or removing the acceleration in a change of speed, and the time
+/// between the two.
 fn ramp(from: f64, to: f64, limits: &AxisLimits) -> (f64, f64) {
     let (change, full) = ((to - from).abs(), limits.acceleration / limits.jerk);
     if change < limits.acceleration * full {
@@ -179,7 +179,7 @@ fn most(lower: f64, upper: f64, holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// More halvings than a number has digits.
+/// Number of halvings, more than a number has digits.
 const HALVINGS: usize = 64;
 
 /// Knots closer in time than this are one, `[s]`.
