@@ -2,13 +2,13 @@
 //! leave it.
 //!
 //! A sequence lock over two buffers of `AtomicU64` words, which the values fill in turns. The
-//! writer makes the count odd, stores the words of the one buffer, and makes the count even; the
-//! previous value stays whole in the other buffer. So a writer that is delayed in the middle of a
-//! write keeps no reader from the newest whole value. A reader has a torn copy, and throws it away,
-//! only if it is itself delayed until the writer has finished the next value and begun another one.
-//! Writing never waits, and a read is one attempt. So neither side can delay the other, for any
-//! priorities. A cycle that meets a torn goal keeps the previous one; a task outside the thread may
-//! try again with [`SlotReader::read_retry`].
+//! writer makes the count odd, stores the words of one buffer, and makes the count even. The
+//! previous value stays whole in the other buffer, so a writer that is delayed in the middle of a
+//! write keeps no reader from the newest whole value. A reader gets a torn copy, and discards it,
+//! only if the reader itself is delayed until the writer has finished the next value and begun
+//! another one. Writing never waits, and a read is one attempt, so neither side can delay the
+//! other, for any priorities. A cycle that reads a torn goal keeps the previous goal. A task
+//! outside the thread may try again with [`SlotReader::read_retry`].
 //!
 //! ```
 //! # use franka_rt::slot;
@@ -23,14 +23,13 @@
 //! ```
 //!
 //! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
-//! needed. Memory order is argued at the two loops; `tests/loom` explores the
-//! interleavings.
+//! needed. The two loops explain their memory order; `tests/loom` explores the interleavings.
 //!
-//! The count has no separate cache line. Measurements had a reader on a second core, on a busy
-//! virtual machine with two cores. The count was padded to 128 bytes or not. A write of 330 words,
-//! a state, takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The tails
-//! differ more between runs than between the two layouts. A write comes once per millisecond:
-//! padding saves nothing that counts.
+//! The count has no separate cache line. The measurements used a reader on a second core, on a busy
+//! virtual machine with two cores, with the count padded to 128 bytes and not. A write of 330
+//! words, a state, takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The
+//! tails differ more between runs than between the two layouts. With one write per millisecond,
+//! padding saves nothing relevant.
 
 use core::fmt;
 
@@ -45,7 +44,7 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
-/// A plain value that crosses as a fixed number of words.
+/// A plain value that is stored in the slot as a fixed number of words.
 ///
 /// `load` must accept everything that `store` wrote. Neither may allocate or block when one end of
 /// the slot is on the real-time thread.
@@ -53,11 +52,11 @@ pub trait Words: Sized {
     /// Number of words.
     const WORDS: usize;
 
-    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them travel; ones
-    /// left alone keep the content of an earlier value.
+    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them are
+    /// transferred; elements that are not written keep the content of an earlier value.
     fn store(&self, words: &mut [u64]);
 
-    /// Reads back the words of one call of [`Self::store`].
+    /// Returns the value of the words that one call of [`Self::store`] wrote.
     fn load(words: &[u64]) -> Self;
 }
 
@@ -87,7 +86,7 @@ impl<const N: usize> Words for [f64; N] {
     }
 }
 
-/// Makes an empty slot. Allocates; neither end does afterwards.
+/// Makes an empty slot. This call allocates; the two ends never do.
 pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
     let shared = Arc::new(Shared {
         count: AtomicU64::new(0),
@@ -113,10 +112,9 @@ pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
 
 #[derive(Debug)]
 struct Shared {
-    /// Twice the number of values written, plus one while a write is under way.
+    /// Twice the number of values written, plus one during a write.
     count: AtomicU64,
-    /// Buffers of the values with even numbers and of the values with odd ones; the first value has
-    /// number 1.
+    /// Buffers for the values with even and with odd numbers; the first value has number 1.
     buffers: [Box<[AtomicU64]>; 2],
 }
 
@@ -167,10 +165,10 @@ pub enum Read<T> {
     Torn,
 }
 
-/// A reading end of a slot. A clone has its own memory of what it has read.
+/// A reading end of a slot. A clone remembers independently which values it has returned.
 pub struct SlotReader<T> {
     shared: Arc<Shared>,
-    /// The number of the last value returned.
+    /// Number of the last value that this reader returned.
     seen: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn() -> T>,
@@ -194,7 +192,7 @@ impl<T> Clone for SlotReader<T> {
 }
 
 impl<T: Words> SlotReader<T> {
-    /// Reads the newest value if this reader has not returned it yet. One attempt, wait-free.
+    /// Reads the newest value if this reader has not returned it yet. Makes one attempt; wait-free.
     pub fn read_newer(&mut self) -> Read<T> {
         // Acquire, pairs with both of the writer's stores: a count comes with every word of the
         // newest whole value.
@@ -217,8 +215,8 @@ impl<T: Words> SlotReader<T> {
     }
 
     /// Like [`Self::read_newer`], with up to `attempts` attempts while the copies are torn. Not for
-    /// the real-time thread: on one core, a reader of higher priority would use all of them up
-    /// against a writer that cannot run.
+    /// the real-time thread: on one core, a reader of higher priority would waste all attempts
+    /// because the writer cannot run.
     pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
         for _ in 1..attempts {
             match self.read_newer() {

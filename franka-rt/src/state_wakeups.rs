@@ -1,9 +1,9 @@
-//! Flag whether the thread sends a wake-up for every state.
+//! Flag that makes the thread send a wake-up for every state.
 //!
-//! A wake-up per state runs a task of the async world a thousand times a second, which takes about
-//! one percent of a processor, half of it on the thread. A program that only looks at the newest
-//! state now and then does not need them. So listeners to every state request them, and without a
-//! request the thread sends one for every fiftieth state.
+//! A wake-up per state runs a task of the async world a thousand times a second. This uses about
+//! one percent of a processor, half of it on the thread. A program that only reads the newest state
+//! now and then does not need these wake-ups. Listeners to every state request them. Without a
+//! request the thread sends a wake-up for every fiftieth state.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -16,10 +16,10 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// True if any subscriber needs a wake-up per state; initially true. Clones are the same flag.
+/// True if any subscriber needs a wake-up per state; initially true. Clones share the flag.
 ///
-/// The subscribers are counted elsewhere, by a channel for instance: this is only the flag that the
-/// thread reads.
+/// The subscribers are counted elsewhere, for example by a channel; the thread reads only this
+/// flag.
 #[derive(Clone, Debug)]
 pub struct StateWakeups(Arc<AtomicBool>);
 
@@ -30,14 +30,14 @@ impl Default for StateWakeups {
 }
 
 impl StateWakeups {
-    /// Requests wake-ups, for a subscriber that has been counted before this call.
+    /// Requests wake-ups, for a subscriber that was counted before this call.
     pub fn request(&self) {
         // Release, with the Acquire in `release`: the thread that undoes this sees the count.
         self.0.swap(true, Ordering::AcqRel);
     }
 
-    /// Ends the wake-ups, unless `are_wanted` finds a subscriber, even a new one. For one thread
-    /// only.
+    /// Ends the wake-ups, unless `are_wanted` finds a subscriber, even a new one. Only one thread
+    /// may call this.
     pub fn release(&self, are_wanted: impl Fn() -> bool) {
         if are_wanted() {
             return;
@@ -48,7 +48,7 @@ impl StateWakeups {
         }
     }
 
-    /// True to send a wake-up for every state.
+    /// True if the thread must send a wake-up for every state.
     pub fn are_wanted(&self) -> bool {
         // Relaxed: nothing else is read because of it. A request takes effect one state later at
         // worst.

@@ -1,14 +1,14 @@
-//! The system calls that neither std nor socket2 offers safely: the only module of this crate with
-//! `unsafe`.
+//! The system calls that neither std nor socket2 provides safely: the only module of this crate
+//! with `unsafe`.
 //!
 //! | module | content |
 //! |---|---|
 //! | this | common to all Unix systems |
 //! | `linux` | available on Linux only: scheduling, locked memory, polling, the eventfd |
-//! | `portable` | the same requests elsewhere: refused, and a pair of sockets for the eventfd |
+//! | `portable` | the same requests on other systems: refused, and a pair of sockets for the eventfd |
 //!
-//! The other systems are for development against simulated robots. With `--cfg franka_portable`,
-//! Linux builds and tests their side.
+//! The other systems are for development with simulated robots. With `--cfg franka_portable`, Linux
+//! builds and tests their code.
 
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod linux;
@@ -29,8 +29,8 @@ pub(crate) use linux::*;
 #[cfg(any(not(target_os = "linux"), franka_portable))]
 pub(crate) use portable::*;
 
-/// Blocks every signal on the calling thread, and only it, so that the kernel delivers the signals
-/// of the process to other threads; all but those that report a fault of the thread itself.
+/// Blocks signals on the calling thread only, so that the kernel delivers the signals of the
+/// process to other threads. Signals that report a fault of the thread itself stay unblocked.
 pub(crate) fn block_signals() {
     // SAFETY: `sigset_t` is a C bit array, for which all zeros is a valid value. It is a set once
     // `sigfillset` has filled it below.
@@ -48,8 +48,8 @@ pub(crate) fn block_signals() {
     unsafe { libc::pthread_sigmask(libc::SIG_BLOCK, &raw const signals, core::ptr::null_mut()) };
 }
 
-/// Signals that the kernel raises for a fault of a thread itself. Blocked, they would end the
-/// process without the handler that prints the cause.
+/// Signals that the kernel raises for a fault of a thread itself. If they were blocked, they would
+/// end the process without the handler that prints the cause.
 const FAULTS: [libc::c_int; 7] = [
     libc::SIGABRT,
     libc::SIGBUS,
@@ -79,7 +79,8 @@ pub(crate) fn error_text(errno: i32) -> String {
     }
 }
 
-/// `recvfrom` with flags: the received length, cut to the length of `buffer`, and the sender.
+/// Calls `recvfrom` with flags. Returns the received length, at most the length of `buffer`, and
+/// the sender.
 pub(crate) fn recv_from(
     socket: &Socket,
     buffer: &mut [u8],

@@ -1,33 +1,33 @@
-//! The estimate of the external wrench that a robot shows of an untouched arm.
+//! The estimate of the external wrench that a robot reports for an untouched arm, as an offset.
 //!
-//! Model, tool and friction are never exact, so the estimate shows a newton or two with nothing
-//! attached. A [`WrenchTare`] is its average at rest, to take off later. It belongs to the posture
-//! in which it was taken: the part that errors of weight make turns with the arm, and friction
-//! sticks differently after each motion.
+//! Model, tool and friction are never exact, so the estimate is a newton or two with nothing
+//! attached. A [`WrenchTare`] is the average of the estimate at rest, to subtract later. It belongs
+//! to the posture in which it was taken. The part from errors of weight turns with the arm, and
+//! friction sticks differently after each motion.
 //!
 //! # The moment
 //!
-//! The vendor's documentation has `O_F_ext_hat_K` act on the stiffness frame, in axes of the base.
-//! Recordings of both robots have its moment about the origin of the base, which changes with the
-//! position. `K_F_ext_hat_K` has the moment about the stiffness frame in both readings, so moments
-//! are taken from it here, turned into axes of the base.
+//! According to the vendor's documentation, `O_F_ext_hat_K` acts on the stiffness frame, in axes of
+//! the base. In recordings of both robots its moment is about the origin of the base, which changes
+//! with the position. `K_F_ext_hat_K` has the moment about the stiffness frame in both readings.
+//! Moments are therefore taken from `K_F_ext_hat_K`, rotated into axes of the base.
 
 use core::time::Duration;
 
 use franka_proto::{RobotMode, RobotState};
 
-/// The average of the estimates at rest.
+/// The average of the robot's estimates at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct WrenchTare {
     /// Force, then moment about the origin of the stiffness frame, in axes of the base, `[N, N m]`.
     pub wrench: [f64; 6],
-    /// Standard deviation of each of its numbers over the average, `[N, N m]`.
+    /// Standard deviation of each number of the wrench over the average, `[N, N m]`.
     pub deviation: [f64; 6],
     /// External joint torques, `tau_ext_hat_filtered`, `[N m]`.
     pub joint_torques: [f64; 7],
-    /// Joint positions in which it was taken, `[rad]`.
+    /// Joint positions in which the tare was taken, `[rad]`.
     pub q: [f64; 7],
     /// `message_id` of the last state of the average, `[ms]` of the robot's clock.
     pub time: u64,
@@ -36,36 +36,36 @@ pub struct WrenchTare {
 }
 
 impl WrenchTare {
-    /// Duration of the states of an average unless asked otherwise.
+    /// Default duration of the states of an average.
     pub const DURATION: Duration = Duration::from_millis(500);
 
-    /// A tare is assumed to hold within this distance of its posture, `[rad]` of any joint. A
-    /// convention: two degrees change the torque of an undeclared kilogram half a metre away by
-    /// less than 0.2 N m.
+    /// Largest distance from its posture at which a tare is assumed to hold, `[rad]` of any joint.
+    /// The value is a convention: two degrees change the torque of an undeclared kilogram at half a
+    /// metre by less than 0.2 N m.
     pub const NEAR: f64 = 0.035;
 
-    /// The wrench of a state without the tare: force, then moment about the origin of the stiffness
-    /// frame, in axes of the base, `[N, N m]`; a positive wrench is exerted by the arm. `None`
-    /// where the robot has no estimate: near a singularity it reports zeros.
+    /// Returns the wrench of a state without the tare: force, then moment about the origin of the
+    /// stiffness frame, in axes of the base, `[N, N m]`. A positive wrench is exerted by the arm.
+    /// `None` if the robot has no estimate: near a singularity it reports zeros.
     pub fn compensate(&self, state: &RobotState) -> Option<[f64; 6]> {
         let wrench = estimate(state)?;
         Some(core::array::from_fn(|i| wrench[i] - self.wrench[i]))
     }
 
-    /// The external joint torques of a state without the tare, `[N m]`.
+    /// Returns the external joint torques of a state without the tare, `[N m]`.
     pub fn compensate_torques(&self, state: &RobotState) -> [f64; 7] {
         core::array::from_fn(|i| state.tau_ext_hat_filtered[i] - self.joint_torques[i])
     }
 
-    /// The largest change of a joint since the tare, `[rad]`: within [`Self::NEAR`] it is taken to
-    /// hold.
+    /// Returns the largest change of a joint since the tare, `[rad]`. Up to [`Self::NEAR`], the
+    /// tare is assumed to hold.
     pub fn turned(&self, state: &RobotState) -> f64 {
         let turned = (0..7).map(|i| (state.q[i] - self.q[i]).abs());
         turned.fold(0.0, f64::max)
     }
 }
 
-/// Reason why there is no tare.
+/// Reason why a tare is refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TareRefused {
@@ -78,15 +78,15 @@ pub enum TareRefused {
     Moves {
         /// The joint, 1 to 7.
         joint: u8,
-        /// Its velocity, `[rad/s]`.
+        /// Velocity of the joint, `[rad/s]`.
         speed: f64,
-        /// Its distance since the first state of the average, `[rad]`.
+        /// Distance of the joint from its position in the first state of the average, `[rad]`.
         way: f64,
     },
-    /// A goal is under way: the arm may stick yet, and is pushed.
+    /// A goal is under way: the arm may still stick, while the law pushes it.
     #[error("a motion is running, expected none: await its end before the tare")]
     UnderWay,
-    /// The robot is in a mode in which its torques show something else.
+    /// The robot is in a mode in which its torques are no measure of the offset.
     #[error(
         "the robot is in mode {got}, expected idle or move: the arm must hold itself, untouched"
     )]
@@ -107,12 +107,12 @@ pub enum TareRefused {
     /// The given time is out of range.
     #[error("the duration of the tare is {got:?}, expected 20 ms to 60 s")]
     Duration {
-        /// The time given.
+        /// The given time.
         got: Duration,
     },
 }
 
-/// Takes an average, state by state.
+/// Averages states one by one into a tare.
 #[derive(Clone, Debug)]
 pub struct Taring {
     duration: u64,
@@ -122,7 +122,7 @@ pub struct Taring {
     squares: [f64; 6],
 }
 
-/// Wrench, joint torques, joint positions.
+/// Numbers of an average: wrench, joint torques, joint positions.
 const NUMBERS: usize = 6 + 7 + 7;
 
 impl Taring {
@@ -144,11 +144,11 @@ impl Taring {
         })
     }
 
-    /// Takes in a state; returns the tare once the states have lasted long enough. A state that is
-    /// as old as the last changes nothing.
+    /// Adds a state. Returns the tare once the states have lasted long enough. A state that is not
+    /// newer than the last one changes nothing.
     ///
     /// # Errors
-    /// [`TareRefused`] if the state is not one of an untouched arm at rest.
+    /// [`TareRefused`] if the state is not of an untouched arm at rest.
     pub fn push(&mut self, state: &RobotState) -> Result<Option<WrenchTare>, TareRefused> {
         let first = *self.first.get_or_insert(*state);
         check(state, &first)?;
@@ -186,7 +186,7 @@ impl Taring {
     }
 }
 
-/// Checks that the arm rests, holds itself and is not touched.
+/// Checks that the arm rests, holds its position and is not touched.
 fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     if !matches!(state.robot_mode, RobotMode::Idle | RobotMode::Move) {
         return Err(TareRefused::Mode {
@@ -208,8 +208,8 @@ fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     Ok(())
 }
 
-/// Force and moment at the origin of the stiffness frame, in axes of the base; `None` where the
-/// robot has none, and reports zeros.
+/// Returns force and moment at the origin of the stiffness frame, in axes of the base. `None` if
+/// the robot has no estimate, and reports zeros.
 fn estimate(state: &RobotState) -> Option<[f64; 6]> {
     let wrench = state.wrench_at_stiffness_frame();
     let is_there = wrench.iter().all(|number| number.is_finite())
@@ -217,11 +217,11 @@ fn estimate(state: &RobotState) -> Option<[f64; 6]> {
     is_there.then_some(wrench)
 }
 
-/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times the velocity that real arms
-/// show.
+/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times the velocity that real
+/// resting arms report.
 const SPEED: f64 = 0.02;
 
-/// Greatest way of a joint during the average, `[rad]`.
+/// Greatest movement of a joint during the average, `[rad]`.
 const WAY: f64 = 0.002;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Joint motions of several robots: they begin together, and the fault of one brakes the others.
+//! Joint motions of several robots: they begin together, and a fault of one robot brakes the
+//! others.
 //!
 //! ```text
 //!  Coordinator::begin --> Round: one goal for each member
@@ -10,15 +11,16 @@
 //!         a goal is refused or taken back, a robot stops, a member has waited too long
 //! ```
 //!
-//! The state of the newest round is one atomic word, which all members look at once in each of
-//! their own cycles: a load. A member that sees a fault writes it there, by a compare-and-exchange.
-//! No thread waits for another one, and no async runtime is on the way. A member begins to brake
-//! within two of its cycles after the thread of the faulty member has seen the fault. The first
-//! fault of a round stays. A newer round hides no stop: a member that has not looked yet still sees
-//! it, and a round that begins before all have seen a stop of the team is stopped by it.
+//! A joint motion of a team is a *round*. The state of the newest round is one atomic word, which
+//! all members load once in each of their own cycles. A member that sees a fault writes it there,
+//! by a compare-and-exchange. No thread waits for another one, and no async runtime is involved. A
+//! member begins to brake within two of its cycles after the thread of the faulty member has seen
+//! the fault. The first fault of a round stays. A newer round hides no stop: a member that has not
+//! looked yet still sees the stop. A round that begins before all members have seen a stop of the
+//! team is stopped by it.
 //!
-//! [`together`](crate::together) has common starts of independent motions; here a session goes from
-//! goal to goal.
+//! [`together`](crate::together) has common starts of independent motions. Here, a session moves
+//! from goal to goal.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -37,16 +39,16 @@ use core::time::Duration;
 /// The most members of a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Silence of a member's robot after which the others brake, unless stated otherwise. A robot that
-/// misses as many commands stops on its own. Detection may take up to 20 ms longer, one wait of the
-/// member's thread.
+/// Default silence of a member's robot after which the others brake. A robot that misses as many
+/// commands stops on its own. Detection may take up to 20 ms longer, one wait of the member's
+/// thread.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
 /// Time for which a goal of a joint motion waits for the goals of the other members, by the clock
 /// of its robot. The arm is held meanwhile, or continues its previous motion.
 pub const START_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// One joint motion of a team.
+/// One joint motion of a team, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Round(NonZeroU32);
 
@@ -81,24 +83,24 @@ pub enum TeamStop {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum MemberFault {
-    /// Its robot ended the session: a reflex, a user stop, another client.
+    /// The member's robot ended the session: by a reflex, a user stop, or another client.
     RobotStopped,
-    /// Its robot was silent for too long: [`SILENCE`].
+    /// The member's robot was silent for too long: [`SILENCE`].
     Silent,
-    /// A command could not be sent, and the robot was asked to stop.
+    /// A command of the member could not be sent, and the robot was asked to stop.
     Failed,
-    /// Its session was dropped: the control thread has ended, or panicked.
+    /// The member's session was dropped: the control thread has ended, or panicked.
     Gone,
-    /// Its goal was given up: the arm was displaced or too fast, its way is blocked, its deadman or
-    /// its stream of targets is silent.
+    /// The member's goal was given up: the arm was displaced or too fast, its path is blocked, or
+    /// its deadman or its stream of targets is silent.
     GivenUp,
-    /// It did not reach its target.
+    /// The member's arm did not reach its target.
     NotReached,
-    /// Its motion was dropped, cancelled or stopped, or yielded to another goal.
+    /// The member's motion was dropped, cancelled or stopped, or yielded to another goal.
     TakenBack,
-    /// Its goal was refused.
+    /// The member's goal was refused.
     Refused,
-    /// The goals of the others did not come in time.
+    /// The goals of the other members did not come in time.
     TimedOut,
 }
 
@@ -127,51 +129,53 @@ impl core::fmt::Display for MemberFault {
     }
 }
 
-/// Begins and stops the joint motions of a team, from any thread. Clones are for the same team.
+/// Begins and stops the joint motions of a team, from any thread. Clones control the same team.
 #[derive(Clone, Debug)]
 pub struct Coordinator {
     shared: Arc<Shared>,
 }
 
-/// Progress of a member with an object that the team carries.
+/// Progress of a member that carries an object together with its team.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carrying {
-    /// The remaining way of its reference, `[m]`, turns included.
+    /// The remaining distance of the member's reference, `[m]`, rotations included.
     pub remaining: f64,
-    /// True if its arm is held back from its reference.
+    /// True if the member's arm is held back from its reference.
     pub lags: bool,
 }
 
-/// The part of one session in a team. Dropping it, unless it has left, is a fault.
+/// The membership of one session in a team. Dropping it is a fault, unless the member has left
+/// before.
 #[derive(Debug)]
 #[must_use = "dropping a member stops the team"]
 pub struct Member {
     shared: Arc<Shared>,
     number: u8,
-    /// The newest round that it has taken part in, and since when, `[ms]` of its robot's clock.
+    /// The newest round that the member has joined, and the time of joining, `[ms]` of its robot's
+    /// clock.
     arrived: Option<(Round, u64)>,
-    /// The newest stop that it has seen.
+    /// The newest stop that the member has seen.
     seen: Word,
     has_left: bool,
 }
 
-/// Passage of a goal: whether it may be pursued.
+/// Decision whether a goal of a round may be pursued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passage {
-    /// Not all members are there.
+    /// Not yet: not all members have a goal of the round.
     Waiting,
-    /// It may.
+    /// The goal may be pursued.
     Open,
-    /// It may not.
+    /// The goal may not be pursued, for this reason.
     Stopped(TeamStop),
 }
 
-/// A team of `N` members, to hand to sessions.
+/// Returns a team of `N` members, to pass to sessions.
 pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
     team_tolerating(SILENCE)
 }
 
-/// A team whose members' robots may be silent for `silence`.
+/// Returns a team whose members' robots may be silent for `silence`.
 pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Member; N]) {
     const { assert!(0 < N && N <= MEMBERS_MAX, "a team has one member to 254") };
     let shared = Arc::new(Shared {
@@ -194,13 +198,13 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
 }
 
 impl Coordinator {
-    /// Begins a round: the members wait until each has a goal of it. An earlier round that has not
-    /// begun never does. The goals of an older round that are under way continue until the member's
-    /// goal of this round begins.
+    /// Begins a round: the members wait until each of them has a goal of the round. An earlier
+    /// round that has not begun never does. Goals of an older round that are under way continue
+    /// until the member's goal of this round begins.
     ///
-    /// A round that begins before every member has seen a [stop](Self::stop), or that the session
-    /// of one has ended, is stopped for the same cause and never opens. A member looks in each
-    /// cycle of its robot; while one does not, every round ends at once in this way.
+    /// A round is stopped at once and never opens in two cases: not every member has seen an
+    /// earlier [stop](Self::stop), or the session of a member has ended. A member looks in each
+    /// cycle of its robot. While one does not, every round ends in this way.
     pub fn begin(&self) -> Round {
         let word = self.shared.change(|word| {
             let next = word.next_round();
@@ -210,37 +214,37 @@ impl Coordinator {
         word.round().unwrap_or(Round(NonZeroU32::MIN))
     }
 
-    /// Brakes all members within two of their cycles. They hold where they stop, until they are
-    /// given other goals. Wait-free except for the members' own changes.
+    /// Brakes all members within two of their cycles. They hold where they stop, until they receive
+    /// other goals. Wait-free except for the members' own changes.
     pub fn stop(&self) {
         self.shared.stop(CALLER, Cause::Requested);
     }
 
-    /// Notes that the goal of `member` in this round was refused or has ended with an error.
-    /// Without effect on a round that has stopped, or is not the newest.
+    /// Notes that the goal of `member` in this round was refused or has ended with an error. Has no
+    /// effect on a round that has stopped, or is not the newest.
     pub fn refuse(&self, round: Round, member: usize) {
         let cause = Cause::Member(MemberFault::Refused);
         self.shared.stop_round(round, member as u8, cause);
     }
 
-    /// Brakes all members, if this round is the newest. Without effect on a stopped round.
+    /// Brakes all members, if this round is the newest. Has no effect on a stopped round.
     pub fn take_back(&self, round: Round) {
         self.shared.stop_round(round, CALLER, Cause::Requested);
     }
 
-    /// Reason why the newest round has stopped; `None` if it has not.
+    /// Returns the reason why the newest round has stopped; `None` if it has not.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.shared.look().stop()
     }
 }
 
 impl Member {
-    /// Its number, from 0.
+    /// Returns the number of the member, from 0.
     pub fn number(&self) -> usize {
         self.number.into()
     }
 
-    /// Time for which its robot may be silent.
+    /// Returns the time for which the member's robot may be silent.
     pub fn silence(&self) -> Duration {
         self.shared.silence
     }
@@ -281,8 +285,8 @@ impl Member {
         }
     }
 
-    /// The stop of the team, if this is the first call since then. A motion that this member has
-    /// taken back itself does not stop it: its next motion continues.
+    /// Returns the stop of the team, once per stop. A motion that this member has cancelled itself
+    /// does not count: its next motion continues.
     pub fn take_stop(&mut self) -> Option<TeamStop> {
         let (word, stop) = self.shared.stop_after(self.seen)?;
         self.seen = word;
@@ -296,11 +300,12 @@ impl Member {
         (stop != own).then_some(stop)
     }
 
-    /// Stops `round` for a fault of this member in it. Without effect on a round that has stopped.
+    /// Stops `round` for a fault of this member in it. Has no effect on a round that has stopped.
     ///
-    /// An arm that failed under way also stops the newer round that has begun in the meantime: the
-    /// others may still pursue their goals of `round`, unless this member has seen that it stopped.
-    /// A goal that was taken back, was refused or has waited too long stops its own round only.
+    /// If an arm failed under way, this also stops a newer round that has begun in the meantime:
+    /// the others may still pursue their goals of `round`, unless this member has seen that it
+    /// stopped. A goal that was cancelled, was refused or has waited too long stops only its own
+    /// round.
     pub fn give_up(&self, round: Round, fault: MemberFault) {
         let cause = Cause::Member(fault);
         match fault {
@@ -319,7 +324,7 @@ impl Member {
         self.shared.stop(self.number, Cause::Member(fault));
     }
 
-    /// Reports its progress in `round` to the others.
+    /// Reports the member's progress in `round` to the others.
     pub fn tell(&self, round: Round, carrying: Carrying) {
         let micrometres = (carrying.remaining.max(0.0) * 1e6) as u64;
         let way = micrometres.min(WAY_MAX);
@@ -328,8 +333,9 @@ impl Member {
         self.shared.carrying[usize::from(self.number)].store(word, Ordering::Relaxed);
     }
 
-    /// The others of `round` together: the longest remaining way among them, and whether one lags.
-    /// Members that have not reported their progress do not count.
+    /// Returns the progress of the other members of `round` together: the longest remaining
+    /// distance, and true if one of them lags. Members that have not reported their progress do not
+    /// count.
     pub fn others(&self, round: Round) -> Carrying {
         let mut all = Carrying::default();
         for (number, word) in self.shared.carrying.iter().enumerate() {
@@ -342,7 +348,7 @@ impl Member {
         all
     }
 
-    /// Leaves the team, which continues for as long as it needs no goal of this member.
+    /// Leaves the team, which continues as long as no round needs a goal of this member.
     pub fn leave(&mut self) {
         self.has_left = true;
         self.shared.note_seen(self.number, GONE);
@@ -361,13 +367,13 @@ impl Drop for Member {
 #[derive(Debug)]
 struct Shared {
     word: AtomicU64,
-    /// The word of the newest round that was stopped, if a newer round has replaced it. Written
-    /// after the word.
+    /// The word of the newest stopped round, if a newer round has replaced it. Written after the
+    /// word.
     stopped: AtomicU64,
     /// The newest stop that each member has seen; [`GONE`] for a member that has left.
     seen: Box<[AtomicU64]>,
-    /// [`Carrying`] of each member. The low 31 bits have the remaining way in micrometres, the next
-    /// bit is whether it lags. The upper half has the round.
+    /// [`Carrying`] of each member. The low 31 bits have the remaining distance in micrometres; the
+    /// next bit is set if the member lags. The upper half has the round.
     carrying: Box<[AtomicU64]>,
     members: u8,
     silence: Duration,
@@ -404,7 +410,7 @@ impl Shared {
         });
     }
 
-    /// The newest stop, unless it is `seen`, with its word.
+    /// Returns the newest stop and its word, unless it is `seen`.
     fn stop_after(&self, seen: Word) -> Option<(Word, TeamStop)> {
         let word = self.look();
         if let Some(stop) = word.stop() {
@@ -438,7 +444,7 @@ impl Shared {
         }
     }
 
-    /// Replaces the word, as long as there is something to change; returns the newest.
+    /// Replaces the word, as long as `to` has a change; returns the newest word.
     fn change(&self, to: impl Fn(Word) -> Option<Word>) -> Word {
         let mut word = self.look();
         while let Some(next) = to(word) {
@@ -505,7 +511,7 @@ impl Word {
         Self(u64::from(round) << 32)
     }
 
-    /// True if its round comes after the round of `other`, also where the numbers begin anew.
+    /// True if the round of this word comes after the round of `other`, even if the numbers wrap.
     fn is_newer_than(self, other: Self) -> bool {
         let ahead = ((self.0 >> 32) as u32).wrapping_sub((other.0 >> 32) as u32);
         other.round().is_none() || 0 < ahead as i32
@@ -519,7 +525,7 @@ impl Word {
         Self(self.0 | OF_THE_TEAM)
     }
 
-    /// Stopped for the same cause as `other`.
+    /// Returns this word, stopped for the same cause as `other`.
     fn stopped_as(self, other: Self) -> Self {
         Self(self.0 | other.0 & (0xffff << 8 | OF_THE_TEAM))
     }
@@ -541,16 +547,16 @@ impl Word {
     }
 }
 
-/// The longest way that can be reported, `[um]`.
+/// The longest distance that can be reported, `[um]`.
 const WAY_MAX: u64 = (1 << 31) - 1;
 
 /// Bit of a stop of the whole team, not of a round.
 const OF_THE_TEAM: u64 = 1 << 24;
 
-/// Stands for the newest stop that was seen by a member that has left, for any newest stop.
+/// Value for a member that has left, as the newest stop that it has seen: it counts for any stop.
 const GONE: Word = Word(u64::MAX);
 
-/// Stands for the caller in the place of a member.
+/// Value for the caller, in the place of a member.
 const CALLER: u8 = u8::MAX;
 
 /// Value that stands for [`TeamStop::Requested`] in a word.

@@ -8,20 +8,19 @@
 //! ```
 //!
 //! The command leaves before anything is published. After [`spawn`] has returned, the loop neither
-//! allocates, frees, locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock
-//! and the `write` to the eventfd. A value that must be freed (a program that ended) leaves inside
-//! an event.
+//! allocates, frees, locks nor logs. Its only system calls are `recvfrom`, `sendto`, the clock and
+//! the `write` to the eventfd. A value that must be freed, for example a program that has ended,
+//! leaves inside an event.
 //!
 //! The cycle can be lent out: a thread of the program then runs it in this thread's place, through
-//! a [`Lease`], until it is given back.
+//! a [`Lease`], until that thread returns the cycle.
 //!
-//! This loop is the only reader of the clock in the crate. It measures how long the robot has been
-//! silent, how far apart its states arrive, and how long an answer takes. With the feature
-//! `cycle-phases` it also measures each part of an answer. Control itself uses the robot's clock,
-//! in the core.
+//! This loop is the only reader of the clock in the crate. It measures the silence of the robot,
+//! the interval between its states, and the duration of an answer. With the feature `cycle-phases`
+//! it also measures each part of an answer. Control itself uses the robot's clock, in the core.
 //!
-//! A panic in the core ends the loop and nothing else: the robot misses its commands and stops on
-//! its own, the eventfd is notified, and [`Thread::join`] returns the panic's message. The
+//! A panic in the core ends the loop and nothing else. The robot then misses its commands and stops
+//! on its own, the eventfd is notified, and [`Thread::join`] returns the panic's message. The
 //! process's panic hook prints it.
 
 mod borrower;
@@ -79,19 +78,19 @@ pub struct ThreadConfig {
 /// Lengths of the queues, each at least 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
-    /// Orders into the thread.
+    /// Number of orders into the thread.
     pub orders: usize,
-    /// Notices out of it.
+    /// Number of notices from the thread.
     pub notices: usize,
-    /// Records out of it, one per millisecond.
+    /// Number of records from the thread, one per millisecond.
     pub records: usize,
-    /// States out of it, one per millisecond, of 2.5 kB each.
+    /// Number of states from the thread, one per millisecond, of 2.5 kB each.
     pub states: usize,
 }
 
 impl Default for Capacity {
-    /// 16 orders (a motion takes two) and 64 notices (a motion causes a handful). 2048 records are
-    /// two seconds, and 1024 states are one.
+    /// Returns 16 orders (a motion needs two) and 64 notices (a motion causes a handful). 2048
+    /// records are two seconds, and 1024 states are one second.
     fn default() -> Self {
         Self {
             orders: 16,
@@ -106,10 +105,11 @@ impl Default for Capacity {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartError {
-    /// The operating system refused what [`Realtime::Enforce`](crate::sched::Realtime) requires.
+    /// The operating system refused a request that [`Realtime::Enforce`](crate::sched::Realtime)
+    /// requires.
     #[error(transparent)]
     Scheduling(#[from] SchedError),
-    /// No thread, no descriptor, or a socket that does not take its options.
+    /// No thread or descriptor is available, or the socket does not accept its options.
     #[error("cannot start the control thread: {0}")]
     System(#[from] io::Error),
 }
@@ -117,9 +117,9 @@ pub enum StartError {
 /// Starts the thread of one robot, on the socket whose port `Connect` announces (see
 /// [`crate::exchange::bind`]).
 ///
-/// States count only if they come from `robot`, and commands go to where the newest state came
-/// from. Returns when the thread has made the requests of `config` to the operating system; that
-/// takes well under a millisecond of blocking.
+/// States count only if they come from `robot`, and commands go to the sender of the newest state.
+/// Returns when the thread has made the requests of `config` to the operating system. This blocks
+/// for well under a millisecond.
 ///
 /// # Errors
 /// [`StartError`]; the core is then dropped.

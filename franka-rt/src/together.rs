@@ -12,14 +12,14 @@
 //!
 //! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers
 //! every state with a command that holds the arm, until the last member has arrived. A robot
-//! requires such commands at the start of a motion. Each thread looks once in each of its own
+//! requires such commands at the start of a motion. Each thread checks once in each of its own
 //! cycles, so the motions begin within a millisecond of each other. The robots' clocks are not
-//! synchronised, and no start can be closer than the next state of each.
+//! synchronised, so no start can be more accurate than the next state of each robot.
 //!
-//! The state is one atomic word, which leaves `waiting` once at most. No thread ever waits for
-//! another one: looking is a load, arriving and leaving a compare-and-exchange, repeated only if
-//! another member changed the word in between. Each member does that twice at most, which bounds
-//! the repetitions.
+//! The state is one atomic word, which leaves `waiting` at most once. No thread ever waits for
+//! another one. Checking is a load; arriving and leaving are a compare-and-exchange, repeated only
+//! if another member changed the word in between. Each member changes the word at most twice, which
+//! bounds the repetitions.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -34,7 +34,7 @@ use std::sync::{
 
 use core::time::Duration;
 
-/// A common start, before its tickets are given out.
+/// A common start of motions of several robots, before its tickets are given out.
 ///
 /// ```
 /// use franka_rt::together::StartBarrier;
@@ -58,38 +58,39 @@ impl Default for StartBarrier {
 }
 
 impl StartBarrier {
-    /// Time for which a motion waits for the others unless stated otherwise: twice as long as a
-    /// robot may take to show the modes of a motion.
+    /// Default time for which a motion waits for the others: twice the time in which a robot must
+    /// show the modes of a motion.
     pub const TIMEOUT: Duration = Duration::from_secs(10);
 
-    /// The most members.
+    /// Largest number of members.
     pub const MEMBERS_MAX: usize = u16::MAX as usize;
 
-    /// A start that waits for [`Self::TIMEOUT`] at most.
+    /// Returns a start that waits for [`Self::TIMEOUT`] at most.
     pub fn new() -> Self {
         Self {
             timeout: Self::TIMEOUT,
         }
     }
 
-    /// Replaces the time that a motion waits for the others, counted from its own arrival by its
-    /// robot's clock.
+    /// Replaces the time for which a motion waits for the others, counted from its own arrival by
+    /// its robot's clock.
     pub fn timeout(mut self, timeout: Duration) -> Self {
         self.timeout = timeout;
         self
     }
 
-    /// One ticket for each of `N` motions.
+    /// Returns one ticket for each of `N` motions.
     pub fn tickets<const N: usize>(self) -> [StartTicket; N] {
         const { assert!(N <= Self::MEMBERS_MAX, "so many members fit") };
         let shared = self.shared(N);
         core::array::from_fn(|member| StartTicket::new(shared.clone(), member))
     }
 
-    /// One ticket for each of `members` motions, where their number is not known to the compiler.
+    /// Returns one ticket for each of `members` motions, if their number is not known to the
+    /// compiler.
     ///
     /// # Panics
-    /// Beyond [`Self::MEMBERS_MAX`].
+    /// More than [`Self::MEMBERS_MAX`] members.
     pub fn tickets_for(self, members: usize) -> Vec<StartTicket> {
         assert!(members <= Self::MEMBERS_MAX, "so many members fit");
         let shared = self.shared(members);
@@ -106,8 +107,8 @@ impl StartBarrier {
     }
 }
 
-/// The part of one motion in a common start. Dropping it before the start ends the wait of the
-/// others with an error.
+/// The part of one motion in a common start. Dropping the ticket before the start ends the wait of
+/// the others with an error.
 #[derive(Debug)]
 #[must_use = "dropping a ticket ends the common start"]
 pub struct StartTicket {
@@ -116,33 +117,33 @@ pub struct StartTicket {
     state: MemberState,
 }
 
-/// The part of a member in the start so far.
+/// State of a member in a common start.
 #[derive(Clone, Copy, Debug)]
 enum MemberState {
     Outside,
-    /// It waits since this time of its robot, `[ms]`.
+    /// The member has waited since this time of its robot, `[ms]`.
     Arrived(u64),
-    /// Its wait is over, with this result.
+    /// The wait of the member is over, with this result.
     Decided(Gate),
 }
 
-/// Gate of a motion: whether it may begin.
+/// Gate of a motion in a common start: whether the motion may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gate {
-    /// Not yet.
+    /// The motion may not begin yet.
     Closed,
-    /// Now; it stays so.
+    /// The motion may begin now; the gate stays open.
     Open,
-    /// It will not; it stays so.
+    /// The motion will not begin, for this reason; the gate stays broken.
     Broken(StartFault),
 }
 
-/// Caller: reason why a common start failed. Members count from 0, in the order of their tickets.
+/// Caller: the common start failed. Members count from 0, in the order of their tickets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartFault {
-    /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was
-    /// refused before a request to its robot.
+    /// A ticket, or the motion that had it, was dropped before the motion was awaited. Or the
+    /// motion was refused before a request to its robot.
     #[error("member {member} of the common start was dropped or refused before the start")]
     Dropped {
         /// Number of the member.
@@ -154,14 +155,14 @@ pub enum StartFault {
         /// Number of the member.
         member: usize,
     },
-    /// A motion ended before the start: its robot refused it, stopped, or fell silent. Its own
-    /// error has the cause.
+    /// A motion ended before the start: its robot refused it, stopped, or fell silent. The motion's
+    /// own error has the cause.
     #[error("the motion of member {member} ended before the common start")]
     Ended {
         /// Number of the member.
         member: usize,
     },
-    /// Not all were there in time.
+    /// Not all members arrived in time.
     #[error(
         "{present} of {members} members were ready for the common start after {} ms, expected all \
          of them",
@@ -189,7 +190,7 @@ impl StartFault {
     }
 }
 
-/// Reason why a member leaves.
+/// Reason why a member leaves a common start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     Dropped,
@@ -207,12 +208,12 @@ impl StartTicket {
         }
     }
 
-    /// Its number, from 0 in the order of the tickets.
+    /// Returns the number of the member, from 0 in the order of the tickets.
     pub fn member(&self) -> usize {
         self.member.into()
     }
 
-    /// Reason why the common start has failed; `None` if it has not.
+    /// Returns the reason why the common start has failed; `None` if it has not.
     pub fn fault(&self) -> Option<StartFault> {
         match self.shared.gate() {
             Gate::Broken(fault) => Some(fault),
@@ -249,7 +250,7 @@ impl StartTicket {
         !matches!(self.state, MemberState::Decided(_))
     }
 
-    /// Reason why the common start failed for this motion; `None` if it did not.
+    /// Returns the reason why the common start failed for this motion; `None` if it did not.
     pub fn refusal(&self) -> Option<StartFault> {
         match self.state {
             MemberState::Decided(Gate::Broken(fault)) => Some(fault),
@@ -257,8 +258,8 @@ impl StartTicket {
         }
     }
 
-    /// Takes the motion out of the common start: it continues alone. Ends the wait of the others
-    /// with an error.
+    /// Removes the motion from the common start: the motion continues alone. Ends the wait of the
+    /// others with an error.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
@@ -266,8 +267,8 @@ impl StartTicket {
         }
     }
 
-    /// Notes that the motion has ended. Ends the wait of the others, if they still wait, with an
-    /// error.
+    /// Notes that the motion has ended. Ends the wait of the others with an error, if they still
+    /// wait.
     pub fn end(&mut self) {
         self.leave(Cause::Ended);
     }
@@ -293,10 +294,10 @@ struct Shared {
     timeout: Duration,
 }
 
-/// The content of the word.
+/// The content of the atomic word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
-    /// Or open, once all are present.
+    /// Waiting with `present` members arrived; open once all members have arrived.
     Waiting { present: u16 },
     /// `member` has left, when `present` members had arrived.
     Broken {
@@ -349,7 +350,7 @@ impl Shared {
         });
     }
 
-    /// Replaces the word unless it is open or broken: both are final.
+    /// Replaces the word unless it is open or broken, because both are final.
     fn change(&self, to: impl Fn(u16) -> Word) {
         let mut word = self.word.load(Ordering::Relaxed);
         while let Word::Waiting { present } = Word::from(word)
@@ -370,8 +371,8 @@ impl Shared {
     }
 }
 
-/// The lowest 16 bits are the members present, the next 16 the number of the member that left. The
-/// next byte is the reason, 0 if none has left.
+/// The lowest 16 bits are the number of members present. The next 16 are the number of the member
+/// that left. The next byte is the reason, 0 if no member has left.
 impl From<Word> for u64 {
     fn from(word: Word) -> Self {
         match word {

@@ -1,4 +1,4 @@
-//! Filter, limiter and check, applied by a control loop to a returned command before it leaves.
+//! Filter, limiter and check, which a control loop applies to a returned command before sending it.
 //! Pure functions, composed by [`Shaper`](crate::control::Shaper).
 //!
 //! ```text
@@ -6,17 +6,17 @@
 //!            cutoff < 1000 Hz                       limit_rate
 //! ```
 //!
-//! * [`limiter`]: commands inside bounds that are arguments: torques, scalars, joints, Cartesian
-//!   velocity and pose.
+//! * [`limiter`]: limits commands to given bounds: torques, scalars, joints, Cartesian velocity and
+//!   pose.
 //! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
 //! * [`Bounds`]: the bounds of the limiters of libfranka, for both robots.
-//! * [`check`]: whether a command is valid.
+//! * [`check`]: checks that a command is valid.
 //!
 //! The references of filters and limiters are the *last commanded* values of the robot's state.
 //! Everything is arithmetic on arrays: nothing allocates, and nothing panics for any input.
 //! Formulas, order of operations and the treatment of NaN follow libfranka 0.21
-//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`); libfranka 0.9 differs in bounds
-//! and in how a motion begins. The robot enforces its own limits in addition.
+//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`). libfranka 0.9 differs in bounds
+//! and in the beginning of a motion. The robot enforces its own limits in addition.
 
 mod bounds;
 pub mod check;
@@ -31,12 +31,14 @@ pub use filter::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
 pub use franka_model::CYCLE;
 
-/// `y` if it is less, else `x`: with a NaN the first, where [`f64::min`] gives the other.
+/// Returns the smaller number. With a NaN it returns `x`, where [`f64::min`] returns the other
+/// number.
 const fn lo(x: f64, y: f64) -> f64 {
     if y < x { y } else { x }
 }
 
-/// `y` if it is greater, else `x`: with a NaN the first, where [`f64::max`] gives the other.
+/// Returns the larger number. With a NaN it returns `x`, where [`f64::max`] returns the other
+/// number.
 const fn hi(x: f64, y: f64) -> f64 {
     if x < y { y } else { x }
 }

@@ -6,9 +6,9 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion, Vec
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rigid {
     pub(crate) rotation: Matrix3<f64>,
-    /// The same as a quaternion.
+    /// The rotation as a quaternion.
     pub(crate) orientation: UnitQuaternion<f64>,
-    /// `[m]`.
+    /// Translation, `[m]`.
     pub(crate) translation: Vector3<f64>,
     /// Last row of the homogeneous matrix; for a pose `0 0 0 1`.
     pub(crate) last_row: [f64; 4],
@@ -28,13 +28,13 @@ impl Rigid {
         }
     }
 
-    /// The column-major pose.
+    /// Returns the column-major pose.
     pub(crate) fn pose(&self) -> [f64; 16] {
         pose(&self.rotation, &self.translation, self.last_row)
     }
 }
 
-/// A column-major pose of its parts.
+/// Returns a column-major pose from its parts.
 pub(crate) fn pose(
     rotation: &Matrix3<f64>,
     translation: &Vector3<f64>,
@@ -47,21 +47,21 @@ pub(crate) fn pose(
     ]
 }
 
-/// The rotation nearest to a matrix: the orthogonal factor of its polar decomposition, turned where
-/// the matrix mirrors.
+/// Returns the rotation nearest to a matrix: the orthogonal factor of its polar decomposition, with
+/// its sign changed if the matrix mirrors.
 ///
-/// Any finite matrix gives a rotation; NaN if an element is not finite.
+/// Returns NaN if an element is not finite.
 fn nearest_rotation(block: &Matrix3<f64>) -> Matrix3<f64> {
     polished(*block).unwrap_or_else(|| procrustes(block))
 }
 
-/// The quaternion of a rotation matrix.
+/// Returns the quaternion of a rotation matrix.
 fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     let rotation = nalgebra::Rotation3::from_matrix_unchecked(*rotation);
     UnitQuaternion::from_rotation_matrix(&rotation)
 }
 
-/// The way from `from` to `to` by the share `t`, along the shorter arc.
+/// Returns the rotation at the share `t` of the shorter arc from `from` to `to`.
 pub(crate) fn slerp(
     from: &UnitQuaternion<f64>,
     to: &UnitQuaternion<f64>,
@@ -84,7 +84,7 @@ pub(crate) fn slerp(
     UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
 
-/// The rotation about `axis`, of length 1, by `angle` radians (Rodrigues).
+/// Returns the rotation about `axis`, of length 1, by `angle` radians (Rodrigues).
 pub(crate) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (sine, cosine) = angle.sin_cos();
     let (along, across) = (axis * (1.0 - cosine), axis * sine);
@@ -103,8 +103,8 @@ pub(crate) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     )
 }
 
-/// The nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start of the
-/// series of `X (X'X)^(-1/2)`, whose error cubes with each step. `None` where the block is not
+/// Returns the nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start
+/// of the series of `X (X'X)^(-1/2)`, whose error cubes with each step. `None` if the block is not
 /// close to a rotation.
 fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
     if block.determinant() <= 0.0 {
@@ -146,13 +146,13 @@ struct Symmetric {
 }
 
 impl Symmetric {
-    /// The sizes of all elements, summed: unlike the largest, it cannot lose a NaN.
+    /// Returns the sum of the sizes of all elements. Unlike their maximum, it cannot lose a NaN.
     fn size(&self) -> f64 {
         let sum = |x: &[f64; 3]| x[0].abs() + x[1].abs() + x[2].abs();
         sum(&self.diagonal) + 2.0 * sum(&self.beside)
     }
 
-    /// The columns of `E / 2 - 3 E^2 / 8`.
+    /// Returns the columns of `E / 2 - 3 E^2 / 8`.
     fn correction(&self) -> [[f64; 3]; 3] {
         let ([xx, yy, zz], [yz, zx, xy]) = (self.diagonal, self.beside);
         let rows = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
@@ -170,9 +170,9 @@ impl Symmetric {
     }
 }
 
-/// The rotation that maximises `tr(R'M)`, which is the nearest one. It is the eigenvector of the
-/// largest eigenvalue of a symmetric matrix, read as a quaternion. Source: Horn, J. Opt. Soc. Am. A
-/// 4, 1987, section 4.
+/// Returns the rotation that maximises `tr(R'M)`, which is the nearest one. It is the eigenvector
+/// of the largest eigenvalue of a symmetric matrix, read as a quaternion. Source: Horn, J. Opt.
+/// Soc. Am. A 4, 1987, section 4.
 #[cold]
 fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
     let not_a_number = Matrix3::repeat(f64::NAN);
@@ -206,15 +206,16 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Bound of the series: within this of orthogonal, element sizes summed, three steps are enough.
+/// Largest deviation from orthogonal, element sizes summed, for which three steps of the series are
+/// enough.
 const POLISH_BELOW: f64 = 0.3;
 const POLISH_STEPS_MAX: usize = 4;
-/// Within this of orthogonal, such as rotations rounded to `f32`, one more step is as close as
-/// rounding allows.
+/// Deviation from orthogonal, for example of rotations rounded to `f32`, below which one more step
+/// is as close as rounding allows.
 const CUBES_AWAY: f64 = 5e-6;
 /// The rounding error of products of rotations.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Far more than a symmetric 4x4 matrix needs.
+/// Maximum number of steps, far more than a symmetric 4x4 matrix needs.
 const EIGEN_STEPS_MAX: usize = 200;
 
 #[cfg(test)]

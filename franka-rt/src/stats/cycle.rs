@@ -14,22 +14,22 @@ use crate::slot::Words;
 pub struct CycleTimes {
     /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
     pub time: u64,
-    /// Time from when the state was due to when the thread had it: network, kernel and waking up. A
-    /// state is due a whole number of milliseconds, by `message_id`, after the most punctual of the
-    /// last 32 to 64 states. Zero for that state.
+    /// Time from the moment when the state was due to the moment when the thread had it: network,
+    /// kernel and waking up. A state is due a whole number of milliseconds, by `message_id`, after
+    /// the most punctual of the last 32 to 64 states. Zero for that state.
     pub late: Duration,
-    /// Time from when the thread had the state to the departure of the command: until the system
-    /// call that sends had returned.
+    /// Time from the moment when the thread had the state to the departure of the command, when the
+    /// system call that sends it had returned.
     pub turnaround: Duration,
-    /// Time left until the next state was due: 1 ms - `late` - `turnaround`. The way to the robot
-    /// and back is not in it and must fit into it.
+    /// Time left until the next state was due: 1 ms - `late` - `turnaround`. The way of the command
+    /// to the robot and of the state back must fit into this time.
     pub slack: Slack,
     /// Times of the phases; `None` without the feature `cycle-phases`.
     pub phases: Option<Phases>,
 }
 
-/// The time until the next state is due, when a command leaves. Negative: the command left later
-/// than that, which is an overrun.
+/// The time until the next state is due, when a command leaves. A negative slack is an overrun: the
+/// command left after that time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
@@ -41,20 +41,20 @@ pub struct Slack {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Phases {
-    /// Orders from outside the thread.
+    /// Time for orders from outside the thread.
     pub orders: Duration,
-    /// The state read from its bytes.
+    /// Time for decoding the state from its bytes.
     pub decode: Duration,
-    /// The driver: law and guards; or a function of the user's. Under active control, also the work
-    /// of the user's thread until it wrote.
+    /// Time for the driver: law and guards, or a function of the user. Under active control, also
+    /// the time of the user's thread until it wrote its command.
     pub program: Duration,
-    /// The command written into bytes and handed to the kernel.
+    /// Time for encoding the command into bytes and passing it to the kernel.
     pub send: Duration,
-    /// Work after the command: log, newest state, rings, events, wake-up. It delays the next cycle
-    /// if it is long. Under active control it comes before the command.
+    /// Time for work after the command: log, newest state, rings, events, wake-up. If it is long,
+    /// it delays the next cycle. Under active control this work comes before the command.
     pub publish: Duration,
-    /// Work for the next answer without the next state: goals, plans, generator, inverse
-    /// kinematics. Like the publishing, it delays the next cycle if it is long.
+    /// Time for work on the next answer that does not need the next state: goals, plans, generator,
+    /// inverse kinematics. If it is long, it delays the next cycle.
     pub prepare: Duration,
 }
 
@@ -65,24 +65,24 @@ pub struct Phases {
 pub enum Phase {
     /// The state came late, or the thread woke up late: [`CycleTimes::late`].
     Arrival,
-    /// All of the thread's work, where its phases are not timed: [`CycleTimes::turnaround`].
+    /// All of the thread's work, if its phases are not timed: [`CycleTimes::turnaround`].
     Answer,
-    /// [`Phases::orders`].
+    /// Orders from outside the thread: [`Phases::orders`].
     Orders,
-    /// [`Phases::decode`].
+    /// Decoding of the state: [`Phases::decode`].
     Decode,
-    /// [`Phases::program`].
+    /// The program of the motion: [`Phases::program`].
     Program,
-    /// [`Phases::send`].
+    /// Sending of the command: [`Phases::send`].
     Send,
-    /// [`Phases::publish`].
+    /// Work after the command: [`Phases::publish`].
     Publish,
-    /// [`Phases::prepare`].
+    /// Work for the next answer: [`Phases::prepare`].
     Prepare,
 }
 
 impl CycleTimes {
-    /// A cycle whose phases are not known.
+    /// Returns a cycle with unknown phases.
     pub fn new(time: u64, late: Duration, turnaround: Duration) -> Self {
         Self {
             time,
@@ -93,14 +93,14 @@ impl CycleTimes {
         }
     }
 
-    /// Time from when the state was due to the end of all that is timed: the departure of the
-    /// command, or the later work.
+    /// Returns the time from the moment when the state was due to the end of all timed work: the
+    /// departure of the command, or the later work.
     pub fn total(&self) -> Duration {
         let work = self.phases.map_or(Duration::ZERO, |phases| phases.sum());
         self.late.saturating_add(self.turnaround.max(work))
     }
 
-    /// The longest part, and its duration.
+    /// Returns the longest part, and its duration.
     pub fn longest(&self) -> (Phase, Duration) {
         let late = (Phase::Arrival, self.late);
         let Some(phases) = &self.phases else {
@@ -117,7 +117,7 @@ impl CycleTimes {
 }
 
 impl Slack {
-    /// Returns the rest of a cycle after `late` and `turnaround`.
+    /// Returns the time that `late` and `turnaround` leave of a cycle.
     pub(crate) fn of(late: Duration, turnaround: Duration) -> Self {
         let gone = late.saturating_add(turnaround).as_nanos();
         let gone = i64::try_from(gone).unwrap_or(i64::MAX);
@@ -126,36 +126,36 @@ impl Slack {
         }
     }
 
-    /// The slack of `nanos`, negative for an overrun.
+    /// Returns the slack of `nanos` nanoseconds, negative for an overrun.
     pub fn from_nanos(nanos: i64) -> Self {
         Self { nanos }
     }
 
-    /// In nanoseconds; negative for an overrun.
+    /// Returns the slack in nanoseconds; negative for an overrun.
     pub fn as_nanos(self) -> i64 {
         self.nanos
     }
 
-    /// The time that was left; `None` for an overrun.
+    /// Returns the time that was left; `None` for an overrun.
     pub fn left(self) -> Option<Duration> {
         u64::try_from(self.nanos).ok().map(Duration::from_nanos)
     }
 
-    /// Time by which the command was too late; `None` if it was not.
+    /// Returns the time by which the command was too late; `None` if it was in time.
     pub fn overrun(self) -> Option<Duration> {
         (self.nanos < 0).then(|| Duration::from_nanos(self.nanos.unsigned_abs()))
     }
 }
 
 impl fmt::Display for Slack {
-    /// In milliseconds.
+    /// Prints the slack in milliseconds.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:.3} ms", self.nanos as f64 * 1e-6)
     }
 }
 
 impl Phases {
-    /// The duration of a phase; `None` for a phase that has none here.
+    /// Returns the duration of a phase; `None` for a phase that has no field here.
     #[cfg(feature = "cycle-phases")]
     pub(super) fn part_mut(&mut self, phase: Phase) -> Option<&mut Duration> {
         match phase {

@@ -9,7 +9,7 @@ use super::Counter;
 /// A histogram of durations, and their exact minimum and maximum. Its resolution is 1/16 of a
 /// value, and 1 ns for the smallest values.
 ///
-/// A value with its highest bit at position `e >= 4` falls in one of 16 equal buckets of `[2^e,
+/// A value with its highest bit at position `e >= 4` belongs to one of 16 equal buckets of `[2^e,
 /// 2^(e+1))` nanoseconds. Durations of 18 minutes (2^40 ns) and more share the last bucket.
 pub struct Histogram {
     buckets: Box<[AtomicU64]>,
@@ -19,7 +19,7 @@ pub struct Histogram {
 }
 
 impl fmt::Debug for Histogram {
-    /// Their number, and what stands out: the buckets are hundreds.
+    /// Prints the number of durations and their quantiles, because there are hundreds of buckets.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Histogram")
             .field("count", &self.count())
@@ -29,7 +29,7 @@ impl fmt::Debug for Histogram {
 }
 
 impl Default for Histogram {
-    /// An empty histogram. Allocates its buckets (5 kB).
+    /// Returns an empty histogram. Allocates its buckets (5 kB).
     fn default() -> Self {
         Self {
             buckets: (0..BUCKETS).map(|_| AtomicU64::new(0)).collect(),
@@ -41,7 +41,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Median, 99th percentile and maximum; `None` if no duration was counted. Not for the
+    /// Returns median, 99th percentile and maximum; `None` if no duration was counted. Not for the
     /// real-time thread.
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some(Quantiles {
@@ -51,7 +51,7 @@ impl Histogram {
         })
     }
 
-    /// Counts one duration. For the one writer only. Constant time, no allocation.
+    /// Counts one duration. Only for the one writer. Constant time, no allocation.
     pub(crate) fn note(&self, duration: Duration) {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         let bucket = &self.buckets[bucket_of(nanos)];
@@ -71,25 +71,25 @@ impl Histogram {
         self.count.add(1);
     }
 
-    /// The number of durations counted.
+    /// Returns the number of durations counted.
     pub fn count(&self) -> u64 {
         self.count.get()
     }
 
-    /// The shortest duration, exactly; `None` if none was counted.
+    /// Returns the shortest duration, exactly; `None` if no duration was counted.
     pub fn min(&self) -> Option<Duration> {
         // The count does not decide: a reader may see it before the minimum.
         let min = self.min.load(Ordering::Relaxed);
         (min != u64::MAX).then(|| Duration::from_nanos(min))
     }
 
-    /// The longest duration, exactly; `None` if none was counted.
+    /// Returns the longest duration, exactly; `None` if no duration was counted.
     pub fn max(&self) -> Option<Duration> {
         (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
     }
 
-    /// The quantile `quantile` (in `[0, 1]`), at most 1/16 above the exact one. `None` if no
-    /// duration was counted. Walks the buckets: not for the real-time thread.
+    /// Returns the quantile `quantile` (in `[0, 1]`), at most 1/16 above the exact quantile. `None`
+    /// if no duration was counted. Reads all buckets: not for the real-time thread.
     pub fn quantile(&self, quantile: f64) -> Option<Duration> {
         let max = self.max()?;
         let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)
@@ -105,9 +105,9 @@ impl Histogram {
         Some(max)
     }
 
-    /// Each bucket that is not empty: its longest duration and how many durations it counts, the
-    /// shortest first. The longest duration is at most 1/16 above the shortest of the bucket. Not
-    /// for the real-time thread.
+    /// Returns each bucket that is not empty, shortest durations first: its longest duration, and
+    /// its number of durations. The longest duration is at most 1/16 above the shortest of the
+    /// bucket. Not for the real-time thread.
     pub fn buckets(&self) -> impl Iterator<Item = (Duration, u64)> + '_ {
         let counts = self.buckets.iter().enumerate();
         counts.filter_map(|(index, bucket)| {
@@ -117,7 +117,7 @@ impl Histogram {
     }
 }
 
-/// Three numbers of a histogram.
+/// Median, 99th percentile and maximum of a histogram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quantiles {
@@ -125,7 +125,7 @@ pub struct Quantiles {
     pub p50: Duration,
     /// The 99th percentile, to 1/16.
     pub p99: Duration,
-    /// The longest one, exactly.
+    /// The longest duration, exactly.
     pub max: Duration,
 }
 
@@ -135,7 +135,7 @@ const FINENESS: u32 = 4;
 /// Buckets per power of two.
 const PER_OCTAVE: usize = 1 << FINENESS;
 
-/// log2 of the duration, in nanoseconds, from which on all share the last bucket.
+/// log2 of the duration, in nanoseconds, from which on all durations share the last bucket.
 const OCTAVES_MAX: u32 = 40;
 
 const BUCKETS: usize = (OCTAVES_MAX - FINENESS + 1) as usize * PER_OCTAVE;
@@ -149,7 +149,7 @@ fn bucket_of(nanos: u64) -> usize {
     (shift as usize + 1) * PER_OCTAVE + (nanos >> shift) as usize - PER_OCTAVE
 }
 
-/// The longest duration of a bucket, in nanoseconds.
+/// Returns the longest duration of a bucket, in nanoseconds.
 fn last_of(bucket: usize) -> u64 {
     if bucket < PER_OCTAVE {
         return bucket as u64;

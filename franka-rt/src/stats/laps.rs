@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::{Phase, Phases};
 
-/// Times the phases of one cycle, each from the end of the previous one. Without the feature it is
-/// empty and reads no clock.
+/// Times the phases of one cycle, each from the end of the previous one. Without the feature it has
+/// no fields and reads no clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps {
     #[cfg(feature = "cycle-phases")]
@@ -24,7 +24,7 @@ impl Laps {
         }
     }
 
-    /// Ends a phase now. The times of a phase that comes twice add up.
+    /// Ends a phase now. The times of a phase that occurs twice add up.
     pub(crate) fn end(&mut self, phase: Phase) {
         self.end_at(phase, Instant::now());
     }
@@ -38,7 +38,7 @@ impl Laps {
         }
     }
 
-    /// The phases timed so far.
+    /// Returns the phases timed so far.
     pub(crate) fn phases(&self) -> Option<Phases> {
         Some(self.phases)
     }

@@ -1,30 +1,30 @@
-//! Due times of states, and the lateness of each. A late state is answered like any other; a state
-//! that a newer one has overtaken is dropped in `exchange`.
+//! Due times of states, and their lateness. A late state is answered like any other; a state that a
+//! newer one has overtaken is dropped in `exchange`.
 
 use core::time::Duration;
 use std::time::Instant;
 
 use super::cycle::CYCLE_NANOS;
 
-/// Estimates from the arrivals of states when the next one is due.
+/// Estimates when the next state is due, from the arrivals of earlier states.
 ///
 /// The robot sends one state per millisecond of its own clock, and no state arrives before it was
-/// sent. So the offset between the two clocks is taken from the most punctual state of a recent
+/// sent. The offset between the two clocks is therefore that of the most punctual state of a recent
 /// window. The lateness of another state is the delay of network, kernel and scheduler. The window
-/// is short, so that clock drift and pauses of the robot (a simulated one) are soon forgotten. A
-/// drift of 100 ppm makes 6 us in a window.
+/// is short, so that clock drift and pauses of a simulated robot are soon forgotten. A drift of 100
+/// ppm makes 6 us in a window.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
-    /// `message_id` and arrival that all offsets are counted from.
+    /// `message_id` and arrival of the state from which all offsets are counted.
     origin: Option<(u64, Instant)>,
-    /// The smallest offset of the previous window, and of this one so far, in nanoseconds.
+    /// Smallest offsets of the previous window and of this window so far, in nanoseconds.
     earliest: [i64; 2],
-    /// States in this window.
+    /// Number of states in this window.
     counted: u32,
 }
 
 impl Arrivals {
-    /// Returns how late a state was that arrived at `now`.
+    /// Returns the lateness of a state that arrived at `now`.
     pub(super) fn note(&mut self, time: u64, now: Instant) -> Duration {
         let (first, start) = *self.origin.get_or_insert((time, now));
         let elapsed = now.saturating_duration_since(start).as_nanos();
@@ -43,7 +43,7 @@ impl Arrivals {
     }
 }
 
-/// States in a window. The estimate covers between one window and two.
+/// Number of states in a window. The estimate covers between one window and two.
 const WINDOW: u32 = 32;
 
 #[cfg(test)]

@@ -8,12 +8,13 @@ use super::lateness::Arrivals;
 use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 
-/// Arrival of a state: the time since the previous state, and since it was due.
+/// Arrival of a state: the time since the previous state, and since this state was due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
-    /// Time since the previous state, by this host's clock; `None` for the first.
+    /// Time since the previous state, by this host's clock; `None` for the first state.
     pub interval: Option<Duration>,
-    /// Time from when it was due to when the thread had it: see [`CycleTimes::late`].
+    /// Time from the moment when the state was due to the moment when the thread had it: see
+    /// [`CycleTimes::late`].
     pub late: Duration,
 }
 
@@ -23,7 +24,7 @@ pub(crate) struct Meter {
     stats: Arc<Stats>,
     arrivals: Arrivals,
     newest: Option<Newest>,
-    /// The longest total so far.
+    /// The longest total of a cycle so far.
     longest: Duration,
     worst: SlotWriter<CycleTimes>,
     overran: SlotWriter<CycleTimes>,
@@ -39,7 +40,7 @@ struct Newest {
 }
 
 impl Meter {
-    /// Returns empty statistics. Allocates; nothing else here does.
+    /// Returns empty statistics. Allocates; no other method does.
     pub(crate) fn new() -> Self {
         let (worst, worst_reader) = slot::slot();
         let (overran, overran_reader) = slot::slot();
@@ -77,12 +78,12 @@ impl Meter {
         }
     }
 
-    /// The statistics, for their readers.
+    /// Returns the statistics, for their readers.
     pub(crate) fn stats(&self) -> &Arc<Stats> {
         &self.stats
     }
 
-    /// Time at which the newest state was received.
+    /// Returns the time at which the newest state was received.
     pub(crate) fn heard(&self) -> Option<Instant> {
         self.newest.map(|newest| newest.received)
     }
@@ -114,7 +115,7 @@ impl Meter {
         CycleTimes::new(newest.time, newest.late, turnaround)
     }
 
-    /// Notes a cycle with a command, and shows the counts of the motion that it belongs to.
+    /// Notes a cycle with a command, and publishes the counts of the cycle's motion.
     pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes, motion: Option<&MotionStatistics>) {
         self.stats.commands.add(1);
         self.stats.turnaround.note(cycle.turnaround);

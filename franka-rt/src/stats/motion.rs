@@ -12,13 +12,13 @@ use crate::slot::Words;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionStatistics {
-    /// States of the motion that were received and not skipped.
+    /// Number of states of the motion that were received and not skipped.
     pub cycles: u64,
-    /// States that never arrived.
+    /// Number of states that never arrived.
     pub lost_states: u64,
-    /// States that arrived but were skipped for a newer state that had arrived too.
+    /// Number of states that were skipped, because a newer state had arrived, too.
     pub skipped_states: u64,
-    /// Lowest `control_command_success_rate` seen while running, in `[0, 1]`.
+    /// Lowest `control_command_success_rate` in the motion, in `[0, 1]`.
     pub success_rate_min: f64,
     /// The newest rate, in `[0, 1]`; 1 before the first one.
     pub success_rate_newest: f64,
@@ -26,9 +26,9 @@ pub struct MotionStatistics {
     success_rate_count: u64,
     /// `message_id` of the first and the last state.
     span: (u64, u64),
-    /// Commands that left.
+    /// Number of commands that left.
     pub commands: u64,
-    /// Commands that left after the next state was due.
+    /// Number of commands that left after the next state was due.
     pub overruns: u64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
@@ -57,7 +57,8 @@ impl Default for MotionStatistics {
 }
 
 impl MotionStatistics {
-    /// Mean `control_command_success_rate`, in `[0, 1]`; 1 for a motion too short to show one.
+    /// Returns the mean `control_command_success_rate`, in `[0, 1]`; 1 for a motion too short to
+    /// show it.
     pub fn success_rate_avg(&self) -> f64 {
         if self.success_rate_count == 0 {
             1.0
@@ -66,17 +67,19 @@ impl MotionStatistics {
         }
     }
 
-    /// Time from the first state of the motion to the last, `[ms]` of the robot's clock.
+    /// Returns the time from the first state of the motion to the last, `[ms]` of the robot's
+    /// clock.
     pub fn duration_ms(&self) -> u64 {
         self.span.1 - self.span.0
     }
 
-    /// The least time that was left when a command departed; `None` before the first.
+    /// Returns the least time that was left when a command departed; `None` before the first
+    /// command.
     pub fn slack_min(&self) -> Option<Slack> {
         (self.commands > 0).then_some(self.slack_min)
     }
 
-    /// The cycle with the longest [`CycleTimes::total`]; `None` before the first command.
+    /// Returns the cycle with the longest [`CycleTimes::total`]; `None` before the first command.
     pub fn worst_cycle(&self) -> Option<CycleTimes> {
         (self.commands > 0).then_some(self.worst)
     }
@@ -160,10 +163,11 @@ impl Words for MotionStatistics {
 /// Words of a motion's statistics before its worst cycle.
 const OWN_WORDS: usize = 13;
 
-/// Times of the cycles of one motion. Made outside the thread, written by it, read anywhere.
+/// Times of the cycles of one motion. Made outside the thread, written by the thread, read
+/// anywhere.
 #[derive(Debug, Default)]
 pub struct MotionTimes {
-    /// Times between two states in a row, by this host's clock.
+    /// Times between two consecutive states, by this host's clock.
     pub interval: Histogram,
     /// Times from the receipt of a state to the departure of its command.
     pub turnaround: Histogram,

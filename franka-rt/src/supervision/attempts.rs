@@ -1,11 +1,11 @@
-//! Attempts: growing pauses between them, and their number within a time.
+//! Attempts: growing pauses between them, and a limit of their number within a time.
 
 use core::time::Duration;
 use std::collections::VecDeque;
 
 use super::policy::Backoff;
 
-/// Draws pauses.
+/// Computes random pauses.
 #[derive(Clone, Debug)]
 pub(super) struct Pauses {
     backoff: Backoff,
@@ -36,8 +36,8 @@ impl Pauses {
         Duration::try_from_secs_f64(pause).unwrap_or(longest)
     }
 
-    /// A number in [0, 1), by SplitMix64. Source: Steele, Lea, Flood: Fast splittable pseudorandom
-    /// number generators, 2014.
+    /// Returns a number in [0, 1), by SplitMix64. Source: Steele, Lea, Flood: Fast splittable
+    /// pseudorandom number generators, 2014.
     fn draw(&mut self) -> f64 {
         self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.random;
@@ -48,13 +48,13 @@ impl Pauses {
     }
 }
 
-/// Times of the attempts, the oldest first.
+/// Times of the attempts, the oldest one first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Attempts(VecDeque<Duration>);
 
 impl Attempts {
-    /// Notes an attempt at `now`, unless there were `most` within `window` before. Returns true if
-    /// it may be made.
+    /// Notes an attempt at `now`, unless `most` attempts were made within `window` before. Returns
+    /// true if the attempt may be made.
     pub(super) fn note(&mut self, most: u32, window: Duration, now: Duration) -> bool {
         self.forget(window, now);
         let may = self.0.len() < most as usize;

@@ -11,11 +11,11 @@ use crate::lifecycle::{CloseReason, Differences, Unready};
 /// State of the connection.
 #[derive(Debug)]
 pub(super) enum Connection {
-    /// The first one is being made.
+    /// The first connection is being made.
     First,
-    /// There is one.
+    /// The connection is up.
     Up(Up),
-    /// It is lost, and its resources are not yet given back.
+    /// The connection is lost, but its resources are not yet released.
     Ending(Loss),
     /// The next attempt comes at `at`.
     Pausing { loss: Loss, at: Duration },
@@ -28,43 +28,43 @@ pub(super) enum Connection {
 /// A connection that stands.
 #[derive(Debug)]
 pub(super) struct Up {
-    /// Since when.
+    /// Time at which the connection was made.
     pub(super) since: Duration,
-    /// Attempts that it took.
+    /// Number of attempts that the connection took.
     pub(super) attempts: u32,
     /// The silence of the robot, if it is silent.
     pub(super) silent: Option<Silent>,
-    /// Last state seen; `None` before the first one since the connection was made, or since a
+    /// Last state seen; `None` before the first state since the connection was made, or since a
     /// silence.
     pub(super) seen: Option<Seen>,
-    /// The mode that was reported last; before the first report, the usual one.
+    /// The mode that was reported last; before the first report, the mode of an idle robot.
     pub(super) told: RobotMode,
-    /// The reflex that holds the robot.
+    /// The reflex that the robot is in, if any.
     pub(super) reflex: Option<ReflexCase>,
-    /// Differences from the robot of the previous connection, until someone has agreed to a
-    /// recovery or a motion was asked for.
+    /// Differences from the robot of the previous connection, until the user has agreed to a
+    /// recovery or a motion was requested.
     pub(super) differences: Option<Differences>,
-    /// Progress of setting the program's settings again.
+    /// Progress of sending the program's settings again.
     pub(super) configuration: Configuration,
 }
 
-/// Progress of setting the program's settings again on a connection.
+/// Progress of sending the program's settings again on a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Configuration {
-    /// It does, or nothing was set.
+    /// All settings hold, or the program has set nothing.
     Done,
-    /// To be set again once the robot is idle.
+    /// The settings must be sent again once the robot is idle.
     Due,
-    /// Requested. A setting that fails is tried again at once if the robot has been idle anew
-    /// since.
+    /// The settings are being sent. A setting that fails is tried again at once if the robot has
+    /// become idle again since.
     Requested { is_idle_anew: bool },
-    /// The robot has not taken this; it is tried again when it is idle anew.
+    /// The robot has refused this setting. It is tried again when the robot becomes idle again.
     Failed(Command),
 }
 
 impl Configuration {
-    /// Makes the failed settings be tried again, since the robot is idle anew. Returns true if
-    /// there are any.
+    /// Makes the failed settings be tried again, because the robot has become idle again. Returns
+    /// true if there are any.
     pub(super) fn retry(&mut self) -> bool {
         match self {
             Self::Requested { is_idle_anew } => *is_idle_anew = true,
@@ -90,7 +90,7 @@ impl Configuration {
 #[derive(Debug)]
 pub(super) struct Silent {
     pub(super) since: Duration,
-    /// True if the connection is about to be closed for it.
+    /// True if the connection is about to be closed because of the silence.
     pub(super) is_given_up: bool,
 }
 
@@ -99,13 +99,13 @@ pub(super) struct Silent {
 pub(super) struct Loss {
     pub(super) since: Duration,
     pub(super) reason: CloseReason,
-    /// True if there will be no other one.
+    /// True if no further connection will come.
     pub(super) is_final: bool,
-    /// Attempts to connect that failed since, or did not last.
+    /// Number of attempts to connect since then that failed, or whose connection did not last.
     pub(super) failed: u32,
 }
 
-/// Condition of the robot as a whole, from a state.
+/// Condition of the robot as a whole, taken from a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     pub(super) mode: RobotMode,
@@ -114,7 +114,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns the condition that `state` shows. Two states that show the same need not both be
+    /// Returns the condition in `state`. Of two states with the same condition, only one must be
     /// passed to [`Supervision::on_state`](super::Supervision::on_state), unless there was a
     /// silence between them.
     pub fn of(state: &RobotState) -> Self {
@@ -131,7 +131,7 @@ impl Seen {
 }
 
 impl Silent {
-    /// Time at which the connection will be given up, if it will.
+    /// Returns the time at which the connection will be given up, if it will.
     pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
         let policy = policy.filter(|policy| policy.reconnects && !self.is_given_up)?;
         Some(self.since.saturating_add(policy.silence))
@@ -139,7 +139,7 @@ impl Silent {
 }
 
 impl Up {
-    /// Returns a connection that has just been made, and shows nothing yet.
+    /// Returns a connection that has just been made, and that no state has shown yet.
     pub(super) fn new(attempts: u32, differences: Option<Differences>, now: Duration) -> Self {
         Self {
             since: now,
@@ -153,12 +153,12 @@ impl Up {
         }
     }
 
-    /// Time of the next step of a reflex, if time alone brings it.
+    /// Returns the time of the next step of a reflex, if the step only waits for time to pass.
     pub(super) fn deadline_of_reflex(&self) -> Option<Duration> {
         self.reflex.as_ref()?.deadline(self.seen?.mode)
     }
 
-    /// Reason why the robot takes no motions, if it does not.
+    /// Returns the reason why the robot accepts no motions; `None` if it does.
     pub(super) fn unready(&self) -> Option<Unready> {
         if self.silent.is_some() {
             return Some(Unready::Silent);
@@ -181,8 +181,8 @@ impl Up {
 }
 
 impl Connection {
-    /// Reason why the robot takes no motions, if it does not. A closed connection reports it
-    /// itself.
+    /// Returns the reason why the robot accepts no motions; `None` if it does. A closed connection
+    /// reports its end itself.
     pub(super) fn unready(&self) -> Option<Unready> {
         match self {
             Self::Up(up) => up.unready(),
@@ -193,7 +193,7 @@ impl Connection {
         }
     }
 
-    /// True if the settings of this program hold at the robot, if there is a connection.
+    /// True if the robot has the settings of this program, if there is a connection.
     pub(super) fn is_configured(&self) -> bool {
         match self {
             Self::Up(up) => up.configuration == Configuration::Done,
@@ -201,7 +201,7 @@ impl Connection {
         }
     }
 
-    /// The reflex that holds the robot.
+    /// Returns the reflex that the robot is in.
     pub(super) fn reflex(&self) -> Option<&ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_ref(),
@@ -209,7 +209,7 @@ impl Connection {
         }
     }
 
-    /// The reflex that holds the robot.
+    /// Returns the reflex that the robot is in.
     pub(super) fn reflex_mut(&mut self) -> Option<&mut ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_mut(),
@@ -217,7 +217,7 @@ impl Connection {
         }
     }
 
-    /// The connection that was lost, while a new one is awaited.
+    /// Returns the connection that was lost, while a new one is awaited.
     pub(super) fn loss(&self) -> Option<&Loss> {
         match self {
             Self::Ending(loss) | Self::Pausing { loss, .. } | Self::Connecting(loss) => Some(loss),

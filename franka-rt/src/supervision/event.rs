@@ -13,10 +13,10 @@ use crate::sched::SchedError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
-    /// Time since the robot was first connected to, by this computer's clock.
+    /// Time since the first connection to the robot, by this computer's clock.
     pub at: Duration,
     /// Time by the robot's clock: `message_id` of its newest state, `[ms]`. `None` without a
-    /// connection. A robot that was restarted may count anew.
+    /// connection. A restarted robot may begin to count anew.
     pub robot_time: Option<u64>,
     /// Kind of event.
     pub kind: EventKind,
@@ -26,29 +26,30 @@ pub struct Event {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
-    /// It is connected. Unusual conditions (a reflex, a pressed stop) follow in separate events.
+    /// The robot is connected. Unusual conditions (a reflex, a pressed stop) follow in separate
+    /// events.
     Connected {
-        /// Attempts that this took.
+        /// Number of attempts that connecting took.
         attempts: u32,
         /// Time since the previous connection was lost; `None` for the first connection.
         after: Option<Duration>,
     },
-    /// The operating system refused a request of the control thread, which continues without.
+    /// The operating system refused a request of the control thread, which continues without it.
     /// Follows on `Connected`.
     RealtimeRefused {
         /// Refused requests.
         refusals: Arc<[SchedError]>,
     },
     /// The robot differs from the robot of the previous connection, and may be another one. Follows
-    /// on `Connected`. A motion that waited is refused, and a recovery needs someone to agree.
+    /// on `Connected`. A waiting motion is refused, and a recovery needs the user's approval.
     Unrecognised {
         /// Differences.
         differences: Differences,
     },
-    /// The settings that this program had made before a connection was lost are not set again, and
-    /// motions are refused: a setting was refused, or a state shows another one.
+    /// A setting that this program had made before a connection was lost does not hold again. The
+    /// robot refused it, or a state shows another value. Motions are refused.
     NotConfigured {
-        /// The command that sets it.
+        /// The command of that setting.
         command: Command,
         /// Answer or state of the robot.
         text: String,
@@ -60,46 +61,47 @@ pub enum EventKind {
     },
     /// No state has come for the link timeout; the connection is still there.
     Silent {
-        /// For how long.
+        /// Length of the silence so far.
         silence: Duration,
     },
-    /// States come again, over the same connection.
+    /// States come again, over the same connection, after a silence.
     Resumed {
         /// Time since the silence was noticed.
         after: Duration,
     },
     /// The robot stopped itself, or was found in a reflex.
     Reflex(Reflex),
-    /// The supervisor leaves the robot in its reflex: someone must recover it.
+    /// The supervisor does not recover the robot from its reflex: a person or this program must do
+    /// so.
     NotRecovered {
         /// Number of the reflex.
         reflex: u64,
         /// Reason.
         why: NotRecovered,
     },
-    /// The robot has left a reflex and takes motions again.
+    /// The robot has left a reflex and accepts motions again.
     Recovered {
         /// Number of the reflex.
         reflex: u64,
-        /// Time from when it was noticed.
+        /// Time since the reflex was noticed.
         after: Duration,
-        /// True if the supervisor did it, rather than this program or a person.
+        /// True if the supervisor recovered the robot; false if this program or a person did.
         by_supervisor: bool,
     },
     /// The user stop was pressed or released, or a safety function had the same effect.
     UserStop {
-        /// True if it holds the robot now.
+        /// True if the stop holds the robot now.
         pressed: bool,
     },
     /// A hand began or stopped guiding the arm.
     Guiding {
-        /// True if it does now.
+        /// True if a hand guides the arm now.
         active: bool,
     },
-    /// The brakes were closed or opened. A robot that is not ready for another reason looks the
+    /// The brakes were closed or opened. A robot that is not ready for another reason reports the
     /// same.
     Brakes {
-        /// True if they are closed now.
+        /// True if the brakes are closed now.
         closed: bool,
     },
     /// This program has latched a stop, or released it.
@@ -107,26 +109,26 @@ pub enum EventKind {
         /// True if no motion is admitted now.
         latched: bool,
     },
-    /// A motion, a session or a program was handed over to the connection. Goals that a session
-    /// takes without a future (`set`, `chunk`, `guide`) are not reported.
+    /// A motion, a session or a program was passed to the connection. Goals that a session accepts
+    /// without a future (`set`, `chunk`, `guide`) are not reported.
     MotionBegun {
-        /// Its name, as in the log.
+        /// Name of the motion, session or program, as in the log.
         goal: u64,
     },
-    /// It has ended, or was not accepted.
+    /// A motion, a session or a program has ended, or was not accepted.
     MotionEnded {
-        /// Its name.
+        /// Name of the motion, session or program.
         goal: u64,
         /// Outcome.
         outcome: Arc<Outcome>,
     },
     /// The load that the robot computes with has changed, through this program or Desk. A change
-    /// while the connection was lost counts, too.
+    /// while the connection was lost is reported, too.
     LoadChanged {
-        /// The load now.
+        /// The present load.
         load: Load,
     },
-    /// There is no connection, and there will be none.
+    /// The connection is closed, and no further one will come.
     Closed {
         /// Reason.
         reason: CloseReason,
@@ -134,7 +136,7 @@ pub enum EventKind {
 }
 
 impl fmt::Display for EventKind {
-    /// One line for people.
+    /// Prints one line for people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Connected { attempts, after } => {
@@ -202,27 +204,28 @@ impl fmt::Display for EventKind {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reflex {
-    /// Its number, from 1 on. A reflex that is found after a connection was lost has a new number.
+    /// Number of the reflex, from 1 on. A reflex that is found after a lost connection has a new
+    /// number.
     pub number: u64,
-    /// The errors that hold the robot.
+    /// The errors of the robot.
     pub errors: Errors,
-    /// Error of the motion that the reflex ended, with its last cycles; `None` if it ended no
-    /// motion of this program. `franka_diagnosis` explains its cause.
+    /// Error of the motion that the reflex ended, with its last cycles. `None` if the reflex ended
+    /// no motion of this program. `franka_diagnosis` explains the cause.
     pub error: Option<Arc<ControlError>>,
-    /// Differences from the robot before a connection was lost, if it is not recognised: the
-    /// recovery then needs someone to agree, under any policy.
+    /// Differences from the robot before a connection was lost, if the robot is not recognised. The
+    /// recovery then needs the user's approval, under any policy.
     pub differences: Option<Differences>,
 }
 
-/// Reason why a supervisor leaves a robot in its reflex.
+/// Reason why a supervisor does not recover a robot from its reflex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum NotRecovered {
-    /// The policy recovers from no reflex.
+    /// The policy allows no recovery.
     #[error("the policy does not recover from reflexes")]
     Never,
-    /// The policy names the errors to recover from, and there are others.
+    /// The policy names the errors to recover from, and the reflex has other errors.
     #[error("the policy does not allow recovery from all errors of the reflex")]
     OtherError,
     /// The robot was recovered as often as the policy allows within its window.
@@ -241,34 +244,35 @@ pub enum NotRecovered {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Health {
-    /// Condition: whether it takes motions.
+    /// Condition of the robot: whether it accepts motions.
     pub condition: Condition,
-    /// Start of the condition, counted from the first connection to the robot.
+    /// Start of that condition, counted from the first connection to the robot.
     pub since: Duration,
-    /// Number of the reflex that holds it, if one does, for agreeing to its recovery.
+    /// Number of the robot's reflex, if it is in one. Use it to agree to the recovery.
     pub reflex: Option<u64>,
-    /// Attempts to connect since the connection was lost; 0 while there is one.
+    /// Number of attempts to connect since the connection was lost; 0 while there is a connection.
     pub attempts: u32,
-    /// Connections made after the first one.
+    /// Number of connections made after the first one.
     pub reconnects: u64,
-    /// Recoveries by the supervisor.
+    /// Number of recoveries by the supervisor.
     pub recoveries: u64,
-    /// Time that the newest reconnect took, from the loss on.
+    /// Time that the newest reconnect took, counted from the loss.
     pub last_reconnect: Option<Duration>,
-    /// Time that the newest recovery by the supervisor took, from when the reflex was noticed.
+    /// Time that the newest recovery by the supervisor took, counted from when the reflex was
+    /// noticed.
     pub last_recovery: Option<Duration>,
 }
 
-/// Condition of a robot: whether it takes motions.
+/// Condition of a robot: whether it accepts motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Condition {
-    /// It does, or a motion runs.
+    /// The robot accepts motions, or a motion runs.
     Ready,
-    /// Not now.
+    /// The robot accepts no motions now, for this reason.
     Unready(Unready),
-    /// There is no connection, and there will be none.
+    /// The connection is closed, and no further one will come.
     Closed,
 }
 

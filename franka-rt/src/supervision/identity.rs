@@ -1,4 +1,4 @@
-//! Test whether the robot that answers after a lost connection is the same robot, unchanged.
+//! Check whether the robot that answers after a lost connection is the same robot, unchanged.
 
 use core::time::Duration;
 
@@ -6,18 +6,18 @@ use franka_proto::RobotState;
 
 use crate::lifecycle::Differences;
 
-/// Record of a robot, to recognise it when a connection was lost.
+/// Record of a robot, used to recognise it after a lost connection.
 #[derive(Clone, Debug)]
 pub(super) struct Identity {
-    /// Hash of its description; `None` for a robot without one.
+    /// Hash of the robot's description; `None` for a robot without one.
     description: Option<u64>,
     frames: [[f64; 16]; 3],
-    /// Mass, centre of mass and inertia of its end effector.
+    /// Mass, centre of mass and inertia of the robot's end effector.
     tool: ([f64; 4], [f64; 9]),
     q: [f64; 7],
     dq: [f64; 7],
     message_id: u64,
-    /// Time of that state, by the clock of this computer.
+    /// Time of the recorded state, by the clock of this computer.
     at: Duration,
 }
 
@@ -36,17 +36,17 @@ impl Identity {
         }
     }
 
-    /// Takes a newer state.
+    /// Updates the record with a newer state.
     pub(super) fn update(&mut self, state: &RobotState, now: Duration) {
         *self = Self::of(self.description, state, now);
     }
 
-    /// Takes note that the newest state came `silence` before `now`.
+    /// Notes that the newest state came `silence` before `now`.
     pub(super) fn silent_for(&mut self, silence: Duration, now: Duration) {
         self.at = now.saturating_sub(silence);
     }
 
-    /// Returns the differences of `other`, which was seen later.
+    /// Returns the differences between this record and `other`, a later one.
     pub(super) fn differences(&self, other: &Self) -> Differences {
         let differs =
             |a: &[f64], b: &[f64]| core::iter::zip(a, b).any(|(a, b)| (a - b).abs() > EPS);
@@ -75,19 +75,19 @@ impl Identity {
     }
 }
 
-/// Distance that a joint may be from where it was, `[rad]`.
+/// Distance from its earlier position beyond which a joint counts as moved, `[rad]`.
 const MOVED: f64 = 5e-3;
 
-/// Time for which a joint may have run on at its last velocity, `[s]`: a robot that misses its
+/// Time for which a joint may have continued at its last velocity, `[s]`. A robot that misses its
 /// client bridges 20 ms and then brakes. From its highest velocities that takes about 0.3 s.
 const BRAKING: f64 = 0.3;
 
-/// Difference of two numbers of a frame or a tool that are not the same; states of protocol 10 have
-/// single precision.
+/// Difference beyond which two numbers of a frame or a tool are not the same; states of protocol 10
+/// have single precision.
 const EPS: f64 = 1e-5;
 
 /// Tolerance between the robot's clock and the time that has passed. Much more than the lateness of
-/// states, and much less than the time that a robot takes to start.
+/// states, and much less than the startup time of a robot.
 const CLOCK: Duration = Duration::from_secs(5);
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Supervision of a robot between its motions: connections that are lost and made again, reflexes
-//! and the recovery from them, and motions that are asked for meanwhile.
+//! Supervision of a robot between its motions: lost connections and reconnects, reflexes and
+//! recoveries, and motions that callers request meanwhile.
 //!
 //! ```text
 //!   First --> Up ----lost----> Ending --given back--> Connecting --connected--> Up
@@ -13,14 +13,14 @@
 //!          +------- the robot shows that it takes motions <-- answered <-- requested <--+
 //! ```
 //!
-//! It decides when to connect and when to recover. **It moves nothing**: the only motions that it
-//! lets begin have a caller that waits for them. A reflex, a lost connection, a user stop, a hand
-//! on the arm and closed brakes each turn away the waiting motion.
+//! The supervision decides when to connect and when to recover. **It moves nothing**: the only
+//! motions that it lets begin have a caller that waits for them. A reflex, a lost connection, a
+//! user stop, a hand on the arm and closed brakes each refuse the waiting motion.
 //!
 //! Inputs are the `on_*` methods (of the connection and the clock), [`Supervision::submit`],
-//! `withdraw`, `stop`, `agree` and `close` (of callers); effects come out of [`Supervision::poll`].
-//! No clock, socket or task in here: `now` is an argument, counted from any fixed moment, and never
-//! goes back.
+//! `withdraw`, `stop`, `agree` and `close` (of callers). Effects are returned by
+//! [`Supervision::poll`]. The supervision has no clock, socket or task: `now` is an argument,
+//! counted from any fixed moment, and never decreases.
 
 mod attempts;
 mod connection;
@@ -57,39 +57,39 @@ pub use reports::ConnectFailure;
 pub use settings::{Answer, SettingId};
 pub use waiting::Admission;
 
-/// Something to carry out, in the order given.
+/// An effect to carry out, in the order in which effects are returned.
 #[derive(Debug)]
 pub enum Output {
     /// Send this to the listeners.
     Event(Event),
-    /// Connect. Comes back as [`Supervision::on_connected`] or
+    /// Connect. Report the result by [`Supervision::on_connected`] or
     /// [`Supervision::on_connect_failed`].
     Connect,
-    /// Close the connection for this reason. Comes back as [`Supervision::on_lost`].
+    /// Close the connection for this reason. Report the end by [`Supervision::on_lost`].
     Disconnect {
         /// Reason.
         reason: CloseReason,
     },
-    /// Recover the robot (`AutomaticErrorRecovery`). Comes back as [`Supervision::on_recovery`]
-    /// with this number.
+    /// Recover the robot (`AutomaticErrorRecovery`). Report the result by
+    /// [`Supervision::on_recovery`] with this number.
     Recover {
         /// Number of the reflex.
         reflex: u64,
     },
-    /// Send the settings of this program again: [`Supervision::next_setting`], one at a time, until
-    /// it returns nothing. A connection that has ended may be left alone.
+    /// Send the settings of this program again: call [`Supervision::next_setting`], one at a time,
+    /// until it returns nothing. Not needed for a connection that has ended.
     Configure,
-    /// Ask for an agreement to the recovery from this reflex. Comes back as [`Supervision::agree`],
-    /// if at all.
+    /// Ask the user to approve the recovery from this reflex. Report an answer by
+    /// [`Supervision::agree`].
     Ask(Reflex),
-    /// Begin the motion that waited.
+    /// Begin the waiting motion.
     Begin {
-        /// Its name.
+        /// Name of the motion.
         goal: GoalId,
     },
-    /// Refuse the motion that waited.
+    /// Refuse the waiting motion.
     Refuse {
-        /// Its name.
+        /// Name of the motion.
         goal: GoalId,
         /// Reason.
         error: MotionError,
@@ -99,27 +99,27 @@ pub enum Output {
 /// The state machine. See the module's documentation.
 #[derive(Debug)]
 pub struct Supervision {
-    /// `None` for a robot that is only watched.
+    /// The policy; `None` for a robot that is only watched.
     policy: Option<Policy>,
     connection: Connection,
     /// `message_id` of the newest state.
     robot_time: Option<u64>,
-    /// The load that the robot was last seen with.
+    /// The load in the last state.
     load: Option<Load>,
-    /// Record of the robot when it was last seen.
+    /// Record of the robot when its last state came.
     identity: Option<Identity>,
-    /// Reflexes so far.
+    /// Number of reflexes so far.
     reflexes: u64,
     recoveries: Attempts,
     pauses: Pauses,
-    /// Error of the last motion, if a reflex that no state has shown yet ended it.
+    /// Error of the last motion, if a reflex ended it that no state has shown yet.
     unshown: Option<Box<ControlError>>,
     /// Motions that have begun and not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
-    /// Settings of this program at the robot.
+    /// Settings that this program has made at the robot.
     settings: Settings,
-    /// Connections made so far.
+    /// Number of connections made so far.
     connections: u64,
     /// True if a stop is latched, which outlives connections.
     stop_latched: bool,
@@ -128,8 +128,8 @@ pub struct Supervision {
 }
 
 impl Supervision {
-    /// Returns the supervision of a robot that is about to be connected to. Without a policy it
-    /// only watches: it neither reconnects nor recovers, and lets every motion begin.
+    /// Returns the supervision of a robot that is about to be connected to. Without a policy the
+    /// supervision only watches: it neither reconnects nor recovers, and lets every motion begin.
     pub fn new(policy: Option<Policy>) -> Self {
         let pauses = policy.map(|policy| policy.pauses).unwrap_or_default();
         let seed = policy.and_then(|policy| policy.seed).unwrap_or_default();
@@ -162,7 +162,7 @@ impl Supervision {
         }
     }
 
-    /// Health of the robot.
+    /// Returns the health of the robot.
     pub fn health(&self) -> Health {
         self.health
     }
@@ -172,12 +172,12 @@ impl Supervision {
         matches!(self.connection, Connection::Up(_) | Connection::Ending(_))
     }
 
-    /// The next effect to carry out.
+    /// Returns the next effect to carry out.
     pub fn poll(&mut self) -> Option<Output> {
         self.outputs.pop_front()
     }
 
-    /// Decides on a motion that a caller asks for.
+    /// Decides on a motion that a caller requests.
     pub fn submit(&mut self, motion: &NewMotion, now: Duration) -> Admission {
         if let Err(error) = self.check_latch() {
             return Admission::Refuse(error);
@@ -204,18 +204,18 @@ impl Supervision {
         admission
     }
 
-    /// Takes back the motion that waits, if it has this name: it is not named any more.
+    /// Cancels the waiting motion if it has this name. Returns true if it was cancelled.
     pub fn withdraw(&mut self, goal: GoalId) -> bool {
         self.waiting.take_if(|it| it.goal == goal).is_some()
     }
 
-    /// Takes back the motion that waits, because a stop was asked for.
+    /// Cancels the waiting motion, because a stop was requested.
     pub fn stop(&mut self) {
         self.refuse(|_| MotionError::Stopped);
     }
 
-    /// Takes back the motion that waits, and admits none until [`Self::release_stop`], on this
-    /// connection and those to come.
+    /// Cancels the waiting motion, and admits none until [`Self::release_stop`], on this connection
+    /// and on later ones.
     pub fn latch_stop(&mut self, now: Duration) {
         self.stop();
         self.set_latch(true, now);
@@ -231,10 +231,10 @@ impl Supervision {
         self.stop_latched
     }
 
-    /// The answer to every goal, of any motion or session, while a stop is latched.
+    /// Checks that no stop is latched. The result applies to every goal, of any motion or session.
     ///
     /// # Errors
-    /// [`MotionError::NotReady`].
+    /// [`MotionError::NotReady`] while a stop is latched.
     pub fn check_latch(&self) -> Result<(), MotionError> {
         match self.connection {
             // A closed connection reports it itself.
@@ -247,7 +247,7 @@ impl Supervision {
         }
     }
 
-    /// Returns true if a stop was latched before.
+    /// Sets the latch. Returns true if a stop was latched before.
     fn set_latch(&mut self, latched: bool, now: Duration) -> bool {
         let before = core::mem::replace(&mut self.stop_latched, latched);
         if before != latched {
@@ -257,14 +257,14 @@ impl Supervision {
         before
     }
 
-    /// Takes note of a setting that this program is about to send over the newest connection, in
-    /// this order. It will hold on every connection to come, unless the robot refuses it. Its
-    /// answer goes to [`Self::on_set`].
+    /// Notes a setting that this program is about to send over the newest connection, in this
+    /// order. The setting will be sent on every later connection, unless the robot refuses it. Pass
+    /// the answer to [`Self::on_set`].
     pub fn declare(&mut self, request: Request) -> SettingId {
         self.settings.declare(request, self.connections)
     }
 
-    /// Takes the answer to a setting of the program.
+    /// Processes the answer to a setting of the program.
     pub fn on_set(&mut self, id: SettingId, answer: &Answer, now: Duration) {
         self.settings.on_answer(id, answer, self.connections);
         if self.policy.is_some()
@@ -286,7 +286,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// The next of the settings to send after [`Output::Configure`]. Its answer goes to
+    /// Returns the next setting to send after [`Output::Configure`]. Pass its answer to
     /// [`Self::on_set_again`].
     pub fn next_setting(&mut self, now: Duration) -> Option<(SettingId, Request)> {
         let Connection::Up(up) = &mut self.connection else {
@@ -321,7 +321,7 @@ impl Supervision {
         None
     }
 
-    /// Takes the answer to a setting of [`Self::next_setting`].
+    /// Processes the answer to a setting of [`Self::next_setting`].
     pub fn on_set_again(&mut self, id: SettingId, answer: Answer) {
         if let Connection::Up(up) = &self.connection
             && matches!(up.configuration, Configuration::Requested { .. })
@@ -345,8 +345,8 @@ impl Supervision {
         awaited
     }
 
-    /// Ends it: this program closes the connection, or its runtime does. Nothing is asked for any
-    /// more.
+    /// Ends the supervision: this program closes the connection, or its runtime does. No further
+    /// effects are requested.
     pub fn close(&mut self, reason: CloseReason, now: Duration) {
         if matches!(self.connection, Connection::Closed) {
             return;
@@ -360,7 +360,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Time at which [`Self::on_time`] must be called, if nothing else happens before.
+    /// Returns the time at which [`Self::on_time`] must be called, if no other input comes before.
     pub fn deadline(&self) -> Option<Duration> {
         let of_connection = match &self.connection {
             Connection::Up(up) => match &up.silent {
@@ -415,7 +415,7 @@ impl Supervision {
         }));
     }
 
-    /// Refuses the motion that waits, if there is one.
+    /// Refuses the waiting motion, if there is one.
     fn refuse(&mut self, error: impl FnOnce(&Waiting) -> MotionError) {
         if let Some(waiting) = self.waiting.take() {
             let (goal, error) = (waiting.goal, error(&waiting));
@@ -423,7 +423,7 @@ impl Supervision {
         }
     }
 
-    /// Refuses the motion that waits, since something else has happened.
+    /// Refuses the waiting motion, because another mishap has happened.
     fn turn_away(&mut self, now: Duration) {
         if let Some(why) = self.connection.unready() {
             self.refuse(|waiting| waiting.refusal(why, now));
@@ -493,7 +493,7 @@ impl Supervision {
         }
     }
 
-    /// Ends the reflex once the robot takes motions again.
+    /// Ends the reflex once the robot accepts motions again.
     fn end_reflex(&mut self, now: Duration) {
         let Connection::Up(up) = &mut self.connection else {
             return;

@@ -1,18 +1,18 @@
-//! Policy of a supervisor: its permitted actions, and how often.
+//! Policy of a supervisor: its permitted actions and their limits.
 
 use core::time::Duration;
 
 use franka_proto::{Errors, RobotError};
 
-/// Actions of a supervisor when the connection or the robot fails. The default reconnects for as
-/// long as it takes, never recovers from a reflex, and refuses motions meanwhile.
+/// Actions of a supervisor when the connection or the robot fails. The default reconnects without a
+/// time limit, never recovers from a reflex, and refuses motions meanwhile.
 ///
 /// No earlier motion resumes under any policy: motions and sessions end with the mishap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "a policy does nothing until a robot is supervised by it"]
 pub struct Policy {
     pub(super) recovery: Option<Recovery>,
-    /// A reflex with any other error is left alone.
+    /// The only errors to recover from. A reflex with any other error is not recovered.
     pub(super) only: Option<Errors>,
     pub(super) agreement: bool,
     pub(super) reconnects: bool,
@@ -31,21 +31,21 @@ pub(super) struct Recovery {
     pub(super) window: Duration,
 }
 
-/// Pause between two attempts: after the first one `first`, after each other one twice as long as
-/// before, `most` at most. The first attempt is made at once.
+/// Pauses between two attempts. The pause after the first attempt is `first`; each further pause is
+/// twice as long as the previous one, but at most `most`. The first attempt is made at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backoff {
     /// The first pause.
     pub first: Duration,
     /// The longest pause.
     pub most: Duration,
-    /// Random share of each pause, 0 to 1, by which the pause may be shorter. So robots that were
-    /// lost together do not come back in step.
+    /// Random share of each pause, 0 to 1, by which the pause may be shorter. Robots that were lost
+    /// at the same time then reconnect at different times.
     pub jitter: f64,
 }
 
 impl Default for Backoff {
-    /// Pauses from 100 ms to 5 s. The jitter is 0.3.
+    /// Returns pauses from 100 ms to 5 s, with a jitter of 0.3.
     fn default() -> Self {
         Self {
             first: Duration::from_millis(100),
@@ -72,28 +72,28 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// Recovers from reflexes automatically, `times` within any `window` at most, attempts that
-    /// fail included. A reflex beyond that is left to a person.
+    /// Recovers from reflexes automatically, at most `times` times within any `window`, failed
+    /// attempts included. Further reflexes are left to a person.
     pub fn recover(mut self, times: u32, window: Duration) -> Self {
         self.recovery = Some(Recovery { times, window });
         self
     }
 
     /// Limits [`Self::recover`] to reflexes all of whose errors are among these. A reflex whose
-    /// state names no error is left alone, too.
+    /// state has no error is not recovered either.
     pub fn only(mut self, errors: impl IntoIterator<Item = RobotError>) -> Self {
         self.only = Some(errors.into_iter().collect());
         self
     }
 
-    /// Recovers from a reflex only after someone has agreed to it.
+    /// Recovers from a reflex only after the user has approved it.
     pub fn ask_first(mut self) -> Self {
         self.agreement = true;
         self
     }
 
-    /// Replaces the pauses between two attempts to connect. Recoveries that fail are repeated after
-    /// the same pauses, also [without reconnecting](Self::without_reconnecting).
+    /// Replaces the pauses between two attempts to connect. Failed recoveries are repeated after
+    /// the same pauses, even [without reconnecting](Self::without_reconnecting).
     pub fn reconnect(mut self, backoff: Backoff) -> Self {
         self.pauses = backoff;
         self
@@ -105,46 +105,47 @@ impl Policy {
         self
     }
 
-    /// Gives up when a lost connection has not come back for `time`; never by default.
+    /// Gives up when a lost connection was not restored within `time`; never by default.
     pub fn give_up_after(mut self, time: Duration) -> Self {
         self.give_up_after = Some(time);
         self
     }
 
-    /// Sets how long the robot may be silent, on a connection that looks alive, before that is
-    /// closed and a new one made; 3 s by default. It begins when the silence is noticed, after the
-    /// link timeout.
+    /// Sets how long the robot may be silent on a connection that looks alive. After that, the
+    /// supervisor closes the connection and makes a new one. 3 s by default. The time begins when
+    /// the silence is noticed, after the link timeout.
     pub fn silence(mut self, time: Duration) -> Self {
         self.silence = time;
         self
     }
 
-    /// Lets a motion that comes while the supervisor reconnects or recovers wait, for `most` at
-    /// most, and begin when the robot is ready. By default it is refused at once, as
+    /// Lets a motion that is requested while the supervisor reconnects or recovers wait, for `most`
+    /// at most, and begin when the robot is ready. By default such a motion is refused at once, as
     /// [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
     ///
-    /// It waits for the end of this mishap only. Another reflex, a reflex during the recovery, a
-    /// connection that is lost again, a user stop, a hand on the arm and closed brakes turn it
-    /// away. A newer motion supersedes it as it would a motion under way, and a stop takes it back.
+    /// The motion waits for the end of this mishap only. Another reflex, a reflex during the
+    /// recovery, a connection that is lost again, a user stop, a hand on the arm and closed brakes
+    /// refuse the motion. A newer motion supersedes it like a motion under way, and a stop cancels
+    /// it.
     pub fn motions_wait(mut self, most: Duration) -> Self {
         self.motions_wait = Some(most);
         self
     }
 
-    /// Sets the seed of the random jitter; each robot has another one by default.
+    /// Sets the seed of the random jitter; by default each robot has a different seed.
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
         self
     }
 
-    /// As [`Self::seed`], unless there is one already.
+    /// As [`Self::seed`], unless a seed was set already.
     pub fn or_seed(mut self, seed: u64) -> Self {
         self.seed = self.seed.or(Some(seed));
         self
     }
 }
 
-/// Silence after which a connection is given up, from when it is noticed.
+/// Silence after which a connection is given up, counted from when the silence is noticed.
 const SILENCE: Duration = Duration::from_secs(3);
 
 #[cfg(test)]

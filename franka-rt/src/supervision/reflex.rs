@@ -1,4 +1,4 @@
-//! One reflex, from when it is noticed until the robot takes motions again.
+//! One reflex, from when it is noticed until the robot accepts motions again.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -15,11 +15,12 @@ use crate::lifecycle::{ControlError, Differences, Unready};
 pub enum RecoveryFailure {
     /// The robot requires a recovery by hand.
     ByHand,
-    /// Anything else: it was refused or given up, or there was no answer. It may be repeated.
+    /// Any other failure: the recovery was refused or given up, or there was no answer. It may be
+    /// repeated.
     Other,
 }
 
-/// A reflex that holds the robot.
+/// A reflex that the robot is in.
 #[derive(Debug)]
 pub(super) struct ReflexCase {
     pub(super) number: u64,
@@ -27,25 +28,26 @@ pub(super) struct ReflexCase {
     pub(super) errors: Errors,
     error: Option<Arc<ControlError>>,
     differences: Option<Differences>,
-    /// True if it has been reported. The report waits for the end of the motion, which has the log.
+    /// True if the reflex has been reported. The report waits for the end of the motion, which has
+    /// the log.
     told: bool,
     stage: Stage,
-    /// True if it has been reported that a person is needed, in this stage.
+    /// True if the need for a person has been reported in this stage.
     stage_told: bool,
 }
 
 /// Stage of the recovery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
-    /// Someone else must recover the robot.
+    /// A person or the program must recover the robot.
     Left(NotRecovered),
-    /// Someone must agree.
+    /// The user must approve the recovery.
     AgreementAwaited,
-    /// To be recovered, not before `at`, after `failed` failed attempts.
+    /// The recovery is due, not before `at`, after `failed` failed attempts.
     Due { at: Duration, failed: u32 },
-    /// The request is out.
+    /// The request to recover was sent.
     Requested { failed: u32 },
-    /// The robot has recovered, and should show it by then.
+    /// The robot has recovered, and must show this in a state before `until`.
     Answered { until: Duration, failed: u32 },
 }
 
@@ -59,8 +61,8 @@ pub(super) enum Step {
 }
 
 impl ReflexCase {
-    /// Returns a reflex that was noticed at `now`, of a robot with these differences from the robot
-    /// before.
+    /// Returns a reflex that was noticed at `now`, of a robot with these differences from the
+    /// previous robot.
     pub(super) fn new(
         number: u64,
         errors: Errors,
@@ -81,22 +83,22 @@ impl ReflexCase {
         }
     }
 
-    /// Adds the error with which it ended a motion.
+    /// Adds the error of the motion that the reflex ended.
     pub(super) fn explain(&mut self, error: ControlError) {
         self.error.get_or_insert_with(|| Arc::new(error));
     }
 
-    /// True if it has been reported.
+    /// True if the reflex has been reported.
     pub(super) fn is_told(&self) -> bool {
         self.told
     }
 
-    /// Continues a reflex that has not been reported, with more errors.
+    /// Continues an unreported reflex, with more errors.
     pub(super) fn continue_from(&mut self, before: Self) {
         (self.number, self.since, self.error) = (before.number, before.since, before.error);
     }
 
-    /// Reason why the robot takes no motions.
+    /// Returns the reason why the robot accepts no motions.
     pub(super) fn unready(&self) -> Unready {
         match self.stage {
             Stage::Left(_) => Unready::Reflex,
@@ -112,7 +114,7 @@ impl ReflexCase {
         matches!(self.stage, Stage::Requested { .. } | Stage::Answered { .. })
     }
 
-    /// Takes the answer to the question. Returns true if it was awaited.
+    /// Processes the user's answer. Returns true if an answer was awaited.
     pub(super) fn agree(&mut self, agreed: bool, now: Duration) -> bool {
         let awaited = self.stage == Stage::AgreementAwaited;
         if awaited {
@@ -124,7 +126,7 @@ impl ReflexCase {
         awaited
     }
 
-    /// Takes the robot's answer to the request.
+    /// Processes the robot's answer to the request.
     pub(super) fn on_answer(
         &mut self,
         answer: Result<(), RecoveryFailure>,
@@ -144,8 +146,8 @@ impl ReflexCase {
         });
     }
 
-    /// Returns the next step, if one is due with the robot in this mode. `is_moving` is whether a
-    /// motion has not been reported as ended. Each step is returned once.
+    /// Returns the next step, if one is due with the robot in this mode. `is_moving` is true while
+    /// a motion has not been reported as ended. Each step is returned once.
     pub(super) fn step(
         &mut self,
         (mode, is_moving): (RobotMode, bool),
@@ -189,8 +191,8 @@ impl ReflexCase {
         (self.stage, self.stage_told) = (stage, false);
     }
 
-    /// Time at which [`Self::step`] must be called for a robot in this mode, if nothing else
-    /// happens before.
+    /// Returns the time at which [`Self::step`] must be called for a robot in this mode, if no
+    /// other input comes before.
     pub(super) fn deadline(&self, mode: RobotMode) -> Option<Duration> {
         match self.stage {
             Stage::Due { at, .. } if mode == RobotMode::Reflex => Some(at),
@@ -246,5 +248,5 @@ impl Stage {
     }
 }
 
-/// Time for a robot that has answered a recovery to show it.
+/// Time for a robot that has answered a recovery to show this in a state.
 const SHOWN_WITHIN: Duration = Duration::from_secs(2);

@@ -22,7 +22,7 @@ pub enum ConnectFailure {
         /// Difference.
         text: String,
     },
-    /// Anything else, which may pass.
+    /// Another reason, which may pass.
     Other {
         /// Error.
         text: String,
@@ -30,9 +30,9 @@ pub enum ConnectFailure {
 }
 
 impl Supervision {
-    /// Takes note that there is a connection, whose first state this is, and which requests of the
-    /// control thread were refused; `description` is a hash of the robot's description, if it has
-    /// one. Returns false if no connection is wanted any more: it must be closed.
+    /// Notes that a connection was made, with its first state and the refused requests of the
+    /// control thread. `description` is a hash of the robot's description, if it has one. Returns
+    /// false if no connection is wanted any more; it must then be closed.
     pub fn on_connected(
         &mut self,
         description: Option<u64>,
@@ -76,8 +76,8 @@ impl Supervision {
         true
     }
 
-    /// Takes a state of the robot. A state that is not newer than the newest is ignored. States
-    /// that show the same as the previous one may be left out: see [`Seen`].
+    /// Processes a state of the robot. A state that is not newer than the newest is ignored. States
+    /// with the same condition as the previous one may be left out: see [`Seen`].
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.robot_time < Some(state.message_id) {
             self.show(state, now);
@@ -128,7 +128,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note of a robot that these errors hold. Returns true if they are new.
+    /// Notes that the robot is in a reflex with these errors. Returns true if they are new.
     fn on_reflex(&mut self, errors: Errors, now: Duration) -> bool {
         let Connection::Up(up) = &mut self.connection else {
             return false;
@@ -151,7 +151,7 @@ impl Supervision {
         true
     }
 
-    /// Takes note that the robot has sent no state for `silence`.
+    /// Notes that the robot has sent no state for `silence`.
     pub fn on_silence(&mut self, silence: Duration, now: Duration) {
         let Connection::Up(up) = &mut self.connection else {
             return;
@@ -172,7 +172,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that the connection has ended. It may still hold resources:
+    /// Notes that the connection has ended. Its resources may still be in use until
     /// [`Self::on_released`].
     pub fn on_lost(&mut self, reason: CloseReason, now: Duration) {
         let Connection::Up(up) = &self.connection else {
@@ -203,8 +203,8 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that all resources of the lost connection are given back: its control thread has
-    /// ended, and its socket is closed.
+    /// Notes that all resources of the lost connection are released: its control thread has ended,
+    /// and its socket is closed.
     pub fn on_released(&mut self, now: Duration) {
         if let Connection::Ending(loss) = &self.connection {
             let loss = loss.clone();
@@ -220,7 +220,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that an attempt to connect has failed.
+    /// Notes that an attempt to connect has failed.
     pub fn on_connect_failed(&mut self, failure: ConnectFailure, now: Duration) {
         let Connection::Connecting(loss) = &self.connection else {
             return;
@@ -250,7 +250,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes the answer to a request to recover from the reflex of this number.
+    /// Processes the answer to a request to recover from the reflex of this number.
     pub fn on_recovery(&mut self, reflex: u64, answer: Result<(), RecoveryFailure>, now: Duration) {
         if let Connection::Up(up) = &mut self.connection
             && let Some(case) = &mut up.reflex
@@ -261,8 +261,8 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that a motion, a session or a program is handed over to the connection, before it
-    /// is: until its end is reported, the robot is not recovered.
+    /// Notes that a motion, a session or a program is about to be passed to the connection. The
+    /// robot is not recovered until its end is reported.
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;
@@ -273,8 +273,7 @@ impl Supervision {
         self.tell(EventKind::MotionBegun { goal: goal.0 }, now);
     }
 
-    /// Takes note of the outcome of a motion. Others than those that were reported as begun are
-    /// ignored.
+    /// Notes the outcome of a motion. Motions that were not reported as begun are ignored.
     pub fn on_ended(&mut self, goal: GoalId, outcome: &Outcome, now: Duration) {
         if !self.motions.remove(&goal) {
             return;
@@ -295,7 +294,7 @@ impl Supervision {
     }
 }
 
-/// Returns the event of a mode that has begun or ended, apart from reflexes and motions.
+/// Returns the event of a mode that has begun or ended; `None` for reflexes and motions.
 fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     Some(match mode {
         RobotMode::UserStopped => EventKind::UserStop { pressed: begun },
@@ -308,6 +307,6 @@ fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     })
 }
 
-/// A connection that was shorter than this counts as a failed attempt, so that a robot that drops
-/// each one is not asked for the next at once.
+/// Duration below which a connection counts as a failed attempt. If a robot drops each connection,
+/// the next attempt then comes after a pause.
 const LASTING: Duration = Duration::from_secs(1);

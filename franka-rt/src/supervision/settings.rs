@@ -1,30 +1,30 @@
-//! Settings of this program at the robot, which should hold on every connection.
+//! Settings that this program has made at the robot, and that every connection should have.
 
 use franka_proto::{Command, Request};
 
 /// Result of a setting that was sent to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// The robot has taken it, and its states show it if they show such a setting.
+    /// The robot has accepted the setting. Its states show the value, if states have it.
     Taken,
-    /// The robot has taken it, and its states show another value.
+    /// The robot has accepted the setting, but its states show another value.
     NotShown {
-        /// The values shown and set, for a person.
+        /// Description of the values shown and set, for a person.
         text: String,
     },
-    /// The robot has refused it, or it was not sent: the earlier setting holds.
+    /// The robot has refused the setting, or it was not sent: the earlier setting holds.
     Refused {
-        /// The robot's answer and the value set, for a person.
+        /// Description of the robot's answer and the value set, for a person.
         text: String,
     },
-    /// There was no answer: the robot may have taken it.
+    /// There was no answer: the robot may have accepted the setting.
     Unknown {
-        /// The missing answer, for a person.
+        /// Description of the missing answer, for a person.
         text: String,
     },
 }
 
-/// The name of a setting, from [`Supervision::declare`](super::Supervision::declare).
+/// Name of a setting, from [`Supervision::declare`](super::Supervision::declare).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SettingId(u64);
 
@@ -32,7 +32,7 @@ pub struct SettingId(u64);
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     newest: Vec<Setting>,
-    /// Settings so far.
+    /// Number of settings so far.
     count: u64,
 }
 
@@ -40,25 +40,25 @@ pub(super) struct Settings {
 struct Setting {
     id: SettingId,
     request: Request,
-    /// The number of the connection over which the program has sent it.
+    /// Number of the connection over which the program has sent the setting.
     connection: u64,
     standing: Standing,
-    /// True if states have shown it.
+    /// True if states have shown the setting.
     was_shown: bool,
-    /// The setting of this kind that counts again if the robot refuses this one; until it has
-    /// answered.
+    /// The earlier setting of this kind, which counts again if the robot refuses this one. Kept
+    /// until the robot has answered.
     before: Option<Box<Setting>>,
 }
 
 /// State of a setting on the newest connection.
 #[derive(Debug)]
 enum Standing {
-    /// The program has sent it, and has no answer yet.
+    /// The program has sent the setting, and has no answer yet.
     Sent,
-    /// It is not known to have been set.
+    /// It is not known whether the robot has the setting.
     Open,
     Holds,
-    /// It could not be set, for this reason.
+    /// The robot could not be given the setting, for this reason.
     Failed {
         text: String,
     },
@@ -69,25 +69,26 @@ impl Settings {
         self.newest.is_empty()
     }
 
-    /// True if everything holds on the newest connection.
+    /// True if all settings hold on the newest connection.
     pub(super) fn all_hold(&self) -> bool {
         let holds = |setting: &Setting| matches!(setting.standing, Standing::Holds);
         self.newest.iter().all(holds)
     }
 
-    /// True if something must be set again.
+    /// True if any setting must be sent again.
     pub(super) fn any_open(&self) -> bool {
         self.next().is_some()
     }
 
-    /// True if the program waits for an answer. Until it has come it is unknown which value counts.
+    /// True if the program waits for an answer. Until the answer comes, it is unknown which value
+    /// counts.
     pub(super) fn any_sent(&self) -> bool {
         let is_sent = |setting: &Setting| matches!(setting.standing, Standing::Sent);
         self.newest.iter().any(is_sent)
     }
 
-    /// Takes note of a setting that the program is about to send over the connection of this
-    /// number. It counts unless it is refused.
+    /// Notes a setting that the program is about to send over the connection of this number. The
+    /// setting counts unless the robot refuses it.
     pub(super) fn declare(&mut self, request: Request, connection: u64) -> SettingId {
         let is_same = |setting: &Setting| setting.request.command() == request.command();
         let before = self.newest.iter().position(is_same);
@@ -105,8 +106,8 @@ impl Settings {
         id
     }
 
-    /// Takes the answer to a setting that the program has sent; `connection` is the number of the
-    /// newest one.
+    /// Processes the answer to a setting that the program has sent. `connection` is the number of
+    /// the newest connection.
     pub(super) fn on_answer(&mut self, id: SettingId, answer: &Answer, connection: u64) {
         if let Answer::Refused { .. } = answer {
             return self.remove(id);
@@ -126,7 +127,7 @@ impl Settings {
         }
     }
 
-    /// Takes the answer to [`Self::next`].
+    /// Processes the answer to a setting of [`Self::next`].
     pub(super) fn on_answer_again(&mut self, id: SettingId, answer: Answer) {
         let Some(setting) = self.find(id) else {
             return;
@@ -144,14 +145,14 @@ impl Settings {
         };
     }
 
-    /// The next setting that must be set on the newest connection.
+    /// Returns the next setting to send on the newest connection.
     pub(super) fn next(&self) -> Option<(SettingId, Request)> {
         let is_open = |setting: &&Setting| matches!(setting.standing, Standing::Open);
         let open = self.newest.iter().find(is_open)?;
         Some((open.id, open.request))
     }
 
-    /// The settings that could not be set, and why.
+    /// Returns the settings that could not be set, and the reasons.
     pub(super) fn failures(&self) -> impl Iterator<Item = (Command, &String)> {
         self.newest
             .iter()
@@ -170,7 +171,7 @@ impl Settings {
         }
     }
 
-    /// Takes note of a new connection, on which nothing is set.
+    /// Notes a new connection, on which nothing is set.
     pub(super) fn on_connected(&mut self) {
         for newest in &mut self.newest {
             let mut setting = Some(newest);
@@ -191,7 +192,7 @@ impl Settings {
         })
     }
 
-    /// Removes a setting: the previous one counts again.
+    /// Removes a setting, so that the previous one counts again.
     fn remove(&mut self, id: SettingId) {
         if let Some(place) = self.newest.iter().position(|newest| newest.id == id) {
             match self.newest[place].before.take() {

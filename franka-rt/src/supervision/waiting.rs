@@ -5,15 +5,15 @@ use core::time::Duration;
 use crate::lifecycle::{MotionError, NewMotion, Unready};
 use crate::session::GoalId;
 
-/// Decision on a motion that is asked for.
+/// Decision on a motion that a caller requests.
 #[derive(Debug)]
 pub enum Admission {
-    /// Begin it now. If the robot takes no motions, it refuses the motion itself.
+    /// Begin the motion now. If the robot accepts no motions, it refuses this one itself.
     Begin,
-    /// Keep it until [`Output::Begin`](super::Output::Begin) or
+    /// Keep the motion until [`Output::Begin`](super::Output::Begin) or
     /// [`Output::Refuse`](super::Output::Refuse) names it.
     Wait,
-    /// It does not begin.
+    /// The motion does not begin, for this reason.
     Refuse(MotionError),
 }
 
@@ -21,15 +21,15 @@ pub enum Admission {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) goal: GoalId,
-    /// True if it yields to a newer goal.
+    /// True if a newer goal may supersede the motion.
     gives_way: bool,
     since: Duration,
     pub(super) until: Duration,
 }
 
 impl Waiting {
-    /// Decides on `motion`, which would wait for `most`. It becomes `waiting`, in the place of a
-    /// motion that yields to it and is returned.
+    /// Decides on `motion`, which would wait for `most`. If it waits, it becomes `waiting`. Returns
+    /// the earlier waiting motion that it supersedes, if any.
     pub(super) fn admit(
         waiting: &mut Option<Self>,
         motion: &NewMotion,
@@ -58,7 +58,7 @@ impl Waiting {
         (Admission::Wait, before.map(|before| before.goal))
     }
 
-    /// The error of a motion that does not begin because the robot is not ready at `now`.
+    /// Returns the error of a motion that does not begin because the robot is not ready at `now`.
     pub(super) fn refusal(&self, why: Unready, now: Duration) -> MotionError {
         let waited = now - self.since;
         MotionError::NotReady { why, waited }

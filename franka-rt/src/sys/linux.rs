@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read as _, Write as _};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, FromRawFd, OwnedFd};
 
-/// The highest priority of `SCHED_FIFO`: 99 on Linux.
+/// Returns the highest priority of `SCHED_FIFO`: 99 on Linux.
 pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
     // SAFETY: the function takes a number, touches no memory of ours, and reports an unknown policy
     // as -1.
@@ -17,8 +17,7 @@ pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
     }
 }
 
-/// Puts the calling thread, and only it, under `SCHED_FIFO` at `priority`. The error is an errno
-/// value.
+/// Puts only the calling thread under `SCHED_FIFO` at `priority`. The error is an errno value.
 pub(crate) fn set_fifo(priority: i32) -> Result<(), i32> {
     // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value (musl
     // has further fields than the priority, so a literal would not build everywhere).
@@ -38,7 +37,7 @@ pub(crate) fn set_fifo(priority: i32) -> Result<(), i32> {
     }
 }
 
-/// Binds the calling thread, and only it, to one processor. The error is an errno value.
+/// Binds only the calling thread to one processor. The error is an errno value.
 pub(crate) fn pin_to(cpu: usize) -> Result<(), i32> {
     if cpu >= libc::CPU_SETSIZE as usize {
         return Err(libc::EINVAL);
@@ -65,8 +64,8 @@ pub(crate) fn lock_memory() -> Result<(), i32> {
     }
 }
 
-/// Makes receives from `socket` poll the network card's queue for that long, in whole microseconds,
-/// before they sleep. The error is an errno value.
+/// Makes receives from `socket` poll the network card's queue for this duration, in whole
+/// microseconds, before they sleep. The error is an errno value.
 pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i32> {
     let Ok(us) = libc::c_int::try_from(duration.as_micros()) else {
         return Err(libc::EINVAL);
@@ -110,7 +109,7 @@ pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
     }
 }
 
-/// An eventfd, whose count starts at 0.
+/// An eventfd whose count starts at 0.
 #[derive(Debug)]
 pub(crate) struct Wake(File);
 
@@ -120,7 +119,7 @@ impl Wake {
     }
 
     /// Adds 1 to the count, which makes the descriptor readable. Never blocks. At the largest count
-    /// the write is refused, and the descriptor is readable anyway.
+    /// the kernel refuses the write, and the descriptor is readable anyway.
     pub(crate) fn notify(&self) {
         let _ = (&self.0).write(&1u64.to_ne_bytes());
     }
@@ -140,7 +139,7 @@ impl Wake {
     }
 }
 
-/// A new eventfd with count 0, closed on exec, whose reads and writes never block.
+/// Returns a new eventfd with count 0, closed on exec, whose reads and writes never block.
 fn eventfd() -> io::Result<OwnedFd> {
     // SAFETY: the function takes numbers only and returns -1 or a new descriptor.
     let fd = unsafe { libc::eventfd(0, libc::EFD_CLOEXEC | libc::EFD_NONBLOCK) };

@@ -1,37 +1,38 @@
-//! Systems that are not known to grant anything: every request is refused, which
-//! `Realtime::Enforce` makes an error and `Realtime::Ignore` notes.
+//! Requests on other systems, which are not known to grant anything. Every request is refused,
+//! which `Realtime::Enforce` makes an error and `Realtime::Ignore` notes.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 
-/// There is no priority that a control thread could rely on.
+/// Refuses: no priority is known that a control thread could rely on.
 pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
     Err(libc::ENOTSUP)
 }
 
-/// See there.
+/// Refuses: see [`max_fifo_priority`].
 pub(crate) fn set_fifo(_: i32) -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// A thread is not bound to a processor.
+/// Refuses: a thread cannot be bound to a processor here.
 pub(crate) fn pin_to(_: usize) -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// Memory is not locked.
+/// Refuses: memory is not locked.
 pub(crate) fn lock_memory() -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// Receives do not poll.
+/// Refuses: receives do not poll.
 pub(crate) fn busy_poll(_: &impl AsFd, _: Duration) -> Result<(), i32> {
     Err(libc::ENOPROTOOPT)
 }
 
-/// A pair of sockets that stands for an eventfd: a notification is a byte in the buffer of one.
+/// A pair of sockets that replaces an eventfd: a notification is a byte in the buffer of one
+/// socket.
 #[derive(Debug)]
 pub(crate) struct Wake {
     listener: UnixStream,
@@ -52,7 +53,7 @@ impl Wake {
         let _ = (&self.notifier).write(&[1]);
     }
 
-    /// Returns how many notifications were in the buffer, and takes them out. Never blocks.
+    /// Returns the number of notifications in the buffer, and removes them. Never blocks.
     pub(crate) fn drain(&self) -> u64 {
         let mut notifications = 0;
         let mut bytes = [0; 4096];

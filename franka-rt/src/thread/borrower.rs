@@ -1,4 +1,4 @@
-//! Watch on the borrower of the cycle: whether it runs the cycle.
+//! Watch on the borrower of the cycle, to notice a borrower that does not run it.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -7,23 +7,23 @@ use super::lifetime::Lifetime;
 use crate::event_fd::EventFd;
 use crate::exchange::TICK;
 
-/// Watches the turns of one borrower while the thread waits for its cycle, and reports when none
-/// has come for the link timeout. It is over when it is dropped.
+/// Counts the turns of one borrower while the thread waits for its cycle. Reports when no turn has
+/// come for the link timeout. The watch ends when this value is dropped.
 pub(super) struct BorrowerWatch<'a> {
     lifetime: &'a Lifetime,
     event_fd: &'a EventFd,
     timeout: Duration,
     turns: u64,
-    /// Time without a turn.
+    /// Time without a turn so far.
     idle: Duration,
-    /// Time of the last look.
+    /// Time of the last check.
     looked: Instant,
-    /// Result of the last look.
+    /// Result of the last check.
     stalled: bool,
 }
 
 impl<'a> BorrowerWatch<'a> {
-    /// A watch that begins at `now`.
+    /// Returns a watch that begins at `now`.
     pub(super) fn new(
         lifetime: &'a Lifetime,
         event_fd: &'a EventFd,
@@ -41,8 +41,8 @@ impl<'a> BorrowerWatch<'a> {
         }
     }
 
-    /// Looks, at `now`, whether there was a turn since the last look. A tick is due between two
-    /// looks. If more time has passed, the host has delayed this thread, and perhaps the borrower
+    /// Checks, at `now`, whether there was a turn since the last check. One tick is due between two
+    /// checks. If more time has passed, the host has delayed this thread, and perhaps the borrower
     /// as well.
     pub(super) fn look(&mut self, now: Instant) {
         let turns = self.lifetime.turns();

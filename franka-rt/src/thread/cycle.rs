@@ -28,20 +28,20 @@ pub(super) struct Cycle<C: Core> {
     pub(super) orders: Receiver<C::Order>,
     pub(super) notices: Sender<Notice<C::Event, C::Record>>,
     pub(super) records: Sender<C::Record>,
-    /// All states, as they came.
+    /// Queue of all states, as they came.
     pub(super) sequence: Sender<Datagram>,
-    /// All cycles, for attached readers.
+    /// Publisher of all cycles, for attached readers.
     pub(super) cycles: CyclePublisher<C::Record>,
-    /// The newest state.
+    /// Slot of the newest state.
     pub(super) states: SlotWriter<Datagram>,
-    /// The buffer through which a state gets into both.
+    /// Buffer from which a state is copied into queue and slot.
     pub(super) datagram: Box<Datagram>,
     pub(super) meter: Meter,
     /// Times the phases of the cycle.
     pub(super) laps: Laps,
     pub(super) event_fd: EventFd,
     pub(super) state_wakeups: StateWakeups,
-    /// States since the last wake-up for one.
+    /// Number of states since the last wake-up for a state.
     pub(super) states_since_wake: u32,
     pub(super) lifetime: Arc<Lifetime>,
     /// Time at which the cycle was made.
@@ -51,7 +51,7 @@ pub(super) struct Cycle<C: Core> {
 }
 
 impl<C: Core> Cycle<C> {
-    /// Waits for a state, up to a tick, and runs one cycle. Returns whether a readable state came.
+    /// Waits for a state, up to a tick, and runs one cycle. Returns true if a readable state came.
     pub(super) fn turn(&mut self) -> bool {
         let begun = Instant::now();
         self.stats().turns.add(1);
@@ -95,7 +95,7 @@ impl<C: Core> Cycle<C> {
     }
 
     /// Sends the command of the core for a state, if there is one, then does the work that may
-    /// follow it. Returns the times of the command.
+    /// follow the command. Returns the times of the command.
     fn answer(
         &mut self,
         state: &RobotState,
@@ -115,7 +115,7 @@ impl<C: Core> Cycle<C> {
         sent
     }
 
-    /// Sends a command that answers the newest state, from outside of a turn.
+    /// Sends a command that answers the newest state, outside of a turn.
     pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
         // The time since the end of the turn is the caller's computation.
         self.laps.end(Phase::Program);
@@ -124,7 +124,7 @@ impl<C: Core> Cycle<C> {
         Ok(())
     }
 
-    /// Notes a cycle whose command has left, when all of its phases are over.
+    /// Notes a cycle whose command has left, when all of its phases have ended.
     fn note(&mut self, cycle: CycleTimes) {
         let cycle = CycleTimes {
             phases: self.laps.phases(),
@@ -134,7 +134,7 @@ impl<C: Core> Cycle<C> {
         self.meter.note_cycle(&cycle, motion);
     }
 
-    /// The newest state; `None` if it cannot be decoded.
+    /// Returns the newest state; `None` if it cannot be decoded.
     pub(super) fn state(&self) -> Option<RobotState> {
         RobotState::decode(self.version, self.exchange.state()).ok()
     }
@@ -148,7 +148,7 @@ impl<C: Core> Cycle<C> {
         }
     }
 
-    /// Hands a command to the kernel and returns when that was done.
+    /// Passes a command to the kernel and returns the time when that was done.
     fn transmit(&mut self, command: &RobotCommand) -> Result<Instant, SendError> {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
         let size = command
@@ -166,7 +166,7 @@ impl<C: Core> Cycle<C> {
         departed
     }
 
-    /// Passes the newest state on, which was received at `now`.
+    /// Publishes the newest state, which was received at `now`.
     fn publish(&mut self, now: Instant) {
         self.datagram.set(self.exchange.state());
         self.states.write(&self.datagram);
@@ -217,8 +217,8 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// True to send a wake-up for a state: for every one if that is requested, for every
-    /// [`STATES_PER_WAKE_MAX`]th otherwise.
+    /// True if a wake-up for a state is due: for every state if that is requested, otherwise for
+    /// every [`STATES_PER_WAKE_MAX`]th state.
     fn is_wakeup_due(&mut self) -> bool {
         self.states_since_wake += 1;
         let due = self.state_wakeups.are_wanted() || self.states_since_wake >= STATES_PER_WAKE_MAX;
@@ -228,7 +228,7 @@ impl<C: Core> Cycle<C> {
         due
     }
 
-    /// Queues a fault of the receiving side if it is a new one; returns true if it did.
+    /// Queues a fault of the receiving side if the fault is new; returns true if it was queued.
     fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
         if !fresh && fault.is_none() {
             return false; // A tick without any datagram is neither a fault nor the end of one.
@@ -238,7 +238,7 @@ impl<C: Core> Cycle<C> {
             .is_some_and(|fault| self.queue(fault))
     }
 
-    /// Queues a report of the loop; returns whether there was room.
+    /// Queues a report of the loop; returns true if there was room.
     fn queue(&mut self, fault: LinkFault) -> bool {
         let queued = self.notices.push(Notice::Link(fault)).is_ok();
         self.stats().reports_lost.add(u64::from(!queued));
@@ -251,19 +251,19 @@ impl<C: Core> Cycle<C> {
         self.notices.push_from(EVENTS_PER_CYCLE, event) > 0
     }
 
-    /// Hands over the ring of a reader of cycles that was dropped; returns true if there was one.
+    /// Passes on the ring of a reader of cycles that was dropped; returns true if there was one.
     fn detach(&mut self) -> bool {
         let detached = || self.cycles.take_detached().map(Notice::Detached);
         self.notices.push_from(1, detached) > 0
     }
 }
 
-/// States after which a wake-up is sent without a request. The rings of the thread hold far more,
-/// and the wake-ups, twenty a second, take less than a thousandth of a core.
+/// Number of states after which a wake-up is sent without a request. The rings of the thread hold
+/// far more. These wake-ups, twenty a second, use less than a thousandth of a core.
 const STATES_PER_WAKE_MAX: u32 = 50;
 
-/// Orders taken in one cycle at most; the rest waits for the next.
+/// Largest number of orders per cycle; the others wait for the next cycle.
 const ORDERS_PER_CYCLE: usize = 8;
 
-/// Events passed on in one cycle at most; the rest waits for the next.
+/// Largest number of events passed on per cycle; the others wait for the next cycle.
 const EVENTS_PER_CYCLE: usize = 8;

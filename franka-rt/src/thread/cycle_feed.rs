@@ -6,9 +6,9 @@
 //!                                  +-- of a reader that was dropped --> Notice::Detached, freed elsewhere
 //! ```
 //!
-//! Each reader has its own ring, whose memory is laid out where it is attached. The thread copies
-//! each cycle into every ring and neither waits, allocates nor frees: a full ring drops the cycle
-//! and counts it.
+//! Each reader has its own ring, whose memory is allocated when the reader is attached. The thread
+//! copies each cycle into every ring and neither waits, allocates nor frees: a full ring drops the
+//! cycle and counts it.
 
 use core::time::Duration;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -21,7 +21,7 @@ use super::handle::Datagram;
 use crate::driver::Record;
 use crate::queue::{self, Full, Receiver, Sender};
 
-/// The most readers of one control thread at a time.
+/// Largest number of readers of one control thread at a time.
 pub const READERS_MAX: usize = 4;
 
 /// One cycle of the control thread: a state, and the work of the driver for it.
@@ -34,12 +34,12 @@ pub struct CapturedCycle<R = Record> {
     pub state: RobotState,
     /// Time at which the thread had received it, by this host's monotonic clock.
     pub received: Instant,
-    /// Cycles just before this one that did not fit into this reader's ring.
+    /// Number of cycles just before this one that did not fit into this reader's ring.
     pub lost: u64,
 }
 
 impl<R> CapturedCycle<R> {
-    /// A cycle that follows the previous one without loss.
+    /// Returns a cycle that follows the previous one without loss.
     pub fn new(record: R, state: RobotState, received: Instant) -> Self {
         Self {
             record,
@@ -50,7 +50,7 @@ impl<R> CapturedCycle<R> {
     }
 }
 
-/// Attaches readers to a running control thread. Clones attach to the same one.
+/// Attaches readers to a running control thread. Clones attach to the same thread.
 #[derive(Debug)]
 pub struct CycleFeed<R = Record> {
     attached: Arc<Mutex<Sender<CycleWriter<R>>>>,
@@ -71,15 +71,15 @@ impl<R> Clone for CycleFeed<R> {
 /// State shared by both ends of a feed.
 #[derive(Debug, Default)]
 struct Shared {
-    /// Readers that exist.
+    /// Number of readers.
     readers: AtomicUsize,
-    /// Set, with Release, when no cycle will come any more.
+    /// Set, with Release, when no further cycle will come.
     ended: AtomicBool,
 }
 
 impl Shared {
     /// Acquire, pairs with the Release in the drop of [`CyclePublisher`]: a reader that sees the
-    /// end finds every cycle that was pushed before it.
+    /// end finds every cycle that was pushed before the end.
     fn has_ended(&self) -> bool {
         self.ended.load(Ordering::Acquire)
     }
@@ -89,17 +89,17 @@ impl Shared {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachError {
-    /// The number of readers is at its maximum. Drop one first.
+    /// The number of readers is at its maximum. Drop a reader first.
     #[error("got one reader of cycles too many, expected {READERS_MAX} at most: drop one first")]
     TooMany,
     /// The ring cannot have this length.
     #[error("the ring of the reader has {got} cycles, expected 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
     Capacity {
-        /// Capacity that was asked for.
+        /// The requested capacity.
         got: usize,
     },
-    /// The thread has not taken the readers attached before: another thread has borrowed its cycle
-    /// and does not run it.
+    /// The thread has not accepted the readers that were attached before. Another thread has
+    /// borrowed its cycle and does not run it.
     #[error(
         "the control thread has not accepted the previous readers yet: another thread has \
          borrowed its cycle"
@@ -111,15 +111,15 @@ pub enum AttachError {
 }
 
 impl<R: Send + 'static> CycleFeed<R> {
-    /// The length of a ring unless asked otherwise, in cycles: 4 s, 12 MB.
+    /// Default length of a ring, in cycles: 4 s, 12 MB.
     pub const DEFAULT_CAPACITY: usize = 4096;
 
-    /// The most that a ring can hold, in cycles: a minute, 200 MB.
+    /// Largest length of a ring, in cycles: a minute, 200 MB.
     pub const CAPACITY_MAX: usize = 65_536;
 
-    /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. It
-    /// receives every cycle from shortly after the call. Allocates the ring and writes to all of
-    /// it: some milliseconds.
+    /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. The
+    /// reader receives every cycle from shortly after the call. Allocates the ring and writes to
+    /// all of it, which takes some milliseconds.
     ///
     /// # Errors
     /// [`AttachError`].
@@ -160,8 +160,8 @@ impl<R: Send + 'static> CycleFeed<R> {
     }
 }
 
-/// Takes the cycles of a control thread, each once and in order. For an ordinary thread or task;
-/// dropping it detaches it.
+/// Receives the cycles of a control thread, each once and in order. For an ordinary thread or task.
+/// Dropping the reader detaches it.
 #[derive(Debug)]
 pub struct CycleReader<R = Record> {
     queue: Receiver<Entry<R>>,
@@ -171,7 +171,7 @@ pub struct CycleReader<R = Record> {
 }
 
 impl<R> CycleReader<R> {
-    /// The oldest cycle that has not been taken. Never waits.
+    /// Removes and returns the oldest cycle. Never waits.
     pub fn pop(&mut self) -> Option<CapturedCycle<R>> {
         let entry = self.queue.pop()?;
         // The thread passes on only what it has decoded itself.
@@ -186,8 +186,8 @@ impl<R> CycleReader<R> {
         })
     }
 
-    /// Blocks this thread until a cycle can be taken. Returns false if none has come within
-    /// `timeout`, or none will come any more. Looks every 5 ms: the control thread wakes no one for
+    /// Blocks this thread until there is a cycle. Returns false if none has come within `timeout`,
+    /// or no further one will come. Checks every 5 ms, because the control thread wakes no one for
     /// this.
     pub fn wait(&self, timeout: Duration) -> bool {
         let begun = Instant::now();
@@ -205,22 +205,22 @@ impl<R> CycleReader<R> {
         }
     }
 
-    /// The number of cycles not taken yet.
+    /// Returns the number of cycles that wait in the ring.
     pub fn waiting(&self) -> usize {
         self.queue.waiting()
     }
 
-    /// The number of cycles so far that did not fit into the ring.
+    /// Returns the number of cycles so far that did not fit into the ring.
     pub fn lost(&self) -> u64 {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// True if `other` takes the cycles of the same control thread.
+    /// True if `other` reads the cycles of the same control thread.
     pub fn is_of_same_thread(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.shared, &other.shared)
     }
 
-    /// True if the thread has ended and every cycle was taken.
+    /// True if the thread has ended and every cycle was read.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended() && self.waiting() == 0
     }
@@ -232,16 +232,16 @@ impl<R> Drop for CycleReader<R> {
     }
 }
 
-/// Time between two looks of a reader that waits.
+/// Time between two checks of a waiting reader.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// The end of a reader's ring that the thread writes to. It holds memory: the thread hands it over
+/// The writing end of a reader's ring, for the thread. It owns memory, so the thread passes it on
 /// to be freed.
 #[derive(Debug)]
 pub struct CycleWriter<R = Record> {
     queue: Sender<Entry<R>>,
     lost: Arc<AtomicU64>,
-    /// Cycles lost since the last cycle that fitted.
+    /// Number of cycles lost since the last cycle that fitted.
     gap: u64,
 }
 
@@ -265,7 +265,7 @@ impl<R: Copy> CycleWriter<R> {
     }
 }
 
-/// A cycle in a ring. The state is decoded by the reader, which saves the thread a conversion.
+/// A cycle in a ring. The reader decodes the state, which saves the thread a conversion.
 #[derive(Debug)]
 struct Entry<R> {
     record: R,
@@ -274,18 +274,18 @@ struct Entry<R> {
     datagram: Datagram,
 }
 
-/// Passes cycles on to the readers that are attached: the thread's end of a feed. None of its
-/// methods allocates, frees or waits; its drop does, when the thread ends.
+/// Passes cycles on to the attached readers: the thread's end of a feed. No method allocates, frees
+/// or waits; dropping it does, when the thread ends.
 #[derive(Debug)]
 pub struct CyclePublisher<R = Record> {
     attached: Receiver<CycleWriter<R>>,
     writers: [Option<CycleWriter<R>>; READERS_MAX],
     shared: Arc<Shared>,
-    /// The buffer through which a state gets into the rings.
+    /// Buffer from which a state is copied into the rings.
     datagram: Box<Datagram>,
 }
 
-/// The two ends of the cycles of one control thread, whose robot speaks `version`.
+/// Returns the two ends of the feed of one control thread, whose robot has protocol `version`.
 pub fn cycle_feed<R>(version: Version) -> (CycleFeed<R>, CyclePublisher<R>) {
     let (attached, receiver) = queue::queue(READERS_MAX);
     let shared = Arc::<Shared>::default();
@@ -304,14 +304,14 @@ pub fn cycle_feed<R>(version: Version) -> (CycleFeed<R>, CyclePublisher<R>) {
 }
 
 impl<R: Copy> CyclePublisher<R> {
-    /// Takes the readers that were attached, while there is room for them.
+    /// Accepts the readers that were attached, while there is room for them.
     pub fn take_attached(&mut self) {
         for free in self.writers.iter_mut().filter(|writer| writer.is_none()) {
             *free = self.attached.pop();
         }
     }
 
-    /// Passes on a cycle: the record, the bytes of its state and when they were received.
+    /// Passes on a cycle: the record, the bytes of its state and their time of receipt.
     pub fn push(&mut self, record: R, state: &[u8], received: Instant) {
         if self.writers.iter().all(Option::is_none) {
             return;
@@ -322,7 +322,7 @@ impl<R: Copy> CyclePublisher<R> {
         }
     }
 
-    /// Returns the end of a ring whose reader was dropped, to be freed where that is allowed.
+    /// Returns the writing end of a ring whose reader was dropped, to be freed outside the thread.
     pub fn take_detached(&mut self) -> Option<CycleWriter<R>> {
         let detached = |writer: &mut CycleWriter<R>| writer.queue.is_abandoned();
         self.writers

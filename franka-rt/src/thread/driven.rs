@@ -7,58 +7,58 @@ use franka_proto::{RobotCommand, RobotState};
 use crate::driver::{Driver, Event, LINK_TIMEOUT, Order, Record};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
-/// A pure core: states, orders and silences in; commands, records and events out.
+/// A pure core: receives states, orders and silences, and returns commands, records and events.
 ///
-/// [`Driver`] is the core that programs use. The trait lets the loop be tested, and its allocations
-/// be counted, with cores that panic, answer everything or hold their events back. No method may
-/// allocate, free, lock, log or wait: they run on the real-time thread. Methods with a body are
-/// optional.
+/// [`Driver`] is the core that programs use. The trait exists for tests of the loop and of its
+/// allocations, with cores that panic, answer everything or hold their events back. No method may
+/// allocate, free, lock, log or wait, because all run on the real-time thread. Methods with a body
+/// are optional.
 pub trait Core: Send + 'static {
     /// An order from other threads.
     type Order: Send + 'static;
-    /// A report to other threads. It carries memory that is no longer needed, to be freed there.
+    /// A report to other threads. It carries memory that is no longer needed, to be freed by them.
     type Event: Send + 'static;
     /// Record of a cycle.
     type Record: Copy + Send + 'static;
 
-    /// Takes an order.
+    /// Carries out an order.
     fn on_order(&mut self, order: Self::Order);
 
-    /// Announces `states` older states that arrived with the next one and are skipped. Not called
+    /// Announces `states` older states that arrived with the next state and are skipped. Not called
     /// for 0.
     fn on_skipped(&mut self, _states: u64) {}
 
-    /// Takes a state, newer than all before it, and returns the command that answers it.
+    /// Processes a state, newer than all before, and returns the command that answers it.
     fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand>;
 
     /// Reports that no state has come for `silence`, by this host's clock. Called repeatedly while
-    /// it lasts.
+    /// the silence lasts.
     fn on_silence(&mut self, silence: Duration);
 
-    /// The silence that must be reported in time: the thread waits for a state no longer than a
-    /// fraction of it.
+    /// Returns the silence that must be reported in time. The thread waits for a state no longer
+    /// than a fraction of it.
     fn link_timeout(&self) -> Duration {
         LINK_TIMEOUT
     }
 
     /// Does the work for a state that can wait until the command has left. `sent` has the times of
-    /// the command, if one left, without the phases after it.
+    /// the command, if a command left, without the phases after it.
     fn after_send(&mut self, _state: &RobotState, _arrival: &Arrival, _sent: Option<&CycleTimes>) {}
 
-    /// The record of the last cycle, after [`Self::after_send`].
+    /// Returns the record of the last cycle, after [`Self::after_send`].
     fn record(&self) -> Self::Record;
 
-    /// Does the work for the next state that can be done before it comes. Called when everything
-    /// else of the cycle is done.
+    /// Does the work for the next state that can be done before it comes. Called when all other
+    /// work of the cycle is done.
     fn prepare(&mut self) {}
 
-    /// Notes all times of a cycle whose command has left. Returns the counts of the motion that
-    /// runs, if one does.
+    /// Notes all times of a cycle whose command has left. Returns the counts of the running motion,
+    /// if any.
     fn note_cycle(&mut self, _cycle: &CycleTimes) -> Option<&MotionStatistics> {
         None
     }
 
-    /// Returns the oldest event not taken yet. Only called when the queue has room for it.
+    /// Removes and returns the oldest event. Only called when the queue has room for it.
     fn take_event(&mut self) -> Option<Self::Event>;
 }
 

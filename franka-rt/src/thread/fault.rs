@@ -5,17 +5,17 @@ use franka_proto::DecodeError;
 use crate::exchange::SendError;
 use crate::sys;
 
-/// A datagram, a receive or a send that failed. The loop continues: the next state may be a good
-/// one.
+/// A datagram, a receive or a send that failed. The loop continues, because the next state may be
+/// good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkFault {
-    /// A datagram of the robot cannot be decoded. A datagram that is too short usually means a
-    /// server of another version.
+    /// A datagram of the robot cannot be decoded. A datagram that is too short usually means that
+    /// the server has another version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
-    /// A state was dropped: its number exceeds the newest by more than any robot's can (see
-    /// [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
+    /// A state was dropped: its number exceeds the newest number by more than is possible for a
+    /// robot (see [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
     #[error(
         "dropped the robot state number {got}, expected a number close to {newest}, the newest"
     )]
@@ -33,13 +33,12 @@ pub enum LinkFault {
     Send(#[from] SendError),
 }
 
-/// Passes the first of several equal faults in a row, so that a lasting one is reported once.
+/// Passes on the first of several equal faults in a row, so that a lasting fault is reported once.
 #[derive(Debug, Default)]
 pub(super) struct Latch(Option<LinkFault>);
 
 impl Latch {
-    /// Takes the fault of a cycle, if there was one, and returns it if it differs from the previous
-    /// fault.
+    /// Returns the fault of a cycle, if there was one, and if it differs from the previous fault.
     pub(super) fn pass(&mut self, fault: Option<LinkFault>) -> Option<LinkFault> {
         let news = if self.0 == fault { None } else { fault };
         self.0 = fault;

@@ -1,4 +1,4 @@
-//! The thread as seen from outside.
+//! The control thread as seen from outside.
 
 use core::time::Duration;
 use std::any::Any;
@@ -24,44 +24,44 @@ use crate::thread::{Core, Lender, LinkFault};
 /// and may be moved out.
 #[derive(Debug)]
 pub struct Handle<C: Core = Driver> {
-    /// Orders for the core. The thread takes them with the next state, or within
+    /// Orders for the core. The thread reads them with the next state, or within
     /// [`crate::exchange::TICK`] while the robot is silent.
     pub orders: Sender<C::Order>,
     /// Reports of the core and the loop, oldest first.
     pub notices: Receiver<Notice<C::Event, C::Record>>,
-    /// One record per state, oldest first. When the queue is full they are lost, and counted in
-    /// [`Stats::records_lost`].
+    /// One record per state, oldest first. Records that find the queue full are lost, and counted
+    /// in [`Stats::records_lost`].
     pub records: Receiver<C::Record>,
     /// The newest state.
     pub states: StateReader,
-    /// All states, oldest first. When the queue is full they are lost, and counted in
+    /// All states, oldest first. States that find the queue full are lost, and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Attaches readers of every cycle while the thread runs.
+    /// Attaches readers of all cycles while the thread runs.
     pub cycles: CycleFeed<C::Record>,
-    /// Notified after every cycle that left a notice, or a state while wake-ups are requested;
-    /// after every fiftieth state without a request; and when the thread ends.
+    /// Wakes the listener: after every cycle that left a notice, or a state while wake-ups are
+    /// requested; after every fiftieth state without a request; and when the thread ends.
     pub event_fd: EventFd,
-    /// Flag whether a wake-up is sent for every state; initially true.
+    /// Flag that requests a wake-up for every state; initially true.
     pub state_wakeups: StateWakeups,
     /// Counts and times of the loop.
     pub stats: Arc<Stats>,
     /// Result of the thread's requests to the operating system.
     pub granted: Granted,
-    /// Lends the cycle to threads of the user's.
+    /// Lends the cycle to threads of the user.
     pub lender: Lender<C>,
-    /// Stops the thread, on drop at the latest.
+    /// Stops the thread, at the latest when dropped.
     pub thread: Thread<C>,
 }
 
 /// Report of the thread.
 #[derive(Debug)]
 pub enum Notice<E, R = Record> {
-    /// An event of the core. None is lost: they wait in the core while the queue is full.
+    /// An event of the core. None is lost: events wait in the core while the queue is full.
     Core(E),
-    /// A fault of the link. Reported when it begins, not in every cycle that it lasts.
+    /// A fault of the link. Reported once when it begins, not in every cycle.
     Link(LinkFault),
-    /// A reader of cycles was dropped. This has the memory of its ring.
+    /// A reader of cycles was dropped. The notice carries the memory of its ring.
     Detached(CycleWriter<R>),
 }
 
@@ -74,27 +74,27 @@ pub struct Thread<C> {
 }
 
 impl<C> Thread<C> {
-    /// Asks the thread to stop. It does so before its next cycle, within [`crate::exchange::TICK`]
-    /// if the robot is silent. A motion that runs is not finished first: the robot will miss its
-    /// commands.
+    /// Asks the thread to stop. The thread stops before its next cycle, within
+    /// [`crate::exchange::TICK`] if the robot is silent. A running motion is not finished first:
+    /// the robot will miss its commands.
     pub fn stop(&self) {
         self.shared.ask_to_stop();
     }
 
     /// True if the loop has ended, because it was stopped or because the core panicked. The eventfd
-    /// is notified afterwards.
+    /// is notified after the end.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
     }
 
-    /// The link timeout, if a thread that has borrowed the cycle has not run it for that long.
-    /// While that lasts no state is received or published, and the loss of the link goes unseen.
-    /// The eventfd is notified after this has changed.
+    /// Returns the link timeout if a thread that has borrowed the cycle has not run it for that
+    /// long. Meanwhile no state is received or published, and the loss of the link goes unseen. The
+    /// eventfd is notified after each change.
     pub fn stalled(&self) -> Option<Duration> {
         self.shared.is_stalled().then_some(self.link_timeout)
     }
 
-    /// Stops the thread, waits for it and returns the core. Blocks for a cycle or a tick; from
+    /// Stops the thread, waits for its end and returns the core. Blocks for a cycle or a tick: in
     /// async code, call it where blocking is allowed.
     ///
     /// # Errors
@@ -118,22 +118,22 @@ impl<C> Drop for Thread<C> {
     }
 }
 
-/// Reason why an ended thread has no core to give back.
+/// Reason why an ended thread has no core to return.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Lost {
-    /// The core panicked, which ended the thread: no command is sent any more. A defect; the
-    /// process continues.
+    /// The core panicked, which ended the thread: no command is sent any more. This is a defect;
+    /// the process continues.
     #[error("the control thread panicked: {message}")]
     Panicked {
         /// The message of the panic.
         message: String,
     },
-    /// The cycle was lent when the thread was stopped, and ends with its [`Lease`](super::Lease).
+    /// The cycle was lent when the thread was stopped. It ends with its [`Lease`](super::Lease).
     #[error("another thread had borrowed the control cycle and did not return it")]
     Lent,
-    /// The core panicked in a thread that had borrowed the cycle, which ended the control thread. A
-    /// defect; the process continues.
+    /// The core panicked in a thread that had borrowed the cycle, which ended the control thread.
+    /// This is a defect; the process continues.
     #[error("the control cycle panicked in a thread that had borrowed it")]
     Spoilt,
 }
@@ -164,10 +164,10 @@ pub struct StateReader {
 }
 
 impl StateReader {
-    /// The newest state, if this reader has not returned it yet. Never waits.
+    /// Returns the newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// `None` also if this thread was delayed in the middle of each of a few attempts; another
-    /// wake-up follows then.
+    /// Also returns `None` if this thread was delayed in the middle of each of a few attempts;
+    /// another wake-up follows then.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.
@@ -179,7 +179,7 @@ impl StateReader {
     }
 }
 
-/// Takes the states that the thread has received, each once and in order.
+/// Receives the states of the thread, each once and in order.
 #[derive(Debug)]
 pub struct StateSequence {
     pub(super) queue: Receiver<Datagram>,
@@ -188,15 +188,15 @@ pub struct StateSequence {
 }
 
 impl StateSequence {
-    /// The oldest state that has not been taken. Never waits.
+    /// Removes and returns the oldest state. Never waits.
     pub fn pop(&mut self) -> Option<RobotState> {
         let datagram = self.queue.pop()?;
         // The thread passes on only what it has decoded itself.
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
 
-    /// The number of states not taken yet. Each was readable as the newest state before it counts
-    /// here.
+    /// Returns the number of waiting states. Each of them was readable as the newest state before
+    /// it counts here.
     pub fn waiting(&self) -> usize {
         self.queue.waiting()
     }
@@ -207,7 +207,8 @@ impl StateSequence {
     }
 }
 
-/// Attempts to read. One fails if this thread is delayed until the state has been replaced twice.
+/// Attempts to read. One attempt fails if this thread is delayed until the state was replaced
+/// twice.
 const ATTEMPTS: usize = 16;
 
 /// The bytes of a state, at the front of the array. Each reader decodes them, which saves the
@@ -218,7 +219,7 @@ pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
 impl Datagram {
     pub(super) const ZERO: Self = Self([0; RobotState::MAX_SIZE]);
 
-    /// Takes the bytes of a state over; the rest stays as it was.
+    /// Copies the bytes of a state into the front; the rest stays as it was.
     pub(super) fn set(&mut self, state: &[u8]) {
         self.0[..state.len()].copy_from_slice(state);
     }

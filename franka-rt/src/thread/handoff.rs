@@ -6,7 +6,7 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! Nothing here knows the value that is lent: `tests/loom` includes this file and explores the
+//! This file does not depend on the type of the value: `tests/loom` includes it and explores the
 //! hand-overs.
 
 use std::sync::PoisonError;
@@ -31,26 +31,26 @@ pub(super) struct Handoff<T> {
     tick: Duration,
 }
 
-/// Place of the value.
+/// Place of the value at present.
 enum HandoffState<T> {
-    /// With its owner.
+    /// The owner has the value.
     Running,
-    /// On its way to a borrower.
+    /// The value is on its way to a borrower.
     Offered(T),
-    /// With a borrower.
+    /// A borrower has the value.
     Lent,
-    /// On its way back.
+    /// The value is on its way back.
     Returned(T),
-    /// Destroyed: the owner has ended, or a borrower has left it invalid.
+    /// The value is destroyed: the owner has ended, or a borrower has left the value invalid.
     Ended,
 }
 
-/// Reason why a value that was lent does not come back.
+/// Reason why a lent value does not come back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NotReturned {
-    /// The owner stopped waiting: the borrower still has it.
+    /// The owner stopped waiting while the borrower still has the value.
     Lent,
-    /// The borrower has left it invalid.
+    /// The borrower has left the value invalid.
     Spoilt,
 }
 
@@ -58,7 +58,7 @@ pub(super) enum NotReturned {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BorrowError {
-    /// Another borrower has it.
+    /// Another borrower has the cycle.
     #[error("another thread runs the control cycle")]
     Lent,
     /// The control thread has ended.
@@ -67,7 +67,8 @@ pub enum BorrowError {
 }
 
 impl<T> Handoff<T> {
-    /// A handoff whose owner, while it waits for its value, polls the stop flag every `tick`.
+    /// Returns a handoff whose owner, while it waits for its value, polls the stop flag every
+    /// `tick`.
     pub(super) fn new(tick: Duration) -> Self {
         Self {
             wanted: AtomicBool::new(false),
@@ -77,13 +78,13 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// True if a borrower waits. Relaxed: the hand-over itself goes through the lock.
+    /// True if a borrower waits. Relaxed: the hand-over itself is ordered by the lock.
     pub(super) fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }
 
-    /// Offers the owner's value to a borrower and returns it when it is back. Asks `stop_wanted`
-    /// every tick whether to stop waiting.
+    /// Offers the owner's value to a borrower and returns the value when it is back. Asks
+    /// `stop_wanted` every tick whether to stop waiting.
     pub(super) fn lend(
         &self,
         value: T,
@@ -109,7 +110,7 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// The owner refuses all further borrowers.
+    /// Makes the owner refuse all further borrowers.
     pub(super) fn close(&self) {
         let mut state = self.lock();
         // A value that a borrower has brought back meanwhile is freed here, after the last turn.
@@ -136,7 +137,7 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// Gives back the borrowed value; `None` if it must not be used any more.
+    /// Returns the borrowed value to the owner; `None` if it must not be used any more.
     pub(super) fn give_back(&self, value: Option<T>) {
         let mut state = self.lock();
         *state = match (&*state, value) {

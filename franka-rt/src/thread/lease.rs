@@ -1,13 +1,13 @@
-//! The cycle, lent to a thread of the program.
+//! The cycle of the control thread, lent to a thread of the program.
 //!
 //! ```text
 //!             borrow                        drop
 //!   Running ----------> Lent (this thread waits) ------> Running
 //! ```
 //!
-//! The thread hands the cycle over between two turns and waits until it comes back, or until it is
-//! asked to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn takes
-//! none, on either thread.
+//! The thread passes the cycle on between two turns and waits until the cycle comes back, or until
+//! the thread is asked to stop. The lock of the [`Handoff`] is taken only at the two hand-overs; a
+//! turn takes no lock, on either thread.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::control::{Command, WriteError};
 use crate::driver::Driver;
 use crate::exchange::SendError;
 
-/// Lends the cycle of one thread. Clones lend the same one.
+/// Lends the cycle of one thread. Clones lend the same cycle.
 pub struct Lender<C: Core = Driver> {
     handoff: Arc<Handoff<Box<Cycle<C>>>>,
 }
@@ -30,8 +30,8 @@ impl<C: Core> Lender<C> {
         Self { handoff }
     }
 
-    /// Takes the cycle over from its thread. Blocks until the thread has finished its turn: a
-    /// cycle, or a [`TICK`](crate::exchange::TICK) while the robot is silent.
+    /// Borrows the cycle from its thread. Blocks until the thread has finished its turn: a cycle,
+    /// or a [`TICK`](crate::exchange::TICK) while the robot is silent.
     ///
     /// # Errors
     /// [`BorrowError`].
@@ -56,30 +56,30 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
     }
 }
 
-/// The cycle of a control thread, borrowed by another thread. Dropping it gives it back.
+/// The cycle of a control thread, borrowed by another thread. Dropping the lease returns the cycle.
 ///
-/// While it exists, states are read, published and counted in its turns and nowhere else. If it
-/// runs no turn for the link timeout, that is reported by
-/// [`Thread::stalled`](super::Thread::stalled).
+/// While the lease exists, states are read, published and counted only in its turns. If it runs no
+/// turn for the link timeout, [`Thread::stalled`](super::Thread::stalled) reports this.
 ///
-/// A panic of the borrowing thread gives it back as well. Only if the core itself panics, in a
-/// [`turn`](Self::turn) or a [`write`](Lease::write), is the cycle destroyed and the thread ended.
+/// A panic of the borrowing thread returns the cycle as well. If the core itself panics, in a
+/// [`turn`](Self::turn) or a [`write`](Lease::write), the cycle is destroyed and the control thread
+/// ends.
 pub struct Lease<C: Core = Driver> {
     handoff: Arc<Handoff<Box<Cycle<C>>>>,
-    /// `None` only while it is dropped.
+    /// The cycle; `None` only while the lease is being dropped.
     cycle: Option<Box<Cycle<C>>>,
-    /// True while a method of the core is being called, or if one has panicked.
+    /// True while a method of the core is being called, or if such a call has panicked.
     is_unsound: bool,
 }
 
 impl<C: Core> Lease<C> {
-    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK). Then it
-    /// does the work of the thread: orders, the core, the command that this answers with at once if
-    /// there is one, publishing. `None` if none came.
+    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK). Then does
+    /// the work of the thread: orders, the core, sending the core's command if there is one,
+    /// publishing. Returns `None` if no state came.
     ///
     /// # Errors
-    /// [`BorrowError::Ended`] if the thread was asked to stop, or the core has panicked: give the
-    /// cycle back.
+    /// [`BorrowError::Ended`] if the thread was asked to stop, or the core has panicked: drop the
+    /// lease then.
     pub fn turn(&mut self) -> Result<Option<RobotState>, BorrowError> {
         if self.cycle().lifetime.stop_wanted() || self.is_unsound {
             return Err(BorrowError::Ended);
@@ -88,7 +88,7 @@ impl<C: Core> Lease<C> {
         Ok(self.guarded(|cycle| cycle.turn().then(|| cycle.state()).flatten()))
     }
 
-    /// Calls methods of the core. If one panics, the cycle counts as unsound from then on.
+    /// Calls methods of the core. If a call panics, the cycle counts as unsound from then on.
     fn guarded<T>(&mut self, call: impl FnOnce(&mut Cycle<C>) -> T) -> T {
         self.is_unsound = true;
         let returned = call(self.cycle());
@@ -96,7 +96,7 @@ impl<C: Core> Lease<C> {
         returned
     }
 
-    /// The core, read-only.
+    /// Returns the core, read-only.
     pub fn core(&self) -> &C {
         let cycle = self.cycle.as_ref();
         &cycle.expect("it is there until the drop").core
@@ -111,10 +111,10 @@ impl<C: Core> Lease<C> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteFault {
-    /// The motion refused it.
+    /// The motion refused the command.
     #[error(transparent)]
     Refused(#[from] WriteError),
-    /// The send failed.
+    /// The command could not be sent.
     #[error(transparent)]
     Link(#[from] SendError),
 }

@@ -1,7 +1,7 @@
 //! Flags that the thread and its owner share.
 //!
-//! Nothing here knows the thread: `tests/loom` includes this file and explores the order that the
-//! flags impose.
+//! This file does not depend on the thread: `tests/loom` includes it and explores the order that
+//! the flags impose.
 
 #[cfg(not(loom))]
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,18 +9,20 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[cfg(loom)]
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Flags: a stop is requested, the thread has ended, the borrower of its cycle does not run it.
+/// Flags: a stop is requested, the thread has ended, the borrower of its cycle does not run the
+/// cycle.
 #[derive(Debug, Default)]
 pub(super) struct Lifetime {
     stop: AtomicBool,
     ended: AtomicBool,
-    /// Turns that borrowers have run.
+    /// Number of turns that borrowers have run.
     turns: AtomicU64,
     stalled: AtomicBool,
 }
 
 impl Lifetime {
-    /// Relaxed here and in [`Self::stop_wanted`]: no other memory is read depending on this flag.
+    /// Requests a stop. Relaxed here and in [`Self::stop_wanted`]: no other memory is read
+    /// depending on this flag.
     pub(super) fn ask_to_stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
@@ -29,8 +31,8 @@ impl Lifetime {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Release, pairs with the Acquire in [`Self::has_ended`]: a reader that sees the end also sees
-    /// the thread's last writes.
+    /// Notes the end of the thread. Release, pairs with the Acquire in [`Self::has_ended`]: a
+    /// reader that sees the end also sees the thread's last writes.
     pub(super) fn note_end(&self) {
         self.ended.store(true, Ordering::Release);
     }
@@ -40,7 +42,8 @@ impl Lifetime {
     }
 
     /// Counts a turn of a borrower, which ends a stall. There is one borrower at a time, so a load
-    /// and a store do. Relaxed, as all below: no other memory is read depending on these values.
+    /// and a store are enough. Relaxed, as all below: no other memory is read depending on these
+    /// values.
     pub(super) fn note_turn(&self) {
         let turns = self.turns.load(Ordering::Relaxed);
         self.turns.store(turns.wrapping_add(1), Ordering::Relaxed);
@@ -51,7 +54,7 @@ impl Lifetime {
         self.turns.load(Ordering::Relaxed)
     }
 
-    /// Returns whether this is a change.
+    /// Sets the flag of a stall. Returns true if this is a change.
     pub(super) fn set_stalled(&self, stalled: bool) -> bool {
         self.stalled.swap(stalled, Ordering::Relaxed) != stalled
     }

@@ -8,18 +8,18 @@ use crate::shaping::{CYCLE, InvalidCommand, hi, lo};
 /// Bounds on the motion of one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisBounds {
-    /// Greatest velocity, `[rad/s]` or `[m/s]`; negative where the axis must turn back.
+    /// Greatest velocity, `[rad/s]` or `[m/s]`; negative if the axis must turn back.
     pub upper_velocity: f64,
-    /// Least velocity, in the same unit; positive where the axis must turn back.
+    /// Least velocity, in the same unit; positive if the axis must turn back.
     pub lower_velocity: f64,
-    /// Acceleration in both directions, per second.
+    /// Bound of the acceleration in both directions, per second.
     pub acceleration: f64,
-    /// Jerk in both directions, per second squared.
+    /// Bound of the jerk in both directions, per second squared.
     pub jerk: f64,
 }
 
 impl AxisBounds {
-    /// The same bounds in both directions.
+    /// Returns the same bounds in both directions.
     pub const fn symmetric(limits: &MotionLimits) -> Self {
         Self {
             upper_velocity: limits.velocity,
@@ -37,14 +37,14 @@ pub struct JointBounds {
     pub upper_velocity: [f64; 7],
     /// Least velocities, `[rad/s]`.
     pub lower_velocity: [f64; 7],
-    /// Accelerations in both directions, `[rad/s^2]`.
+    /// Bounds of the accelerations in both directions, `[rad/s^2]`.
     pub acceleration: [f64; 7],
-    /// Jerks in both directions, `[rad/s^3]`.
+    /// Bounds of the jerks in both directions, `[rad/s^3]`.
     pub jerk: [f64; 7],
 }
 
 impl JointBounds {
-    /// Bounds of joint `i`, from 0.
+    /// Returns the bounds of joint `i`, from 0.
     fn joint(&self, i: usize) -> AxisBounds {
         AxisBounds {
             upper_velocity: self.upper_velocity[i],
@@ -55,7 +55,7 @@ impl JointBounds {
     }
 }
 
-/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`; also of any seven numbers to
+/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`. Works for any seven numbers and
 /// their greatest derivative.
 ///
 /// # Errors
@@ -73,20 +73,21 @@ pub fn torques(
     }))
 }
 
-/// Returns `command`, as far from `last` as `max_rate` allows in a cycle, and whether that limited
-/// it.
+/// Returns `command`, moved away from `last` by at most what `max_rate` allows in a cycle, and true
+/// if that changed it.
 pub(crate) fn limit_rate(command: f64, last: f64, max_rate: f64) -> (f64, bool) {
     let rate = (command - last) / CYCLE;
     let limited = hi(lo(rate, max_rate), -max_rate);
     (last + limited * CYCLE, limited != rate)
 }
 
-/// A torque rate, `[N m/s]`, that keeps `max_rate` also where the last torque is known as its `f32`
-/// echo only.
+/// Returns a torque rate, `[N m/s]`, that keeps `max_rate` even if the last torque is only known as
+/// its `f32` echo.
 ///
 /// A robot of protocol 10 sends its last torque as an `f32`, but judges the rate against the `f64`
-/// that it received: half a step of the `f32` less per cycle. At 80 N m that is 5e-3 N m/s, more
-/// than the margin of libfranka, whose limiter does not know this.
+/// that it received. The rate therefore has to be lower by half a step of the `f32` per cycle. At
+/// 80 N m that is 5e-3 N m/s, more than the margin of libfranka, whose limiter does not consider
+/// this.
 pub fn within_echo(max_rate: f64, last: f64) -> f64 {
     let echo_error = f64::from(f32::EPSILON) * last.abs() / 2.0;
     hi(max_rate - echo_error / CYCLE, 0.0)
@@ -113,7 +114,7 @@ pub fn velocity(
     ))
 }
 
-/// Limits a position by the velocity that leads there from `last_position`.
+/// Limits a position by the velocity from `last_position` to it.
 ///
 /// # Errors
 /// [`InvalidCommand::Position`] if `command` is not finite.
@@ -136,7 +137,7 @@ pub fn position(
     ))
 }
 
-/// Limits joint velocities, each on its own, `[rad/s]`.
+/// Limits each joint velocity independently, `[rad/s]`.
 ///
 /// # Errors
 /// [`InvalidCommand::JointVelocities`] if a velocity of `command` is not finite.
@@ -159,7 +160,7 @@ pub fn joint_velocities(
     }))
 }
 
-/// Limits joint positions, each on its own, `[rad]`.
+/// Limits each joint position independently, `[rad]`.
 ///
 /// # Errors
 /// [`InvalidCommand::JointPositions`] if a position of `command` is not finite.
@@ -184,9 +185,9 @@ pub fn joint_positions(
     }))
 }
 
-/// The acceleration is bounded by the jerk first, then so that the velocity stays below its upper
-/// bound, and finally so that it stays above its lower bound. Near a bound the acceleration falls
-/// in proportion to the distance, at the rate that the jerk allows.
+/// Limits a velocity. The acceleration is bounded by the jerk first, then so that the velocity
+/// stays below its upper bound, and finally so that it stays above its lower bound. Near a bound
+/// the acceleration falls in proportion to the distance, at the rate that the jerk allows.
 fn limit_velocity(
     bounds: &AxisBounds,
     command: f64,
