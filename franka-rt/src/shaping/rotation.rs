@@ -47,10 +47,10 @@ pub(crate) fn pose(
     ]
 }
 
-/// Returns the rotation nearest to a matrix: the orthogonal factor of its polar decomposition, with
-/// its sign changed if the matrix mirrors.
+/// Returns the rotation nearest to a matrix: the orthogonal factor of its polar decomposition, or
+/// the nearest proper rotation if that factor mirrors.
 ///
-/// Returns NaN if an element is not finite.
+/// Any finite matrix has a result; NaN if an element is not finite.
 fn nearest_rotation(block: &Matrix3<f64>) -> Matrix3<f64> {
     polished(*block).unwrap_or_else(|| procrustes(block))
 }
