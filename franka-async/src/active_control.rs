@@ -168,7 +168,8 @@ impl<C> Active<C> {
         loop {
             let lease = self.lease()?;
             let turned = lease.turn();
-            // The motion, or the thread, has ended for the cycle: the bridge has the cause.
+            // The cycle no longer runs the motion, or the thread has ended: the bridge has the
+            // cause.
             let is_over = turned.is_err() || lease.core().is_watching();
             let outcome = match self.given_up() {
                 None => is_over.then(|| self.end()),
@@ -243,7 +244,7 @@ impl<C> Active<C> {
 
     /// Gives the cycle back and stops the robot, unless the motion has ended.
     fn stop(&mut self) {
-        // The cycle goes back first, so that the thread ends the motion.
+        // Return the cycle first, so that the thread ends the motion.
         self.lease = None;
         if let Some(outcome) = self.outcome.take()
             && outcome.now_or_never().is_none()

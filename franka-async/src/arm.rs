@@ -273,7 +273,7 @@ impl Arm {
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn at_rest(&self) -> Result<(), MotionError> {
-        // Goals that were set before are taken first, however long that task is delayed.
+        // The bridge accepts earlier goals first, however long its task is delayed.
         self.session.ask(|taken| Input::Await { taken }).await?;
         let link = self.session.link();
         let mut states = self.robot().states();
@@ -294,7 +294,7 @@ impl Arm {
                     return;
                 }
             }
-            // The connection has ended, and with it the session.
+            // The connection has ended, and the session with it.
             std::future::pending().await
         };
         tokio::select! {

@@ -217,7 +217,7 @@ impl AsynchronousControl {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Targets> {
-        // Nothing in here can be half-finished.
+        // No panic can leave the writer half-finished.
         self.targets.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

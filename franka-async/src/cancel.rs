@@ -45,7 +45,7 @@ impl Canceller {
     /// has no effect after the motion has ended or was superseded.
     pub fn cancel(&self) {
         self.cancelled.cancel();
-        // A robot that is gone has braked its motions.
+        // If the robot is gone, its motions have been braked.
         if let Some(robot) = self.robot() {
             robot.cancel(self.id);
         }
@@ -55,7 +55,7 @@ impl Canceller {
     pub(crate) fn set_paused(&self, paused: bool) {
         let mut wanted = self.lock_paused();
         *wanted = paused;
-        // Without effect on a motion that has not begun.
+        // The input has no effect on a motion that has not begun.
         let goal = self.id;
         if let Some(robot) = self.robot() {
             robot.send(Input::Pause { goal, paused });
@@ -63,7 +63,7 @@ impl Canceller {
     }
 
     fn lock_paused(&self) -> MutexGuard<'_, bool> {
-        // Nothing panics while it is held.
+        // Nothing panics while the lock is held.
         self.paused.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -86,15 +86,15 @@ impl Canceller {
         if self.cancelled.is_cancelled() {
             return None;
         }
-        // A pause that comes now is sent after the motion.
+        // The lock makes a pause that comes now wait until the motion is sent.
         let paused = self.lock_paused();
         if let NewMotion::Goal { goal, .. } = &mut motion.motion {
             goal.paused = *paused;
         }
         let outcome = robot.begin(motion);
         drop(paused);
-        // `cancel` sets the token before it sends: if its input came before the motion, and so had
-        // no effect, the token is set here.
+        // `cancel` sets the token before it sends its input. If the input came before the motion,
+        // it had no effect, but the token is set here.
         if self.cancelled.is_cancelled() {
             robot.cancel(self.id);
         }

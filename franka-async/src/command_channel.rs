@@ -122,7 +122,7 @@ impl Channel {
     ) -> (Self, Connection, mpsc::UnboundedReceiver<Report>) {
         let (calls, queue) = mpsc::channel(CAPACITY);
         let (motions, first) = mpsc::unbounded_channel();
-        // Unbounded, and yet bounded: two replies per motion, and motions follow one another.
+        // Unbounded, but in practice short: two replies per motion, and motions follow one another.
         let (reports, inbox) = mpsc::unbounded_channel();
         let closing = Closing::default();
         let task = CommandTask {
@@ -256,7 +256,8 @@ impl CommandTask {
             reason = self.serve(&mut queues) => reason,
             () = close.cancelled() => CloseReason::ClosedByUs,
         };
-        // Noted before the queues close: a caller that finds them closed finds the reason, too.
+        // Note the reason before the queues close: a caller that finds them closed then finds the
+        // reason.
         let reason = closing.note(reason);
         drop(queues);
         for (_, waiting) in self.pending.drain() {
@@ -300,7 +301,7 @@ impl CommandTask {
                         return reason;
                     }
                 }
-                // Without room for its answer, a call waits in the queue.
+                // If there is no room for its answer, a call waits in the queue.
                 call = calls.recv(), if self.session.pending() < CALLS => match call {
                     Some(call) => {
                         if let Err(reason) = self.on_call(call).await {
@@ -396,7 +397,7 @@ impl CommandTask {
                 ..
             }) = motion
             {
-                // Fails only when the bridge has ended, and with it the motion.
+                // This fails only if the bridge has ended, and the motion with it.
                 let _ = self.reports.send(Report::Move { motion, status });
             }
             return;

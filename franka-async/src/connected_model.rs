@@ -102,7 +102,7 @@ mod library {
         pub async unsafe fn model_library(&self) -> Result<ModelLibrary, ModelLibraryError> {
             let architecture = host_architecture().ok_or(LibraryError::Architecture)?;
             let bytes = self.load_model_library(architecture, System::Linux).await?;
-            // SAFETY: the caller vouches for the library that the robot sends.
+            // SAFETY: the caller guarantees that the library of the robot may be loaded.
             Ok(unsafe { ModelLibrary::load(&bytes) }?)
         }
     }

@@ -321,7 +321,8 @@ struct DeviceTask<D: Device> {
 impl<D: Device> DeviceTask<D> {
     async fn run(mut self, mut calls: mpsc::UnboundedReceiver<QueuedAction<D>>, closing: Closing) {
         let Err(reason) = self.serve(&mut calls).await;
-        // Noted before the answers are dropped: a caller that finds them dropped finds the reason.
+        // Note the reason before the answers are dropped: a caller that finds them dropped then
+        // finds it.
         closing.note(reason);
     }
 
@@ -363,7 +364,7 @@ impl<D: Device> DeviceTask<D> {
         &mut self,
         QueuedAction { request, answer }: QueuedAction<D>,
     ) -> Result<(), CloseReason> {
-        // Its future was dropped before it was sent. A stop is still sent.
+        // The caller's future was dropped before its request was sent. A stop is still sent.
         if answer.is_closed() && request != D::STOP {
             return Ok(());
         }
@@ -428,7 +429,7 @@ impl<D: Device> DeviceTask<D> {
 
     /// Routes one message. An error ends the connection.
     fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation<D::Command>> {
-        // The states that were sent before an answer show its result.
+        // Read first the states that were sent before this answer: they show its result.
         let mut buffer = [0; DATAGRAM_SIZE];
         for _ in 0..DATAGRAMS {
             match self.socket.try_recv_from(&mut buffer) {

@@ -43,8 +43,8 @@ pub(crate) async fn resolve<P: Protocol>(
             addresses.push(address);
         }
     }
-    // The reference client knows nothing but IPv4: this is how a robot is reached, and an IPv6
-    // address a special case.
+    // The reference client supports only IPv4. Robots are therefore reached by IPv4, and an IPv6
+    // address is a special case.
     addresses.sort_by_key(SocketAddr::is_ipv6);
     if addresses.is_empty() {
         return Err(network("No address found"));

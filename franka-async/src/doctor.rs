@@ -114,7 +114,7 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
             missing or late")
         });
     };
-    // Outside of a runtime there are no threads for it.
+    // Without a runtime there are no threads for blocking work.
     if world::has_runtime() {
         world::spawn_blocking(look);
     }

@@ -190,7 +190,7 @@ fn parse_host(host: &str, text: &str) -> Result<Host, EndpointError> {
     if let Ok(address) = host.parse::<Ipv4Addr>() {
         return Ok(Host::Address(address.into(), 0));
     }
-    // The system would take `172.16.2`, a mistyped address, as 172.16.0.2.
+    // The system would read `172.16.2`, a mistyped address, as 172.16.0.2.
     if host
         .bytes()
         .all(|byte| byte.is_ascii_digit() || byte == b'.')

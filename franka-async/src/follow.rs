@@ -179,7 +179,7 @@ impl Follow {
                 next = newest(&mut targets) => next,
             };
             let Some(target) = next else {
-                // The last target may have come just before the end.
+                // The last target may have arrived just before the end of the stream.
                 robot.send(Input::Close { goal: moving.id() });
                 return moving.await;
             };
@@ -189,13 +189,14 @@ impl Follow {
                 target,
                 taken,
             });
-            // Not taken, or no answer: the goal is over, and the motion itself reports why.
+            // The target was not accepted, or there was no answer. The goal has ended, and the
+            // motion itself reports the reason.
             if let Ok(Err(error)) = answer.await {
                 robot.send(Input::Cancel {
                     goal: moving.id(),
                     refused: Some(error),
                 });
-                // Braked first: once the error is returned, the arm rests.
+                // Brake first, so that the arm rests once the error is returned.
                 return moving.await;
             }
         }

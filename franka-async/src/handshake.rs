@@ -34,7 +34,7 @@ pub(crate) async fn shake_hands<P: Protocol>(
         match session.on_message(frame.message())? {
             Event::Connected { .. } => return Ok(()),
             Event::Incompatible(refusal) => return Err(refusal.into()),
-            // Not for us; the answer may still come, until the time is up.
+            // This message is not the answer, which may still come until the time is up.
             _ => {}
         }
     }

@@ -162,7 +162,7 @@ impl Waiting {
     }
 
     fn lock(&self) -> MutexGuard<'_, Option<Box<Beginning>>> {
-        // Nothing can panic while it is held.
+        // Nothing can panic while the lock is held.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -184,7 +184,7 @@ impl Journal {
     /// Writes an entry for a new connection, and gives its readers the cycles from now on, even if
     /// a reader takes the entry much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
-        // Attaching takes memory, for which no caller should wait at the lock.
+        // Attaching allocates memory, so do it without the lock: no caller should wait for it.
         for reader in self.with(|readers| readers.clone()) {
             if let Some(capacity) = reader.cycles {
                 let attached = cycles.attach(capacity);
@@ -246,7 +246,7 @@ impl Journal {
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut Vec<Reader>) -> T) -> T {
-        // Nothing can be half-finished in there.
+        // No panic can leave the readers half-finished.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -14,7 +14,7 @@ impl KeptTuning {
     }
 
     pub(crate) fn get(&self) -> Tuning {
-        // Nothing can panic while it is held.
+        // Nothing can panic while the lock is held.
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

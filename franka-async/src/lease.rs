@@ -159,7 +159,7 @@ impl Holder {
     /// Nothing happens if the future is dropped.
     pub async fn lost(&self) -> Lost {
         while let Some(left) = self.left(world::now().into_std()) {
-            // The silence itself is allowed.
+            // A silence of exactly the allowed length is still allowed.
             world::sleep(left.saturating_add(Duration::from_millis(1))).await;
         }
         self.lost_by()

@@ -53,8 +53,8 @@ impl Newest {
 
     /// Returns the newest state.
     pub(crate) fn state(&self) -> RobotState {
-        // Without one there is nothing newer than `first`; or the kernel has stopped this thread in
-        // the middle of each attempt.
+        // If nothing was read, nothing is newer than `first`, or the kernel has stopped this thread
+        // in the middle of each attempt.
         let newest = self.reader.clone().newest();
         newest.unwrap_or_else(|| {
             let publisher = self.publisher.upgrade();
@@ -65,7 +65,7 @@ impl Newest {
     /// Returns a receiver of the newest state and of its changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
         let Some(publisher) = self.publisher.upgrade() else {
-            // Closed from the outset.
+            // The connection has ended: return a closed channel.
             return watch::channel(self.state()).1;
         };
         let mut states = publisher.subscribe();

@@ -45,8 +45,8 @@ pub(crate) async fn open(
     states: &Arc<watch::Sender<RobotState>>,
     supervisor: &Arc<Supervisor>,
 ) -> Result<Opened, ConnectError> {
-    // Refused before anything is sent, as the reference client does; the thread asks again for
-    // itself.
+    // Check before anything is sent, as the reference client does. The thread makes its own
+    // requests later.
     let scheduling = builder.scheduling.clone();
     off_worker(move || scheduling.probe()).await??;
 

@@ -242,7 +242,7 @@ impl Robot {
             return Err(error);
         }
         note(&link.thresholds, &request);
-        // Closed: the next call reports it.
+        // If the connection has closed, the next call reports it.
         tokio::select! {
             biased;
             answer = shown(&link.newest, &request) => declared.answer = answer,
@@ -304,7 +304,7 @@ impl Again {
                     note(&self.thresholds, &request);
                     shown(&self.newest, &request).await
                 }
-                // The supervisor is notified of its end.
+                // The supervisor is notified of the end of the connection.
                 Err(CommandError::ConnectionClosed { .. }) => return,
                 Err(error) => answer_of(&explained(error, &request)),
             };
@@ -348,7 +348,7 @@ async fn shown(newest: &Newest, request: &Request) -> Answer {
     let is_last = |state: &RobotState| {
         difference(request, state).is_none() || state.message_id > answered + SHOWN_MS
     };
-    // A robot that rounds the numbers never shows them.
+    // A robot that rounds the numbers never shows exactly the set ones.
     let last = match timeout(SHOWN_WITHIN, states.wait_for(is_last)).await {
         Ok(Ok(state)) => *state,
         _ => newest.state(),

@@ -42,7 +42,7 @@ impl Robot {
             stop.defuse();
             return Ok(outcome);
         }
-        // It will never run: the outcome has the reason.
+        // The program will never run: the outcome has the reason.
         let outcome = outcome.await.unwrap_or_else(unserved);
         stop.defuse();
         Err(outcome.err().unwrap_or(MotionError::Stopped))

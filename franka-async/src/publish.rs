@@ -102,8 +102,8 @@ impl Publisher {
     /// bridge for every state.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Counted before the subscribers are: none of these is due to a subscriber that comes
-        // later.
+        // Count the states before the subscribers: none of these states is due to a subscriber that
+        // comes later.
         let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip(come);
@@ -142,7 +142,7 @@ impl Publisher {
     pub(crate) fn tell_silence(&self, silence: Duration) {
         let since = self.state().message_id;
         *lock(&self.silent) = Some(Silent { since, silence });
-        // Fails without subscribers. Later ones find the silence above.
+        // This fails without subscribers. Later subscribers find the silence above.
         let _ = self.listeners.updates.send(Update::Silence(silence));
     }
 }
@@ -180,14 +180,14 @@ impl Subscriptions {
 }
 
 fn lock(silent: &Mutex<Option<Silent>>) -> std::sync::MutexGuard<'_, Option<Silent>> {
-    // Nothing in there can be half-finished.
+    // No panic can leave the value half-finished.
     silent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn subscribe<T: Clone>(sender: &broadcast::WeakSender<T>) -> broadcast::Receiver<T> {
     match sender.upgrade() {
         Some(sender) => sender.subscribe(),
-        // Closed from the outset.
+        // The connection has ended: return a closed channel.
         None => broadcast::channel(1).1,
     }
 }

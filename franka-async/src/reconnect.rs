@@ -93,7 +93,7 @@ impl Reconnector {
                     done.push(ended);
                     self.close();
                 }
-                // The bridge sees both, too.
+                // The bridge sees both signals, too.
                 () = cancellation.cancelled(), if !self.is_closing => self.is_closing = true,
                 () = handles.cancelled(), if !self.is_closing => self.is_closing = true,
             }
@@ -102,7 +102,7 @@ impl Reconnector {
         while let Some(ended) = shutdowns.recv().await {
             done.push(ended);
         }
-        // Everything that ends with it ends before the waiting callers are notified.
+        // Drop all that ends with this task before the waiting callers are notified.
         drop(self);
         for ended in done {
             // Fails if the caller was dropped.
@@ -153,7 +153,7 @@ impl Reconnector {
             Ok(opened) => opened,
             Err(error) => return self.supervisor.on_connect_failed(failure(&error)),
         };
-        // Without handles no program needs it: dropping it closes it.
+        // Without handles no program needs the connection: dropping it closes it.
         let Some(robot) = self.robot.upgrade() else {
             return;
         };
@@ -164,7 +164,8 @@ impl Reconnector {
             return self.supervisor.on_connect_failed(failure);
         }
         let (link, first) = (Arc::new(opened.link), opened.first);
-        // Anew: a robot that was restarted counts from the beginning again.
+        // Replace the state, even by a lower number: a robot that was restarted counts from the
+        // beginning.
         self.states.send_replace(first);
         robot.set_link(link.clone());
         if self

@@ -118,7 +118,8 @@ impl Arm {
         while newest < course.end(plan) {
             if let Some(chunk) = course.due(plan, model, newest)? {
                 let goal = self.goal_within(chunk.target(), plan.budget());
-                // Before it is sent: dropped on the way, it would be followed to its end.
+                // Note the goal before it is sent. Otherwise, if the future is dropped meanwhile,
+                // the arm would follow the chunk to its end.
                 braking.goal.get_or_insert(goal.id);
                 if let Err(error) = self.send_chunk(goal, chunk).await {
                     return Err(self.over(error).into());
@@ -130,7 +131,7 @@ impl Arm {
                 ended = self.ended() => return Err(over(ended).into()),
                 reading = states.next() => match reading {
                     Some(reading) => reading,
-                    // The connection has ended, and with it the session.
+                    // The connection has ended, and the session with it.
                     None => return Err(over(self.ended().await).into()),
                 },
             };
@@ -205,7 +206,7 @@ impl<'a> BrakeOnDrop<'a> {
 
 impl Drop for BrakeOnDrop<'_> {
     fn drop(&mut self) {
-        // Another goal has taken over once its name is there.
+        // Once the goal's name was there, another name means that another goal has taken over.
         let goes_on = !self.is_taken || self.goal == self.arm.heading();
         if self.goal.is_some()
             && goes_on

@@ -310,12 +310,12 @@ impl Robot {
         let end = world::now() + RECONNECTED_WITHIN;
         while let Err(MotionError::ConnectionClosed { .. } | MotionError::LinkLost { .. }) = outcome
         {
-            // This may be awaited without a runtime.
+            // The caller may await this without a runtime.
             let connected = self.shared.runtime.spawn(connected(self.health(), end));
             if !connected.await.unwrap_or(false) {
                 break;
             }
-            // Never releases what another call has latched.
+            // Does not latch, and never releases what another call has latched.
             outcome = self.brake_once(false).await;
         }
         outcome
@@ -333,7 +333,7 @@ impl Robot {
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
-            // It rests by the newest state.
+            // The newest state shows an arm at rest.
             Err(_) => match link.silence() {
                 Some(silence) => Err(MotionError::LinkLost { silence }),
                 None => Ok(()),
@@ -350,7 +350,7 @@ impl Robot {
     pub async fn shutdown(&self) {
         let (reply, ended) = oneshot::channel();
         match &self.shared.shutdowns {
-            // Fails if the task has ended.
+            // The send fails if the task has ended.
             Some(shutdowns) => drop(shutdowns.send(reply)),
             None => drop(self.send(Input::Shutdown { ended: reply })),
         }
@@ -430,7 +430,7 @@ impl Robot {
     /// connection.
     pub(crate) fn link(&self) -> Arc<Link> {
         let link = self.shared.link.read();
-        // Nothing can panic while it is held.
+        // Nothing can panic while the lock is held.
         link.unwrap_or_else(PoisonError::into_inner).clone()
     }
 

@@ -124,7 +124,7 @@ impl Stream for StateStream {
         loop {
             let state = match ready!(self.updates.poll_next_unpin(context)) {
                 Some(Ok(Update::State(state))) => state,
-                // The next state will report how long it was.
+                // The next state will report the length of the gap.
                 Some(Ok(Update::Silence(_)) | Err(BroadcastStreamRecvError::Lagged(_))) => continue,
                 None => return Poll::Ready(None),
             };

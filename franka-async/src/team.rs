@@ -324,7 +324,7 @@ impl<const N: usize> Future for TeamMotion<N> {
         } = &mut *self;
         let (round, mut members, _first) = match std::mem::replace(stage, Stage::Over) {
             Stage::Ready(motions) => {
-                // Nothing of it can be left half done.
+                // No panic can leave the submission half done.
                 let first = submission.lock().unwrap_or_else(PoisonError::into_inner);
                 let round = coordinator.begin();
                 let members = motions.map(|motion| Err(motion.begin(round)));
@@ -337,7 +337,7 @@ impl<const N: usize> Future for TeamMotion<N> {
             if let Err(running) = member
                 && let Poll::Ready(outcome) = running.as_mut().poll(context)
             {
-                // The thread has reported it already, unless the goal never came to it.
+                // The thread has reported this already, unless the goal never reached it.
                 if outcome.is_err() {
                     coordinator.refuse(round, number);
                 }

@@ -55,7 +55,7 @@ impl Telemetry {
         if overruns == self.told {
             return;
         }
-        // Written before it is counted.
+        // The thread writes the cycle before it counts it.
         let Some(cycle) = self.stats.newest_overrun() else {
             return;
         };

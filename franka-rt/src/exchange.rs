@@ -167,13 +167,13 @@ impl Exchange {
                 Ok((length, sender)) => self.sort(length, sender, &mut reception),
                 Err(error) => {
                     match error.kind() {
-                        // Nothing there: after the wait, or at once.
+                        // The socket was empty: after the wait, or at once.
                         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                             if flags == 0 {
                                 reception.waited = self.wait;
                             }
                         }
-                        // A signal, or a stop of the process, came between.
+                        // A signal, or a stop of the process, interrupted the call.
                         io::ErrorKind::Interrupted => {}
                         _ => reception.error = error.raw_os_error(),
                     }
@@ -202,7 +202,7 @@ impl Exchange {
                 reception.stale += 1;
                 return;
             }
-            // Accepting it would make every state after it a stale one, for good.
+            // If this number were accepted, every later state would count as stale.
             Some(newest) if message_id - newest > LEAP_MAX => {
                 reception.leap = Some(message_id);
                 return;

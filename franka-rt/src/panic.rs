@@ -20,7 +20,7 @@ pub fn free<T>(value: T) -> Result<(), String> {
     freed.map_err(|payload| {
         let text = message(&*payload);
         let payload_freed = catch_unwind(AssertUnwindSafe(|| drop(payload)));
-        // A payload whose destructor panics as well: the next payload may do so again, without end.
+        // The payload's destructor panics as well. The next payload might do the same, without end.
         payload_freed.unwrap_or_else(core::mem::forget);
         text
     })

@@ -195,7 +195,7 @@ fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     }
     for i in 0..7 {
         let (speed, way) = (state.dq[i], state.q[i] - first.q[i]);
-        // A value that is not a number is no rest.
+        // A value that is not a number does not count as rest.
         if !(speed.abs() <= SPEED && way.abs() <= WAY) {
             let joint = i as u8 + 1;
             return Err(TareRefused::Moves { joint, speed, way });

@@ -254,7 +254,7 @@ impl Member {
     pub fn pass(&mut self, round: Round, now: u64) -> Passage {
         let since = match self.arrived {
             Some((arrived, since)) if arrived == round => since,
-            // Too late, or too early: its arrival in another round is kept.
+            // The call is too late or too early: the arrival in another round is kept.
             _ if !self.shared.look().is_going(round) => return self.passage(round),
             _ => {
                 self.arrived = Some((round, now));
@@ -435,7 +435,7 @@ impl Shared {
     fn keep(&self, stop: Word) {
         let order = Ordering::Relaxed;
         let mut kept = Word(self.stopped.load(order));
-        // Two threads may come here in the other order than to the word.
+        // Two threads may come here in another order than they changed the word.
         while stop.is_newer_than(kept) {
             match self.stopped.compare_exchange(kept.0, stop.0, order, order) {
                 Ok(_) => return,
@@ -448,8 +448,8 @@ impl Shared {
     fn change(&self, to: impl Fn(Word) -> Option<Word>) -> Word {
         let mut word = self.look();
         while let Some(next) = to(word) {
-            // Strong: it fails only if the word was changed meanwhile. In a round each member
-            // does that twice at most; other changes are calls from outside.
+            // Strong: the exchange fails only if the word was changed meanwhile. In a round each
+            // member changes the word at most twice; other changes are calls from outside.
             let order = Ordering::Relaxed;
             match self.word.compare_exchange(word.0, next.0, order, order) {
                 Ok(_) => {
@@ -506,7 +506,7 @@ impl Word {
     }
 
     fn next_round(self) -> Self {
-        // Four thousand million rounds later the numbers begin anew; 0 is none.
+        // After four thousand million rounds the numbers begin anew; 0 stands for no round.
         let round = ((self.0 >> 32) as u32).wrapping_add(1).max(1);
         Self(u64::from(round) << 32)
     }
@@ -537,7 +537,7 @@ impl Word {
     fn stopped(self, member: u8, cause: Cause) -> Self {
         let cause = match cause {
             Cause::Requested => REQUESTED,
-            // Every fault is in the list: see the test.
+            // Every fault is in the list, as the test checks.
             Cause::Member(fault) => FAULTS
                 .iter()
                 .position(|it| *it == fault)
@@ -575,7 +575,7 @@ const FAULTS: [MemberFault; 9] = [
     MemberFault::TimedOut,
 ];
 
-// The path also holds where `tests/loom` includes this file.
+// This path is also valid where `tests/loom` includes this file.
 #[cfg(all(test, not(loom)))]
 #[path = "team/tests.rs"]
 mod tests;

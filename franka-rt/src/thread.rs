@@ -182,7 +182,7 @@ pub fn spawn<C: Core>(
             Ok(granted)
         });
         let refused = answer.is_err();
-        // Cannot fail: the caller does nothing but wait for the answer.
+        // Cannot fail, because the caller only waits for the answer.
         let _ = granted.send(answer);
         drop(granted);
         let lifetime = cycle.lifetime.clone();

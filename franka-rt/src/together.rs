@@ -356,8 +356,8 @@ impl Shared {
         while let Word::Waiting { present } = Word::from(word)
             && present < self.members
         {
-            // Strong: it fails only if another member has changed the word, which each does twice
-            // at most.
+            // Strong: the exchange fails only if another member has changed the word, which each
+            // does at most twice.
             match self.word.compare_exchange(
                 word,
                 to(present).into(),
@@ -412,7 +412,7 @@ impl From<u64> for Word {
     }
 }
 
-// The path also holds where `tests/loom` includes this file.
+// This path is also valid where `tests/loom` includes this file.
 #[cfg(all(test, not(loom)))]
 #[path = "together/tests.rs"]
 mod tests;

@@ -40,7 +40,7 @@ impl Bridge {
     /// that no caller can cancel.
     pub(super) fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
-        // Before the motions resolve, so that the next call finds a lost connection.
+        // Report this before the motions resolve, so that the next call finds a lost connection.
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
         self.drop_plans(MotionError::ConnectionClosed { reason });
@@ -72,7 +72,7 @@ impl Bridge {
                         MotionError::ConnectionClosed { reason },
                     );
                 }
-                // A caller that waits for another answer sees the end by its closed channel.
+                // A caller that waits for another answer notices the end by its closed channel.
                 _ => {}
             }
         }
@@ -81,7 +81,7 @@ impl Bridge {
             connection.close().await;
         }
         if !self.ends().await {
-            // It continues without this connection: a thread cannot be ended from outside.
+            // The thread continues without this connection: it cannot be ended from outside.
             tracing::error!(
                 "the control thread did not end, because its control function did not return"
             );

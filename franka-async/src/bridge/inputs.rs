@@ -77,7 +77,7 @@ impl Bridge {
                 }
                 let _ = taken.send(tuned);
             }
-            // The future that waits may have been dropped.
+            // The waiting future may have been dropped.
             Input::Await { taken } => drop(taken.send(Ok(()))),
             Input::Disengage { id } => {
                 self.end_plans_of(id);
@@ -106,7 +106,7 @@ impl Bridge {
                     let span = tracing::info_span!("stop", goal = goal.0);
                     self.await_end(goal, Replies { began: None, ended }, span);
                 }
-                // Otherwise the arm rests already, and dropping `ended` reports it.
+                // Otherwise the arm rests already. Dropping `ended` reports this.
             }
             Input::Lose { reason } => self.lose(reason),
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),

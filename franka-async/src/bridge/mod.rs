@@ -285,7 +285,7 @@ impl Bridge {
                 Output::Began { id } => {
                     let caller = self.callers.get_mut(&id);
                     if let Some(began) = caller.and_then(|caller| caller.replies.began.take()) {
-                        // The future that began it may have been dropped.
+                        // The future that began the program may have been dropped.
                         let _ = began.send(());
                     }
                 }

@@ -51,7 +51,7 @@ pub(super) async fn planned(pending: &mut [Planning]) -> Result<Chunk, PathError
         Ok(planned) => planned,
         Err(failed) => match failed.try_into_panic() {
             Ok(panic) => resume_unwind(panic),
-            // The runtime ends, and this task with it.
+            // The runtime ends, and this task ends with it.
             Err(_) => std::future::pending().await,
         },
     }
@@ -174,7 +174,7 @@ impl Bridge {
         let taken: Vec<_> = self.planning.extract_if(.., |plan| of(plan)).collect();
         let any = !taken.is_empty();
         for planning in taken {
-            // The thread may compute on; its result is dropped.
+            // The thread may continue to compute; its result is dropped.
             planning.task.abort();
             self.refuse(planning.id(), planning.replies, reason.clone());
         }

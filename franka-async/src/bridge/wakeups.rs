@@ -13,7 +13,8 @@ impl Bridge {
     /// Reads everything that the thread has published.
     pub(super) fn on_wakeup(&mut self) {
         self.publisher.publish();
-        // Before a motion resolves, so that the next call finds a robot that is in a reflex.
+        // Observe before a motion resolves, so that the next call finds a robot that is in a
+        // reflex.
         self.observe();
         self.telemetry.watch(world::now());
         self.take_notices();
@@ -48,7 +49,7 @@ impl Bridge {
                     self.lifecycle.on_event(event, now);
                 }
                 Notice::Link(fault) => tracing::warn!(%fault, "control link"),
-                // Freed here, which the thread may not do.
+                // Drop the ring here, because the thread may not free it.
                 Notice::Detached(ring) => drop(ring),
             }
         }
@@ -81,7 +82,7 @@ impl Bridge {
         let resumed = self.silent_since.is_some_and(|since| newest > since);
         if resumed || self.seen != seen {
             (self.seen, self.silent_since) = (seen, None);
-            // Recovery is over soon: motions wait for it.
+            // A recovery ends soon, and motions wait for its end.
             self.publisher
                 .watch(mode == RobotMode::AutomaticErrorRecovery);
             self.supervisor.observe();

@@ -186,7 +186,7 @@ impl<P: Protocol> ConnectError<P> {
             | Self::LogSize { .. }
             | Self::Unsupervised
             | Self::Known(_) => Party::Caller,
-            // A device that refuses exists; the others may not.
+            // A device that refuses exists; the other addresses may not.
             Self::NoAddress { attempts } => attempts
                 .iter()
                 .map(|attempt| attempt.error.party())

@@ -122,7 +122,7 @@ impl Drop for EntryQueue {
 
 impl Shared {
     fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
-        // A panic in there leaves a track more or less.
+        // A panic in `act` leaves at most a track too many or too few.
         act(&mut self.tracks.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

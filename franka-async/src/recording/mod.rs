@@ -187,7 +187,7 @@ impl Recorder {
     /// # Cancel safety
     /// Nothing is recorded if the future is dropped.
     pub async fn attach(&self, robot: &Robot, track: Track) -> Result<(), TrackError> {
-        // Without a description the recording is as good, except for viewers of the arm.
+        // Without a description the recording lacks only the arm in viewers.
         let urdf = match robot.model().kind() {
             RobotKind::Fer => Ok(String::new()),
             _ => robot.urdf().await,

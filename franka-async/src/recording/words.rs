@@ -21,7 +21,8 @@ pub(super) fn goal(given: &Given) -> EventKind {
     } = given;
     let target = match (destination, goal) {
         (Some(Destination::Target(target)), _) => place(*target),
-        // Completed by the position of the arm when it begins: the cycles have it.
+        // The arm's position at the start completes this destination; the cycles have that
+        // position.
         (Some(_), _) => None,
         (None, Some(goal)) => place(goal.target),
         (None, None) => None,

@@ -136,7 +136,7 @@ impl Supervisor {
         let inner = self.lock();
         Events::new(match &inner.events {
             Some(events) => events.subscribe(),
-            // Closed from the outset.
+            // The supervision has ended: return a closed channel.
             None => broadcast::channel(1).1,
         })
     }
@@ -165,7 +165,7 @@ impl Supervisor {
         state: &RobotState,
         refusals: &[SchedError],
     ) -> bool {
-        // Before anything is begun there.
+        // Announce the connection before anything begins on it.
         #[cfg(feature = "record")]
         self.journal().connected(&link.cycles);
         self.with(|inner, now| {
@@ -322,7 +322,7 @@ impl Supervisor {
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
-        // Nothing panics while it is held.
+        // Nothing panics while the lock is held.
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -347,7 +347,8 @@ impl Inner {
                 mut motion,
                 replies,
             } => {
-                // A motion without a line does not wait, in the place of another one.
+                // A motion without a line must not wait, because it would replace another waiting
+                // motion.
                 let unready = matches!(self.core.health().condition, Condition::Unready(_));
                 if let Some(error) = motion.refused.take_if(|_| unready) {
                     let latched = self.core.check_latch().err();
@@ -392,7 +393,7 @@ impl Inner {
                     ..
                 }) if waiting.id == goal => {
                     (waiting.target, *destination, *path) = (target, None, None);
-                    // Its receiver may have been dropped.
+                    // The caller may have dropped the receiver.
                     let _ = taken.send(Ok(true));
                     return;
                 }
@@ -450,7 +451,7 @@ impl Inner {
         let Err(error) = self.core.check_latch() else {
             return Some(input);
         };
-        // The receivers may have been dropped.
+        // The callers may have dropped the receivers.
         match input {
             Input::Set { motion, taken } => {
                 self.note_refused(motion.motion.id(), &error);
@@ -482,7 +483,8 @@ impl Inner {
     /// Hands a motion over to a connection.
     fn begin(&mut self, motion: Beginning, replies: Replies, link: &Link, now: Duration) {
         let goal = motion.motion.id();
-        // Noted before the bridge has it: until it has ended, the robot is not recovered.
+        // Note the motion before the bridge has it: the robot is not recovered until the motion has
+        // ended.
         self.core.on_begun(goal, now);
         let sent = link.try_send(Input::Begin { motion, replies });
         if let Err(Input::Begin { motion, replies }) = sent {
@@ -504,7 +506,8 @@ impl Inner {
 
     /// Carries out the decisions of the state machine, in order, and publishes the robot's health.
     fn carry_out(&mut self, closing: &Closing, now: Duration) {
-        // A receiver of the event finds the robot as it is after that event.
+        // Compute the health first: a receiver of the event then finds the robot as it is after
+        // that event.
         let health = self.core.health();
         if let Some(shown) = &self.health {
             shown.send_if_modified(|before| std::mem::replace(before, health) != health);

@@ -116,7 +116,7 @@ impl Callback {
         let first = self.previous.is_none();
         let previous = self.previous.replace(state.message_id);
         let step = Duration::from_millis(state.message_id - previous.unwrap_or(state.message_id));
-        // The first to finish ends the cycle.
+        // The first function to finish ends the cycle.
         let finished = if self.generator_first {
             self.step_motion(state, step, first)? || self.step_torques(state, step)?
         } else {

@@ -179,7 +179,8 @@ impl Driver {
                     }
                 }
             }
-            // Otherwise the motion has ended and has reported it, or another motion is under way.
+            // Otherwise the motion has ended and has reported its end, or another motion is under
+            // way.
             Order::Disarm { motion } => {
                 let armed = |it: &mut Execution| it.id == motion && it.phase == Phase::Armed;
                 if let Some(armed) = self.motion.take_if(armed) {

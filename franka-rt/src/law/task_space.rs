@@ -123,7 +123,7 @@ fn damped<const N: usize>(
             for i in 0..N {
                 raised[(i, i)] += (1.0 - room).powi(2) / greatest[i];
             }
-            // Non-finite input; not expected.
+            // Replaces the factor of non-finite input, which is not expected.
             Cholesky::new(raised).unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::identity()))
         }
     }

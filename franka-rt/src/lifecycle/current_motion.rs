@@ -105,8 +105,8 @@ impl CurrentMotion {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // A motion that the robot was asked to stop ends so, even with its finishing command on
-            // its way.
+            // A motion that the robot was asked to stop ends with this status, even if its
+            // finishing command was on its way.
             Some(_) if status == MoveStatus::Preempted && self.stopped.is_some() => {
                 return match &self.work {
                     Work::Goals(goals) => goals.outcome_of_stop(ended),
@@ -115,7 +115,7 @@ impl CurrentMotion {
             }
             Some(refusal) => {
                 return Err(match (status, self.given_up) {
-                    // A motion that was given up ends so, too.
+                    // A motion that was given up also ends with this status.
                     (MoveStatus::Preempted, Some(what)) => MotionError::Protocol { what },
                     _ => ControlError::new(refusal, ended, model).into(),
                 });
@@ -127,7 +127,7 @@ impl CurrentMotion {
             Work::Goals(_) => None,
             Work::Program(_) => outcome_of_program(ended, self.stopped.is_some()),
         };
-        // libfranka, `robot_impl.cpp`, has this text for it.
+        // libfranka, `robot_impl.cpp`, has this text for this case.
         outcome.unwrap_or(Err(MotionError::Protocol {
             what: "Unexpected reply to a Move command",
         }))

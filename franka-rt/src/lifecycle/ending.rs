@@ -175,7 +175,7 @@ impl Lifecycle {
             _ => return self.start(motion, now),
         }
         let outcome = match before {
-            // Whether the arm rests is unknown, or up to the robot.
+            // It is unknown whether the arm rests, or the robot decides it.
             Err(error)
                 if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
             {

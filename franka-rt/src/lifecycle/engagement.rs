@@ -170,7 +170,7 @@ impl Lifecycle {
         if by > Chunk::OFFSET_MAX {
             return Err(GoalError::Ahead { by }.into());
         }
-        // Times that count from the take-up cannot have passed.
+        // Times that count from the beginning of the chunk cannot have passed.
         if observed_at.is_some() && chunk.end_after(state.message_id).is_zero() {
             let by = chunk.late_by(state.message_id);
             return Err(GoalError::Late { by }.into());
@@ -189,11 +189,11 @@ impl Lifecycle {
             ..goal
         })?;
         if ending {
-            // The session has ended, and reports it when it is known how.
+            // The session has ended, and reports its end when the outcome is known.
             goals.after_end.push(goal.id);
             return Ok(());
         }
-        // A goal that was taken back is on its way to rest, and belongs to no caller any more.
+        // A cancelled goal is on its way to rest, and belongs to no caller any more.
         let (current, cancelled) = (goals.current.id, goals.cancelled);
         let goes_on = match goals.stream {
             ChunkStream::Of { goal, observed_at } if goal == current && !cancelled => {
@@ -236,7 +236,7 @@ impl Lifecycle {
         let tuned = tuning.apply(goals.current);
         goals.backend.check(&tuned)?;
         tuned.check(&self.model, state)?;
-        // Gains that do not matter to a guiding hand must be fit for the goals after it.
+        // Gains that do not matter to a guiding hand must be valid for later goals.
         if let Some(gains) = tuning.gains {
             let target = Target::Rest;
             let later = Goal {
@@ -246,7 +246,7 @@ impl Lifecycle {
             };
             later.check(&self.model, state)?;
         }
-        // Also a goal that was taken back: it is held until the next one comes.
+        // This includes a cancelled goal, which is held until the next goal comes.
         if let Some(goals) = self.goals_mut() {
             goals.current = tuned;
             goals.newest.write(tuned);

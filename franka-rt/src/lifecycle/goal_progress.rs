@@ -163,7 +163,7 @@ impl Goals {
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);
         let result = match &self.verdict {
-            // A goal that has settled was reached, regardless of what comes after it.
+            // A goal that has settled was reached, regardless of what follows.
             Verdict::Settled(settled) if settled.goal == previous => {
                 settled.result(&settled.counted, cancelled)
             }
@@ -182,7 +182,7 @@ impl Goals {
     pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
         let goal = self.current;
         if goal.id == engaged {
-            // Given up after it had arrived: the arm must not be taken back there.
+            // The goal was given up after its arrival: the arm must not return there.
             if !matches!(settled.settlement, Settlement::Arrived(_)) {
                 self.current.target = Target::Rest;
             }
@@ -213,7 +213,7 @@ impl Goals {
         let result = settled.result(&settled.counted, cancelled);
         self.take_chunk_error();
         match (&result, &self.stream) {
-            // A watchdog is for goals that are awaited.
+            // A watchdog belongs to awaited goals only.
             (
                 Err(error @ (MotionError::Held(lapse) | MotionError::Braked(lapse))),
                 ChunkStream::Of { goal: of, .. },

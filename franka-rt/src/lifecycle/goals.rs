@@ -141,7 +141,7 @@ impl Lifecycle {
         let previous = match self.goals_mut() {
             Some(goals) if !is_ending => {
                 if let Some(path) = path {
-                    // There was room when it was accepted.
+                    // The ring had room when the path was accepted.
                     let _ = goals.send(goal.id, *path);
                 }
                 goals.supersede(goal, reason.clone())

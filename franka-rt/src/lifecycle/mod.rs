@@ -241,7 +241,7 @@ impl Lifecycle {
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }
             | LifecyclePhase::Closed { .. } => true,
-            // A motion that has passed its deadline is not waited for.
+            // The lifecycle does not wait for a motion that has passed its deadline.
             LifecyclePhase::Abandoned { deadline, .. } => deadline.is_err(),
             LifecyclePhase::UnderWay(_) => false,
         }

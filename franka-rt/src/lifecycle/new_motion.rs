@@ -173,7 +173,7 @@ impl Lifecycle {
         }
         match (&self.phase, motion) {
             (LifecyclePhase::Idle, motion) => self.start(motion, now),
-            // A session that has the arm is about to release it.
+            // A session that controls the arm is about to release it.
             (
                 LifecyclePhase::UnderWay(_),
                 NewMotion::Goal {
@@ -281,7 +281,7 @@ impl Lifecycle {
         if let Some(path) = path
             && goal.along_path
         {
-            // The ring is new.
+            // The ring is new, so it has room.
             let _ = goals.send(goal.id, *path);
         }
         let mut observer = None;
@@ -291,7 +291,7 @@ impl Lifecycle {
             observer = engagement.observer;
             session = session.with_backend(goals.backend).going_on();
             if let Some(regions) = engagement.keep_out {
-                // Checked where the session was asked for.
+                // The regions were checked when the session was requested.
                 session = session.out_of(check_keep_out(&regions).unwrap_or(self.keep_out));
             }
             if let Some(cap) = engagement.speed_cap {

@@ -479,13 +479,13 @@ impl ControlError {
 impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self.stage {
-            // libfranka 0.21, `robot_impl.cpp`: a motion that has not begun ends in the refusal's
-            // text;
+            // libfranka 0.21, `robot_impl.cpp`: for a motion that has not begun, the text is the
+            // refusal's.
             Stage::Starting if self.is_reflex() && !self.failure.reflex_reason.is_empty() => {
                 write!(f, "{} {}", self.failure.refusal, self.failure.reflex_reason)
             }
             Stage::Starting => write!(f, "{}", self.failure.refusal),
-            // and this text takes its place at the end.
+            // For a motion that was finishing, this text replaces the refusal's.
             Stage::Finishing if self.is_reflex() => {
                 write!(
                     f,

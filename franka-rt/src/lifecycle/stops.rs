@@ -91,7 +91,7 @@ impl Lifecycle {
 
     fn brake(&mut self, id: GoalId, now: Duration) {
         if self.stop_program(id, now) {
-            // A session that waits for the program's end.
+            // The waiting session waits for the program's end.
             self.resolve_next(MotionError::Stopped);
             return self.await_brake(id, id, now);
         }

@@ -32,7 +32,7 @@ pub(super) fn touch(bytes: usize) {
     let mut frame = [0u8; FRAME];
     black_box(&mut frame);
     touch(bytes.saturating_sub(FRAME));
-    // Used after the call, so that each frame of the walk has its own place.
+    // Use the frame after the call, so that each frame of the walk has its own place.
     black_box(&mut frame);
 }
 

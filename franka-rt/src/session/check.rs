@@ -277,7 +277,7 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
             let what = "joint positions";
             return Err(GoalError::NotFinite { what });
         }
-        // An arm that stands nearer to the end of its range than a plan could go may stay there, or
+        // An arm that is nearer to the end of its range than a plan could move may stay there, or
         // leave.
         let (lower, upper) = approach::range(i, limits);
         let stands = state.q[i].min(limits.upper[i]).max(limits.lower[i]);

@@ -139,14 +139,14 @@ impl Floating {
         } else {
             let away = self.q - arm.q;
             let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
-            // As with the leash: pushed further, the elbow stays where it has been pushed.
+            // As with the leash: pushed further, the elbow stays where it was pushed to.
             self.q = arm.q + held;
             leashed |= held != away;
             held
         };
         let away = along + elbow - inverse.solve(arm, &(arm.jacobian * elbow));
-        // Near a singular posture a small displacement of the end effector is a large one of the
-        // joints.
+        // Near a singular posture, a small displacement of the end effector corresponds to a large
+        // one of the joints.
         let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
         (held, leashed || held != away)
     }

@@ -108,13 +108,13 @@ impl Membership {
             if pursued.goal == goal.id && !taken_back {
                 return false;
             }
-            // Tuned where it is held, by then under the session's name.
+            // The goal was tuned while it is held, by now under the session's name.
             let stays = pursued.held == Some(goal.target) && goal.round.is_none();
             if stays && !taken_back {
                 pursued.goal = goal.id;
                 return false;
             }
-            // Pursued until all goals of the next round are there.
+            // The member pursues the goal until all goals of the next round are there.
             let waits = goal.round.is_some_and(|next| next != pursued.round);
             if !waits {
                 let Pursued { round, held, .. } = *pursued;

@@ -61,7 +61,7 @@ pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
         square(m[2], m[6], m[10]),
     ];
     let unit = |square: f64| (square.sqrt() - 1.0).abs() <= ORTHONORMAL_TOLERANCE;
-    // A square this close to 1 has a root within the tolerance: nearly every pose needs no root.
+    // A square this close to 1 has a root within the tolerance, so nearly every pose needs no root.
     let near = |square: f64| (square - 1.0).abs() <= 1.9 * ORTHONORMAL_TOLERANCE;
     [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0]
         && (squares.map(near) == [true; 6] || squares.into_iter().all(unit))

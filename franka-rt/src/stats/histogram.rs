@@ -78,7 +78,7 @@ impl Histogram {
 
     /// Returns the shortest duration, exactly; `None` if no duration was counted.
     pub fn min(&self) -> Option<Duration> {
-        // The count does not decide: a reader may see it before the minimum.
+        // The count is not used here: a reader may see it before the minimum.
         let min = self.min.load(Ordering::Relaxed);
         (min != u64::MAX).then(|| Duration::from_nanos(min))
     }

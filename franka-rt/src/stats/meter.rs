@@ -124,7 +124,7 @@ impl Meter {
             .note(cycle.slack.left().unwrap_or_default());
         if let Some(overrun) = cycle.slack.overrun() {
             self.overran.write(cycle);
-            // After the cycle itself: a reader that sees the count finds a cycle.
+            // Count after the cycle is written: a reader that sees the count then finds the cycle.
             self.stats.overrun.note(overrun);
         }
         if cycle.total() > self.longest {

@@ -55,7 +55,7 @@ impl Identity {
         let elsewhere = |joint: &usize| {
             let reach = MOVED + self.dq[*joint].abs() * BRAKING;
             let moved = (self.q[*joint] - other.q[*joint]).abs();
-            // A position that is not a number is elsewhere.
+            // A position that is not a number counts as moved.
             moved.is_nan() || moved > reach
         };
         Differences {

@@ -185,7 +185,7 @@ impl Supervision {
         let why = match self.connection.unready() {
             Some(_) if motion.is_within_a_session() => return Admission::Begin,
             Some(why) if why.is_passing() => why,
-            // The present obstacle may be gone before the robot has the motion.
+            // The present obstacle may be gone before the robot receives the motion.
             Some(why) if !self.connection.is_configured() => {
                 let waited = Duration::ZERO;
                 return Admission::Refuse(MotionError::NotReady { why, waited });
@@ -237,7 +237,7 @@ impl Supervision {
     /// [`MotionError::NotReady`] while a stop is latched.
     pub fn check_latch(&self) -> Result<(), MotionError> {
         match self.connection {
-            // A closed connection reports it itself.
+            // A closed connection reports its end itself.
             Connection::Closed => Ok(()),
             _ if self.stop_latched => Err(MotionError::NotReady {
                 why: Unready::StopLatched,
@@ -272,7 +272,7 @@ impl Supervision {
         {
             let is_refused = matches!(answer, Answer::Refused { .. });
             up.configuration = match up.configuration {
-                // It is being set again, or will be.
+                // The setting is being sent again, or will be.
                 before @ (Configuration::Requested { .. } | Configuration::Due) => before,
                 _ if self.settings.all_hold() => Configuration::Done,
                 Configuration::Done if self.settings.any_open() => Configuration::Due,

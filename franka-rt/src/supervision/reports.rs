@@ -119,7 +119,7 @@ impl Supervision {
         }
         if seen.mode == RobotMode::Reflex {
             let is_new = self.on_reflex(seen.errors, now);
-            // Something has stopped the robot again, if only for the same errors.
+            // Something has stopped the robot again, even if for the same errors.
             let is_again = told == RobotMode::AutomaticErrorRecovery;
             if (is_new || is_again) && !is_first {
                 self.turn_away(now);
@@ -266,7 +266,7 @@ impl Supervision {
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;
-        // A caller that asks for it takes the robot as it is.
+        // A caller that requests a motion accepts the robot as it is.
         if let Connection::Up(up) = &mut self.connection {
             up.differences = None;
         }

@@ -133,7 +133,7 @@ impl Settings {
             return;
         };
         setting.standing = match answer {
-            // A robot that rounds the numbers never shows them.
+            // A robot that rounds the numbers never shows exactly the set ones.
             Answer::NotShown { .. } if !setting.was_shown => Standing::Holds,
             Answer::Taken => {
                 setting.was_shown = true;

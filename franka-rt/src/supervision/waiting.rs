@@ -40,7 +40,7 @@ impl Waiting {
             why,
             waited: Duration::ZERO,
         };
-        // The others of a common start would wait, too.
+        // The other members of a common start would have to wait, too.
         let Some(most) = most.filter(|_| !motion.has_ticket()) else {
             return (Admission::Refuse(refusal), None);
         };

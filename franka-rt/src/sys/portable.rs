@@ -61,7 +61,7 @@ impl Wake {
             match (&self.listener).read(&mut bytes) {
                 Ok(length) if length > 0 => notifications += length as u64,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                // Nothing is left. The other end is open for as long as this one.
+                // Nothing is left in the buffer. The other end stays open as long as this one.
                 _ => return notifications,
             }
         }

@@ -72,7 +72,7 @@ impl<C: Core> Cycle<C> {
             self.publish(now);
         } else {
             // Only time spent in the receive counts as silence. If the host delayed this thread
-            // after it, states may lie in the socket: the next turn reads them first.
+            // after the receive, states may be in the socket: the next turn reads them first.
             let listened = now.min(begun + reception.waited);
             let heard = self.meter.heard().unwrap_or(self.started);
             self.core
@@ -117,7 +117,7 @@ impl<C: Core> Cycle<C> {
 
     /// Sends a command that answers the newest state, outside of a turn.
     pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
-        // The time since the end of the turn is the caller's computation.
+        // The time since the end of the turn is the user's computation.
         self.laps.end(Phase::Program);
         let departed = self.transmit(command)?;
         self.note(self.meter.answered(departed));

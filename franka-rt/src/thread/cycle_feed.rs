@@ -136,7 +136,7 @@ impl<R: Send + 'static> CycleFeed<R> {
         counted.map_err(|_| AttachError::TooMany)?;
         let (queue, receiver) = queue::queue(capacity);
         let lost = Arc::<AtomicU64>::default();
-        // Counts one reader less when it is dropped, on an error as well.
+        // Its drop counts one reader less, after an error as well.
         let reader = CycleReader {
             queue: receiver,
             lost: lost.clone(),
@@ -192,7 +192,7 @@ impl<R> CycleReader<R> {
     pub fn wait(&self, timeout: Duration) -> bool {
         let begun = Instant::now();
         loop {
-            // Asked first, so that cycles from before the end are then found.
+            // Read the flag first, so that the cycles from before the end are then found.
             let ended = self.shared.has_ended();
             if self.waiting() > 0 {
                 return true;
@@ -257,7 +257,8 @@ impl<R: Copy> CycleWriter<R> {
             Ok(()) => self.gap = 0,
             Err(Full(_)) => {
                 self.gap += 1;
-                // There is one writer: a load and a store do. Relaxed, for it orders nothing.
+                // There is one writer, so a load and a store are enough. Relaxed, because the count
+                // orders nothing.
                 let lost = self.lost.load(Ordering::Relaxed);
                 self.lost.store(lost + 1, Ordering::Relaxed);
             }

@@ -91,7 +91,7 @@ impl<T> Handoff<T> {
         mut stop_wanted: impl FnMut() -> bool,
     ) -> Result<T, NotReturned> {
         let mut state = self.lock();
-        // Under the lock: a later borrower finds it on offer, or lent.
+        // Store this under the lock: a later borrower finds the value offered, or lent.
         self.wanted.store(false, Ordering::Relaxed);
         *state = HandoffState::Offered(value);
         self.changed.notify_all();
@@ -113,7 +113,7 @@ impl<T> Handoff<T> {
     /// Makes the owner refuse all further borrowers.
     pub(super) fn close(&self) {
         let mut state = self.lock();
-        // A value that a borrower has brought back meanwhile is freed here, after the last turn.
+        // A value that a borrower has returned meanwhile is freed here, after the last turn.
         *state = HandoffState::Ended;
         self.changed.notify_all();
     }
@@ -142,7 +142,7 @@ impl<T> Handoff<T> {
         let mut state = self.lock();
         *state = match (&*state, value) {
             (HandoffState::Lent, Some(value)) => HandoffState::Returned(value),
-            // It is invalid, or the owner has ended: it is freed here.
+            // The value is invalid, or the owner has ended: the value is freed here.
             _ => HandoffState::Ended,
         };
         self.changed.notify_all();
@@ -158,8 +158,8 @@ impl<T> Handoff<T> {
         &'a self,
         state: MutexGuard<'a, HandoffState<T>>,
     ) -> MutexGuard<'a, HandoffState<T>> {
-        // loom has no time: its condition variable treats a timeout of zero as over once another
-        // thread has run, and any other as endless.
+        // loom has no time. Its condition variable ends a wait with a timeout of zero once another
+        // thread has run, and never ends other waits.
         #[cfg(loom)]
         if self.tick.is_zero() {
             drop(state);

@@ -242,7 +242,8 @@ impl Shaper {
         };
         let pose = self.pose(&command.O_T_EE, last, state)?;
         check::pose(&pose)?;
-        // The filter makes a rotation of any matrix; libfranka sends that, in place of an error.
+        // The filter makes a rotation of any matrix. libfranka sends that rotation instead of an
+        // error.
         if pose != command.O_T_EE {
             check::pose(&command.O_T_EE)?;
         }

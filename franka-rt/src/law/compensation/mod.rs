@@ -141,7 +141,7 @@ impl Compensation {
                 return;
             }
             let distance = demand.error.abs();
-            // Once it has rested, an arm without a push only comes nearer.
+            // After it has rested, an arm that nothing pushes only comes nearer.
             let is_pushed = (distance - *nearest).max() > PUSHED;
             for i in (0..7).filter(|&i| self.rested[i] > RESTED[1]) {
                 nearest[i] = nearest[i].min(distance[i]);
@@ -203,9 +203,9 @@ impl Compensation {
         };
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);
-        // The torque with which the arm stopped may have resisted a push that has ended since. So
-        // the way back to zero is free, unless more than friction holds the joint now and did not
-        // then.
+        // The torque with which the arm stopped may have resisted a push that has ended since.
+        // Therefore the integral may always return to zero, unless more than friction holds the
+        // joint now and did not hold it then.
         let (low, high) = match room > 0.0 || settled.abs() > resists {
             true => (settled.min(0.0), settled.max(0.0)),
             false => (settled, settled),
@@ -228,7 +228,7 @@ impl Compensation {
             *rest -= (*rest - settled) * CYCLE / FORGET;
         } else if self.rested[i] > RESTED[usize::from(sticks)] && e.abs() > DEAD_ZONE[i] {
             let rate = (INTEGRAL * demand.springs[i].abs()).max(BREAK_AWAY * friction);
-            // One that pulls away from the target stood against something that has ended.
+            // An integral that pulls away from the target resisted something that has ended.
             let rate = rate * if *rest * e < 0.0 { UNWIND } else { 1.0 };
             let grown = *rest + rate.copysign(e) * CYCLE;
             self.is_working |= (least < grown && grown < most) || grown.abs() < rest.abs();
@@ -237,7 +237,7 @@ impl Compensation {
             // Without friction and load the springs bring the joint to its target exactly.
             *rest -= *rest * CYCLE / FORGET;
         }
-        // In every cycle, so that shrinking bounds do not step it.
+        // Clamp in every cycle, so that shrinking bounds do not step the integral.
         *rest = rest.clamp(-bound, bound);
     }
 
@@ -246,7 +246,7 @@ impl Compensation {
     fn learn(&mut self, i: usize, compensated: f64, demand: &Demand<'_>) {
         let v = demand.dq_ref[i];
         let steady = v.abs() > MOVING && demand.ddq_ref[i].abs() < STEADY;
-        // A joint that hits something stops long before its springs demand more than friction.
+        // A joint that hits an obstacle stops long before its springs demand more than friction.
         let keeps_up = demand.dq[i] * v.signum() > KEEPS_UP * v.abs();
         if demand.met || self.free < 1.0 || !steady || !keeps_up {
             return;

@@ -211,8 +211,8 @@ impl ChunkReader {
     }
 
     fn receive(&mut self) {
-        // At most as many chunks as are under way: the writer cannot add to them without
-        // collecting.
+        // There are at most as many chunks as are under way, because the writer cannot send more
+        // without collecting.
         for _ in 0..Chunk::UNDER_WAY_MAX {
             let Some(sent) = self.chunks.pop() else { break };
             let goal = sent.goal;
@@ -230,8 +230,8 @@ impl ChunkReader {
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {
-            // The writer sends only as many as fit. If not, memory is leaked rather than freed on
-            // this thread.
+            // The writer sends only as many as fit. If the ring is full anyway, memory is leaked
+            // rather than freed on this thread.
             core::mem::forget(returned);
         }
     }

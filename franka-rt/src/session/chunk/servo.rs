@@ -147,7 +147,7 @@ fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D>
 
 /// Returns the number of whole cycles for removing the acceleration.
 fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
-    // A remainder of rounding is not another cycle.
+    // A remainder of rounding does not count as another cycle.
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
 

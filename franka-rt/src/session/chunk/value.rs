@@ -403,7 +403,7 @@ fn check_numbers(point: usize, numbers: &[f64]) -> Result<(), ChunkError> {
 fn check_pose(point: usize, pose: &Isometry3<f64>) -> Result<(), ChunkError> {
     check_numbers(point, pose.translation.vector.as_slice())?;
     let length = pose.rotation.coords.norm();
-    // NaN is not such a length either.
+    // NaN fails this comparison, too.
     if (length - 1.0).abs() < 1e-6 {
         Ok(())
     } else {

@@ -80,7 +80,7 @@ impl Deadman {
 
     /// Restarts the time of silence. Wait-free.
     pub fn keep_alive(&self) {
-        // Relaxed: only the count crosses.
+        // Relaxed: only the count is passed between the threads.
         self.pulse.beats.fetch_add(1, Ordering::Relaxed);
     }
 

@@ -102,7 +102,7 @@ impl OpenVelocities {
         let most = ACCELERATION_CAP * limits.acceleration[i];
         let cap = (VELOCITY_CAP * limits.velocity[i]).min(HASTE * budget.joints[i].velocity);
         let felt = |a: f64| a.clamp(-most, most).clamp(ddq - ramp, ddq + ramp);
-        // Upwards; downwards is the same in a mirror.
+        // Bounds upwards. Downwards is the mirror image.
         let up = |v: f64, room: f64| {
             let stopping = (2.0 * BRAKING * room.max(0.0)).sqrt();
             let free = (fastest(cap - v, ramp), Cause::Velocity);

@@ -16,7 +16,7 @@ impl RunningSession {
             retired.end(chunks, now);
         }
         let gone = self.stage.lets_go();
-        // A goal that was taken back, perhaps before it was seen, follows no chunk.
+        // A cancelled goal, even if cancelled before the session saw it, follows no chunk.
         let follows =
             self.goal.along_path || self.goal.on_arrival == OnArrival::Hold || self.is_given_up();
         if gone || !follows || self.is_given_up_for_good() {
@@ -39,7 +39,7 @@ impl RunningSession {
             if let Some(before) = before {
                 before.end(chunks, now);
             }
-            // A goal that fell silent was a held goal: it is held again until a newer goal.
+            // Only a held goal falls silent: it is held again until a newer goal comes.
             if self.is_given_up() {
                 self.standing = Standing::InForce;
                 self.goal.on_arrival = OnArrival::Hold;

@@ -57,7 +57,8 @@ impl RunningSession {
             GoalStage::Landing(landing) => {
                 let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
                 // The robot's own report decides. Under its Cartesian controllers the correction
-                // belongs to the setpoint, from the place where it was last taken up.
+                // belongs to the setpoint, from the place where the reference was last taken from
+                // the robot.
                 let measured = self.arm.as_reported();
                 let (mut settlement, held) = match landing.judge(&measured, at_rest, working) {
                     Verdict::Settling => return,
@@ -155,8 +156,8 @@ impl RunningSession {
         // The hand may have reached its target before the elbow has.
         let turns =
             self.goal.posture.is_some() && self.reference.dq.amax() > arrival::REST_VELOCITY;
-        // A reference that halts on its way rests, too. An arm that others wait for gives up when
-        // it was held back for too long.
+        // A reference that halts on its way rests, too. An arm for which others wait gives up if it
+        // was held back for too long.
         let arrived = done && !turns && !(pursued && self.waits);
         let stalled = stalled && !(pursued && self.waits && !self.lags);
         let paused = pursued && self.goal.paused;
@@ -175,11 +176,12 @@ impl RunningSession {
                 _ if self.is_given_up() => None,
                 Target::Rest | Target::Guide(_) => None,
                 Target::Pose(pose) | Target::MovingPose { pose, .. } => {
-                    // Target of the hand: at an object its lever would not count.
+                    // Use the target of the hand: at an object, its lever would not count.
                     Some(pose * self.grasp.unwrap_or_default().inverse())
                 }
                 Target::Joints(q) | Target::MovingJoints { q, .. } => {
-                    // The report must not count the correction's change along the way as an error.
+                    // The correction's change along the way must not count as an error in the
+                    // report.
                     self.renew_correction();
                     Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                 }

@@ -129,7 +129,8 @@ impl RunningSession {
         let over = self.stage.lets_go();
         if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
             self.give_up(Lapse::Unresponsive);
-            // A reference that follows the setpoint of a robot that refuses others does not move.
+            // A robot that refuses setpoints keeps its own, and a reference that follows it does
+            // not move.
             if !self.response.refuses() {
                 self.return_to_arm();
             }

@@ -128,7 +128,7 @@ fn limit_vector(
 ) -> Vector3<f64> {
     let change = (command - last_velocity) / CYCLE - last_acceleration;
     let size = change.norm();
-    // These comparisons leave out NaN as well as zero.
+    // These comparisons exclude NaN as well as zero.
     let acceleration = if size > f64::EPSILON * CYCLE {
         last_acceleration + change * lo(1.0, most.jerk * CYCLE / size)
     } else {

@@ -187,7 +187,7 @@ impl<M: CurveState> Timed<M> {
             next.times.push(time);
             next.states.push(state.paced(node.rate, node.change));
         }
-        // Except for the sign of a zero they rest already.
+        // Except for the sign of a zero, both states rest already.
         let last = next.states.len() - 1;
         for end in [0, last] {
             next.states[end] = self.states[end].resting();
