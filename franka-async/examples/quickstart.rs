@@ -42,11 +42,11 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Connects to the robot at `address`, or to a simulated robot, which lives as long as the second
-/// value. Asks before a real arm may move.
+/// Connects to the robot at `address`, or to a simulated robot, which runs until the second value
+/// is dropped. Asks before a real arm may move.
 async fn connect(address: Option<String>) -> anyhow::Result<(Robot, Option<Running>)> {
     let Some(address) = address else {
-        // The simulated robot waits for a busy computer. A real one stops its arm.
+        // The simulated robot waits for a busy computer. A real robot stops its arm.
         let sim = Sim::fr3().wait_for_commands(Duration::from_secs(1));
         let sim = sim.start().await.context("starting the simulator")?;
         let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);

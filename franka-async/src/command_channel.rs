@@ -464,8 +464,8 @@ mod tests {
     use super::*;
     use crate::handshake::shake_hands;
 
-    /// No byte leaves the process, and time passes only while everything waits: a deadline of half
-    /// a minute is met to the millisecond, and takes none.
+    /// No byte leaves the process, and time passes only while all tasks wait. A deadline of half a
+    /// minute is therefore kept to the millisecond, and costs no time.
     #[tokio::test(start_paused = true)]
     async fn a_robot_in_memory_answers_on_a_clock_that_is_counted() {
         let (ours, theirs) = tokio::io::duplex(4096);
@@ -481,7 +481,7 @@ mod tests {
                     Ok(server::Event::Connect { reply, .. }) => reply,
                     Ok(server::Event::Request { id, request }) => {
                         let reply = match request {
-                            // Once it stays silent.
+                            // The robot leaves the first recovery unanswered.
                             Request::AutomaticErrorRecovery if recoveries == 0 => {
                                 recoveries += 1;
                                 continue;

@@ -122,7 +122,7 @@ mod tests {
     fn real_time_rights_are_tried_out_on_a_thread_that_may_block() {
         let started = Arc::new(AtomicUsize::new(0));
         let counted = started.clone();
-        // Such a runtime starts a thread for blocking work, and for nothing else.
+        // Such a runtime starts a thread for blocking work only.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .on_thread_start(move || _ = counted.fetch_add(1, Relaxed))

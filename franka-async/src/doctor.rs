@@ -220,7 +220,7 @@ mod tests {
             (found.evidence, found.diagnosis.as_ref()),
             (Evidence::LinkLost, None)
         );
-        // There is no network card on the way to this very computer.
+        // The packets to this computer itself pass no network card.
         assert_eq!(found.causes, []);
         assert_eq!(diagnose(&MotionError::Busy, robot).await, None);
     }

@@ -235,8 +235,8 @@ mod tests {
         }
     }
 
-    /// A state of a Franka Emika Robot with the Hand, of 2017, as the documentation of the Franka
-    /// Control Interface prints it: with six digits.
+    /// A state of a Franka Emika Robot with the Hand, of 2017, with six digits, as printed in the
+    /// documentation of the Franka Control Interface.
     #[test]
     #[expect(clippy::approx_constant, reason = "four digits are reported")]
     fn a_printed_state_of_a_real_robot_has_the_described_lengths() {

@@ -222,7 +222,7 @@ mod tests {
         Taken { name }
     }
 
-    /// True once nothing that is bound to the lease moves the arm any more.
+    /// True once no session that is bound to the lease moves the arm any more.
     fn has_braked(monitor: &DeadmanMonitor) -> bool {
         monitor.is_gone()
     }
@@ -236,7 +236,7 @@ mod tests {
             assert_eq!(refused.expect_err("it is taken"), taken("Ada"));
             assert_eq!(other.holder(now).as_deref(), Some("Ada"));
         }
-        // Not by a second request of the same name either.
+        // A second request under the same name is refused, too.
         assert!(lease.take("Ada", SILENCE, now).is_err());
         assert!(holder.is_held(now) && holder.name() == "Ada");
     }
@@ -269,9 +269,9 @@ mod tests {
         let other = lease.take("Grace", SILENCE, now).expect("it is free");
         assert_eq!(late.keep_alive(now), lost);
         assert!(has_braked(&monitor) && !has_braked(&other.deadman()));
-        // A session that the former holder begins now does not move either.
+        // A session that the former holder begins now does not move the arm either.
         assert!(has_braked(&late.deadman()));
-        // Its end is not the end of the other's lease.
+        // The end of the former holder does not end the present holder's lease.
         drop(late);
         assert!(other.is_held(now) && !has_braked(&other.deadman()));
     }
@@ -322,8 +322,8 @@ mod tests {
         assert!(lease.take("Grace", silence, Instant::now()).is_ok());
     }
 
-    /// Holders that come, go, speak and are silent in any order: there is never more than one, and
-    /// an arm moves only for the holder of the lease.
+    /// Holders come, leave, send and are silent in any order. There is never more than one, and an
+    /// arm moves only for the holder of the lease.
     #[test]
     fn any_schedule_has_one_holder_at_most() {
         let start = Instant::now();

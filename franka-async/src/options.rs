@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
     }
 
-    /// Something with options.
+    /// A type with options.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Built {
         options: GoalOptions,
@@ -261,7 +261,7 @@ mod tests {
         goal_options!(target);
     }
 
-    /// Two setters, in both orders.
+    /// Calls two setters, in both orders.
     fn both(first: fn(Built) -> Built, second: fn(Built) -> Built) -> GoalOptions {
         let built = second(first(Built::default()));
         assert_eq!(built, first(second(Built::default())));

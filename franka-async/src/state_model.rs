@@ -89,7 +89,7 @@ mod tests {
 
     use super::*;
 
-    /// In both protocols, 2 kg of payload and 1 kg of end effector weigh as much as 3 kg, for any
+    /// In both protocols, 2 kg of payload and 1 kg of end effector weigh 3 kg together, for any
     /// direction of gravity in the state.
     #[test]
     fn what_a_state_carries_weighs_in_its_terms() {

@@ -275,10 +275,10 @@ mod tests {
         }
     }
 
-    /// Every word of a value is the same number: a mix of two values would show.
+    /// Every word of a value is the same number, so a mix of two values would be noticed.
     #[test]
     fn a_reader_beside_a_busy_writer_sees_whole_values_in_order() {
-        // Miri takes a thousand times as long.
+        // Miri is a thousand times as slow.
         const VALUES: u64 = if cfg!(miri) { 200 } else { 200_000 };
         let (mut writer, mut reader) = slot::<[u64; 300]>();
         let writing = std::thread::spawn(move || {

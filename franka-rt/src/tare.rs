@@ -230,7 +230,7 @@ mod tests {
 
     use super::*;
 
-    /// An arm whose estimate is off by this force and moment, and noisy.
+    /// Returns the state of an arm whose estimate is off by this force and moment, and noisy.
     fn state(message_id: u64) -> RobotState {
         let noise = if message_id.is_multiple_of(2) {
             0.5

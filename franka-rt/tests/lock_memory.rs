@@ -1,4 +1,4 @@
-//! Locking memory concerns the whole process, so it is tried in a process of its own.
+//! Locking memory concerns the whole process, so this test has its own process.
 
 use franka_rt::sched::{Realtime, SchedError, Scheduling};
 

@@ -580,7 +580,7 @@ mod tests {
 
     use super::*;
 
-    /// A connection may be replaced between the look and the lock.
+    /// A connection may be replaced between reading it and taking the lock.
     #[test]
     fn connection_of_an_input_is_looked_up_under_the_lock() {
         let supervisor = Supervisor::new(None);
@@ -599,7 +599,7 @@ mod tests {
             let passed = catch_unwind(AssertUnwindSafe(|| {
                 supervisor.pass(input, || {
                     is_locked = supervisor.inner.try_lock().is_err();
-                    // Stands for a connection.
+                    // This call replaces a connection in the test.
                     std::panic::resume_unwind(Box::new(()))
                 })
             }));

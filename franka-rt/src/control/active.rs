@@ -121,7 +121,7 @@ mod tests {
         let bad = MotionCommand::JointPositions(JointPositions([f64::NAN; 7]));
         let bad_torques = Torques([f64::NAN; 7]);
         for (modes, motion, torques, finished, expected) in [
-            // The kind comes before the torques, the torques before the numbers.
+            // The kind is checked before the torques, the torques before the numbers.
             (
                 INTERNAL,
                 Some(VELOCITIES),

@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(at(begin + 199, &[]), both);
         assert_eq!(at(begin + 200, &[]), Bindings::of(&[Guard::Clearance]));
         assert!(at(begin + 300, &[]).is_empty());
-        // A guard that bound before a gap in the states is long over.
+        // A guard that bound a command before a gap in the states no longer counts.
         at(begin + 399, &[Guard::Leash]);
         assert!(at(begin + 700, &[]).is_empty());
     }

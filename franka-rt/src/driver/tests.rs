@@ -50,7 +50,7 @@ fn nearby() -> Target {
     Target::Joints(target)
 }
 
-/// A cycle in which nothing takes time.
+/// Runs a cycle in which nothing takes time.
 fn answer(driver: &mut Driver, state: &RobotState) -> Option<RobotCommand> {
     let command = driver.on_state(state);
     let sent = command.map(|_| times(state.message_id, 0, 0));
@@ -137,7 +137,7 @@ fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
     }
 }
 
-/// Velocities that are finite, and Coriolis torques that are not.
+/// The velocities are finite, but the Coriolis torques are not.
 #[test]
 fn a_session_whose_command_is_not_finite_fails_and_sends_nothing() {
     let mut driver = armed_with(session(nearby(), Backend::Torques));
@@ -315,7 +315,7 @@ fn what_is_written_answers_the_newest_state_and_is_logged_with_the_next() {
             .map(|sent| sent.message_id),
         Ok(104)
     );
-    // The last one goes out at once, and again with every state.
+    // The last command leaves at once, and again with every state.
     assert!(answer(&mut driver, &moving(105)).is_none());
     let last = driver.write(&command(3.0), true).expect("it fits");
     assert!(last.torque_command_finished);

@@ -40,7 +40,7 @@ impl Bench {
         }
     }
 
-    /// Sends states in this order; loopback has them all queued on return.
+    /// Sends states in this order. On return, loopback has queued them all.
     fn states(&self, message_ids: &[u64]) {
         for &id in message_ids {
             self.robot.send(&state(id)).expect("loopback");
@@ -119,7 +119,7 @@ fn a_number_impossibly_far_ahead_does_not_make_the_link_deaf() {
 #[test]
 fn a_receive_that_fails_again_and_again_does_not_keep_the_processor_busy() {
     let mut bench = Bench::new();
-    // A descriptor that is not a socket: every receive fails at once.
+    // This descriptor is not a socket, so every receive fails at once.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
     let working = std::mem::replace(&mut bench.exchange.socket, OwnedFd::from(file).into());
     let failed = Reception {
@@ -130,7 +130,7 @@ fn a_receive_that_fails_again_and_again_does_not_keep_the_processor_busy() {
     for _ in 0..20 {
         assert_eq!(bench.exchange.receive(), failed);
     }
-    // A sleep may last longer, never shorter; the first receive does not sleep.
+    // A sleep may last longer, but never shorter. The first receive does not sleep.
     assert!(
         start.elapsed() >= Duration::from_millis(19),
         "{:?}",
@@ -207,7 +207,7 @@ fn the_wait_follows_the_link_timeout() {
     let Bench { exchange, .. } = Bench::new();
     let wait = Duration::from_millis(5);
     let mut exchange = exchange.with_wait(wait).expect("an option");
-    // The kernel rounds it up, but not to a tick.
+    // The kernel rounds the wait up, but not to a tick.
     let option = exchange.socket.read_timeout().expect("an option");
     assert!(option >= Some(wait) && option < Some(TICK), "{option:?}");
     assert_eq!(exchange.receive().waited, wait);
@@ -261,8 +261,8 @@ fn a_robot_on_ipv6_and_one_whose_address_is_mapped_are_known_and_answered() {
 #[test]
 fn a_flood_is_taken_in_portions() {
     let mut bench = Bench::new();
-    // As large as an unprivileged process may have it, and the datagrams small: more fit than one
-    // call takes.
+    // The buffer is as large as an unprivileged process may request. The datagrams are small, so
+    // more fit than one call reads.
     bench
         .exchange
         .socket
@@ -280,7 +280,7 @@ fn a_command_answers_the_sender_of_the_newest_state() {
     let mut bench = Bench::new();
     assert_eq!(bench.exchange.send(&[1]), Err(SendError::NobodyToAnswer));
     bench.states(&[1]);
-    // The same robot from another port, as after a restart of its process.
+    // The same robot sends from another port, as after a restart of its process.
     let moved = UdpSocket::bind("127.0.0.1:0").expect("a free port");
     let port = bench
         .exchange

@@ -309,14 +309,14 @@ mod tests {
             assert_eq!(friction, 0.8);
             bias
         };
-        // Half a kilogram some 0.5 m from joint 4.
+        // The load is half a kilogram, some 0.5 m from joint 4.
         assert!((2.0..3.0).contains(&(joint(&state) + 0.3)));
         state.m_load = 0.5;
         state.F_x_Cload = [0.0, 0.02, 0.1];
         assert!((joint(&state) + 0.3).abs() < 1e-9);
     }
 
-    /// The robot reports the acceleration of its base: gravity, in the axes of the base.
+    /// The robot reports the acceleration of its base, which is gravity, in the axes of the base.
     #[test]
     fn a_load_pulls_where_the_base_is_mounted_to() {
         let model = Model::fr3();

@@ -108,14 +108,14 @@ mod tests {
         Model::fr3().dynamics(q, dq, &EndEffector::default(), &load, &GRAVITY_EARTH)
     }
 
-    /// Returns `S Lambda S` of one block, its inertia formed by inverting in full.
+    /// Returns `S Lambda S` of one block, with its inertia inverted in full.
     fn coupled(block: Matrix3<f64>, gains: &[f64]) -> Matrix3<f64> {
         let inertia = block.try_inverse().expect("regular");
         let root = |i: usize| (gains[i] / inertia[(i, i)]).sqrt();
         Matrix3::from_fn(|i, j| root(i) * inertia[(i, j)] * root(j))
     }
 
-    /// The law as defined, with every matrix formed in full.
+    /// Computes the law by its definition, with every matrix formed in full.
     fn definition(gains: &Gains, errors: &Errors, dynamics: &Dynamics) -> JointVector {
         let jacobian = &dynamics.jacobian;
         let inverse = mobility(dynamics);

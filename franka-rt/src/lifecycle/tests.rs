@@ -60,7 +60,7 @@ impl LifecycleAndDriver {
         }
     }
 
-    /// A cycle of the robot in this mode. Returns whether it is answered.
+    /// Runs a cycle of the robot in this mode. Returns true if the cycle is answered.
     fn cycle(&mut self, robot_mode: RobotMode) -> bool {
         self.state.message_id += 1;
         self.state.robot_mode = robot_mode;
@@ -69,7 +69,7 @@ impl LifecycleAndDriver {
         answered
     }
 
-    /// A motion towards a joint target that the robot has started, and its goal.
+    /// Returns a motion to a joint target that the robot has started, and its goal.
     fn moving() -> (Self, MotionId, GoalId) {
         let mut pair = Self::new();
         let mut target: [f64; 7] = READY.into();
@@ -90,7 +90,7 @@ impl LifecycleAndDriver {
         (pair, motion, id)
     }
 
-    /// The robot starts the newest motion, and runs it for a while.
+    /// The robot starts the newest motion, and runs it for some cycles.
     fn run_started(&mut self, motion: MotionId) {
         let Some(Request::Move(request)) = self.sent.last() else {
             panic!("{:?}", self.sent)
@@ -171,7 +171,7 @@ fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
     assert!(matches!(pair.sent.last(), Some(Request::Move(_))));
 }
 
-/// The robot is asked to stop the first motion, and continues to show it.
+/// The robot is asked to stop the first motion, but continues to show it.
 #[test]
 fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_not_come() {
     let (mut pair, motion, first) = LifecycleAndDriver::moving();
@@ -212,8 +212,8 @@ fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_
     assert_eq!(moves(&pair), 2);
 }
 
-/// A session ends, and it is not yet known how. A separate path waits for that, and a path for the
-/// session receives it.
+/// A session ends, but its outcome is not yet known. A separate path waits for the outcome, and a
+/// path for the session resolves with it.
 #[test]
 fn two_paths_that_wait_for_the_same_end_do_not_change_places() {
     let mut pair = LifecycleAndDriver::new();

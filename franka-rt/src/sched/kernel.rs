@@ -115,9 +115,9 @@ mod tests {
     fn any_reading_that_shows_real_time_counts_and_no_lesser_preemption_does() {
         let plain = "#1 SMP PREEMPT_DYNAMIC Debian 6.12.43-1 (2025-08-27)";
         for (version, flag, configured, expected) in [
-            // Debian 13, since 6.12: no file.
+            // Debian 13, since 6.12: the file does not exist.
             ("#1 SMP PREEMPT_RT Debian 6.12.43-1", None, None, true),
-            // Patched kernels up to 6.11, with the file, and older ones, which spell it so.
+            // Patched kernels up to 6.11 have the file. Older ones spell the words like this.
             ("#14 SMP PREEMPT_RT Thu Oct 6", Some("1"), None, true),
             ("#1 SMP PREEMPT RT Mon Mar 9", None, None, true),
             // A distribution with its own version text.

@@ -48,8 +48,8 @@ mod tests {
         field.and_then(|count| count.parse().ok()).expect("a count")
     }
 
-    /// Page faults while `used` bytes of stack are used, by a thread that has touched `touched`
-    /// before.
+    /// Returns the page faults while `used` bytes of stack are used, in a thread that has touched
+    /// `touched` bytes before.
     fn faults_of(touched: usize, used: usize) -> u64 {
         let thread = std::thread::Builder::new().stack_size(size(MAX / 16));
         let run = move || {

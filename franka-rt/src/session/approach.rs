@@ -102,8 +102,8 @@ mod tests {
     use super::*;
     use franka_model::{Model, READY};
 
-    /// Distance of the braking of a plan into `target` from the envelope, `[rad/s]`; negative
-    /// beyond it.
+    /// Returns the distance of the braking of a plan into `target` from the envelope, `[rad/s]`;
+    /// negative beyond the envelope.
     fn clearance(i: usize, target: f64, plan: &AxisLimits) -> f64 {
         let limits = Model::fr3().joint_limits();
         let top = plan.velocity.min(limits.velocity[i] - MARGIN);
@@ -161,7 +161,7 @@ mod tests {
                 };
                 assert!(clearance(i, upper, &plan) > -1e-9, "joint {}", i + 1);
                 if share < 0.9 && upper < robot.upper[i] - 1e-9 {
-                    // No range is lost without need.
+                    // The range is as large as possible.
                     assert!(clearance(i, upper + 1e-3, &plan) < 0.0, "joint {}", i + 1);
                 }
             }

@@ -7,7 +7,7 @@ use franka_model::{JointVector, READY, transform};
 use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
 
-/// Size of a sample: the first value with `FRANKA_THOROUGH=1`, as in the nightly run.
+/// Returns the size of a sample: `thorough` with `FRANKA_THOROUGH=1`, as in the nightly run.
 pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
     match std::env::var("FRANKA_THOROUGH") {
         Ok(value) if value == "1" => thorough,
@@ -85,7 +85,7 @@ fn a_goal_moves_the_answer_that_is_prepared_after_it() {
     arm.turn(2, 0.1);
     assert_eq!(arm.answer(Gate::Open).trace.goal, GoalId(1));
     arm.session.prepare();
-    // Nothing is prepared twice.
+    // Preparing twice has no effect.
     arm.turn(3, -0.1);
     arm.session.prepare();
     let step = arm.answer(Gate::Open);
@@ -203,7 +203,7 @@ fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
     panic!("no reaction");
 }
 
-/// Uses a budget that goals may not have, in a session that does not check it.
+/// Uses a budget that goals may not have, in a session that does not check the budget.
 #[test]
 fn a_time_too_long_for_a_duration_does_not_panic() {
     let mut arm = Arm::new();

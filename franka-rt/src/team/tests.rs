@@ -35,17 +35,17 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     assert_eq!(first.take_stop(), Some(stop));
     assert_eq!(first.take_stop(), None);
     assert_eq!(first.pass(round, 1), Passage::Stopped(stop));
-    // The next round is a new beginning: an arm that fails while it brakes for the stop of the
-    // round before does not stop it.
+    // The next round starts afresh: an arm that fails while it brakes for the stop of an earlier
+    // round does not stop it.
     assert_eq!(second.take_stop(), Some(stop));
     let next = coordinator.begin();
     second.give_up(round, MemberFault::NotReached);
     assert_eq!((first.take_stop(), coordinator.stopped()), (None, None));
     assert_eq!(first.pass(next, 2), Passage::Waiting);
-    // A goal of the round before comes too late.
+    // A goal of the earlier round comes too late.
     let late = stop_of(2, MemberFault::TakenBack);
     assert_eq!(third.pass(round, 3), Passage::Stopped(late));
-    // It counts for neither round, even if its member already waits in the next one.
+    // The cancel counts for neither round, even if its member already waits in the next one.
     assert_eq!(second.pass(next, 4), Passage::Waiting);
     let late = stop_of(1, MemberFault::TakenBack);
     assert_eq!(second.pass(round, 5), Passage::Stopped(late));
@@ -74,7 +74,7 @@ fn a_stop_is_seen_by_each_member_whatever_begins_before_it_looks() {
     second.pass(round, 0);
     coordinator.stop();
     assert_eq!(first.take_stop(), Some(TeamStop::Requested));
-    // The second has not looked yet.
+    // The second member has not looked yet.
     let next = coordinator.begin();
     assert_eq!(coordinator.stopped(), Some(TeamStop::Requested));
     let stopped = Passage::Stopped(TeamStop::Requested);

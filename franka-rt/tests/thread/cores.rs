@@ -1,16 +1,16 @@
-//! What the thread does with any core.
+//! Behaviour of the thread with any core.
 
 use super::*;
 
-/// A core that does what a test needs: answers states, counts, says much at once, panics on demand.
+/// A core for tests: answers states, counts, reports many events at once, panics on demand.
 #[derive(Debug, Default)]
 pub(crate) struct Probe {
     pub(crate) orders: Vec<u32>,
     pub(crate) panics_at: Option<u64>,
     pub(crate) to_say: std::ops::Range<u32>,
-    /// Commands whose times it was told before the record of their cycle was made.
+    /// Number of commands whose times were passed to the core before the record of their cycle.
     pub(crate) turnarounds: u64,
-    /// Cycles that it was told of when all was over.
+    /// Cycles that were passed to the core after all their work.
     pub(crate) cycles: Vec<CycleTimes>,
     pub(crate) skipped: u64,
 }
@@ -116,7 +116,7 @@ fn every_state_comes_once_and_in_order_and_the_rest_is_counted() {
             .collect()
     };
     exchange(1..=30);
-    // The last command has left before its state is in the ring: it is left for the next time.
+    // The last command leaves before its state is in the ring, so that state is read next time.
     let mut taken = take();
     exchange(31..=40);
     taken.extend(take());

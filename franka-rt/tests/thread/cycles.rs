@@ -8,7 +8,8 @@ use super::*;
 
 const DEPTH: usize = 64;
 
-/// Sends these states one by one, each after the one before was answered: none is skipped.
+/// Sends these states one by one, each after the previous one was answered, so that none is
+/// skipped.
 fn exchange_states(peer: &Peer, message_ids: std::ops::RangeInclusive<u64>) {
     for message_id in message_ids {
         peer.send(message_id);
@@ -16,14 +17,14 @@ fn exchange_states(peer: &Peer, message_ids: std::ops::RangeInclusive<u64>) {
     }
 }
 
-/// `message_id` of each cycle that waits, and how many were lost just before it.
+/// Returns `message_id` of each waiting cycle, and the number of cycles lost just before it.
 fn cycles<R>(reader: &mut CycleReader<R>) -> Vec<(u64, u64)> {
     std::iter::from_fn(|| reader.pop())
         .map(|cycle| (cycle.state.message_id, cycle.lost))
         .collect()
 }
 
-/// Waits until so many cycles can be taken: a cycle is passed on once its command has left.
+/// Waits for `count` cycles: a cycle is passed on once its command has left.
 fn wait_until_there<R>(reader: &CycleReader<R>, count: usize) {
     wait_for("cycle", || (reader.waiting() >= count).then_some(()));
 }
@@ -103,7 +104,7 @@ fn too_many_readers_are_refused_and_a_place_is_free_as_soon_as_one_goes() {
     assert_eq!(attach().expect_err("one too many"), AttachError::TooMany);
     exchange_states(&peer, 1..=1);
     readers.pop();
-    // The thread has not given the old ring away yet: the new one waits for its place.
+    // The thread has not returned the old ring yet, so the new reader waits for its place.
     readers.push(attach().expect("one has gone"));
     let mut newest = readers.pop().expect("just pushed");
     for message_id in 2.. {
@@ -127,7 +128,7 @@ fn too_many_readers_are_refused_and_a_place_is_free_as_soon_as_one_goes() {
     );
 }
 
-/// The thread does not look for readers while a borrower that runs no turn has its cycle.
+/// While a borrower that runs no turn has the cycle, the thread does not look for readers.
 #[test]
 fn readers_that_the_thread_does_not_take_are_refused_in_the_end() {
     let (handle, _peer) = start(config(), Probe::default());

@@ -58,7 +58,7 @@ impl Core for Counted {
     }
 }
 
-/// A motion that ends after ten cycles.
+/// Returns the order for a motion that ends after ten cycles.
 fn arm(motion: u64) -> Order {
     let torques = |_: &RobotState, _| Torques([0.0; 7]);
     let shaper = Shaper::new(VERSION, false, 1000.0);
@@ -75,7 +75,7 @@ fn arm(motion: u64) -> Order {
     }
 }
 
-/// The first motion runs code that has never run before, which may have to be read in.
+/// The first motion runs new code, which the system may have to load.
 #[test]
 fn motions_after_the_first_begin_and_end_without_a_page_fault() {
     const MOTIONS: u64 = 15;
@@ -111,7 +111,7 @@ fn motions_after_the_first_begin_and_end_without_a_page_fault() {
         step(RobotMode::Idle, idle);
         counts.push(step(RobotMode::Idle, idle));
     }
-    // Started and ended, for each; none has been taken, so that each lies in a place of its own.
+    // Each motion has the events started and ended. None has been read, so each has its own place.
     assert!(handle.notices.waiting() as u64 >= 2 * MOTIONS);
     let per_motion: Vec<u64> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert_eq!(per_motion, vec![0; per_motion.len()]);

@@ -1,7 +1,7 @@
-//! The thread over real sockets, beside a robot that is a plain UDP socket in this process.
+//! The thread over real sockets, with a robot that is a plain UDP socket in this process.
 //!
-//! Waits have generous deadlines and end as soon as what they wait for is there: the margins are
-//! for a loaded machine with two processors, not for the code.
+//! Waits have long deadlines and end as soon as their condition is true. The margins are for a
+//! loaded machine with two processors, not for the code.
 
 mod cores;
 mod cycles;
@@ -68,7 +68,7 @@ fn state(message_id: u64) -> Vec<u8> {
     bytes
 }
 
-/// Real-time scheduling where this process may have it.
+/// Returns options with real-time scheduling if this process may have it.
 fn config() -> ThreadConfig {
     let scheduling = Scheduling {
         realtime: Realtime::Ignore,
@@ -92,7 +92,7 @@ fn start<C: Core>(config: ThreadConfig, core: C) -> (Handle<C>, Peer) {
     (handle, Peer::new([127, 0, 0, 1], port))
 }
 
-/// Asks again and again until there is an answer.
+/// Polls until there is an answer.
 fn wait_for<T>(what: &str, mut poll: impl FnMut() -> Option<T>) -> T {
     let start = Instant::now();
     loop {

@@ -1,4 +1,4 @@
-//! What comes in: states, invalid datagrams, and silence.
+//! Received datagrams: states, invalid datagrams, and silence.
 
 use std::os::unix::thread::JoinHandleExt;
 use std::sync::OnceLock;
@@ -12,8 +12,8 @@ fn states_are_published_as_they_come() {
     let mut late_reader = handle.states.clone();
     let mut newest = 0;
     let mut sent = 0;
-    // At least 300, and then until the last one has been seen: a host that stands still for long
-    // loses states.
+    // Sends at least 300 states, and continues until the last one was seen: a host that stands
+    // still for long loses states.
     wait_for("state that is the last one sent", || {
         if let Some(state) = handle.states.newest() {
             assert!(
@@ -61,7 +61,7 @@ fn states_are_published_as_they_come() {
 fn the_newest_of_a_burst_wins() {
     let (socket, port) = socket();
     let robot = Peer::new([127, 0, 0, 1], port);
-    // All of them wait in the kernel before there is a thread; 37 is prime to 50, so each id comes
+    // All states wait in the kernel before the thread starts. 37 is prime to 50, so each id occurs
     // once.
     for i in 0..50 {
         robot.send(100 + i * 37 % 50);
@@ -141,7 +141,7 @@ fn silence_is_reported_and_a_later_state_taken() {
     let Notice::Core(Event::LinkLost { silence }) = notice else {
         panic!("{notice:?}")
     };
-    // It was received a little before `heard`; the latest tick after the timeout tells.
+    // The state was received a little before `heard`; the latest tick after the timeout notices.
     assert!(silence >= Duration::from_millis(100), "{silence:?}");
     assert!(
         silence <= heard.elapsed() + Duration::from_secs(1),
@@ -155,7 +155,7 @@ fn silence_is_reported_and_a_later_state_taken() {
     );
 }
 
-/// A busy machine may delay single attempts: one of them has to be in time.
+/// A busy machine may delay single attempts, so only one of them must be in time.
 #[test]
 fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
     let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
@@ -174,8 +174,8 @@ fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
     });
 }
 
-/// Two states in each timeout, whatever a busy machine makes of the pauses: without a busy one in
-/// between, none is lost.
+/// The robot sends two states per timeout. The link is not lost, unless a busy machine lengthens a
+/// pause to the timeout.
 #[test]
 fn a_link_within_the_shortest_timeout_is_not_lost() {
     let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
@@ -203,7 +203,7 @@ fn a_link_within_the_shortest_timeout_is_not_lost() {
 static MEANWHILE: OnceLock<(UdpSocket, Vec<u8>)> = OnceLock::new();
 static HELD_UP: AtomicBool = AtomicBool::new(false);
 
-/// Stands for a host that does not run the interrupted thread for the link timeout.
+/// Simulates a host that does not run the interrupted thread for the link timeout.
 extern "C" fn hold_up(_: libc::c_int) {
     std::thread::sleep(franka_rt::driver::LINK_TIMEOUT);
     let (robot, state) = MEANWHILE.get().expect("it is set before the signal");
@@ -211,7 +211,7 @@ extern "C" fn hold_up(_: libc::c_int) {
     HELD_UP.store(true, Ordering::SeqCst);
 }
 
-/// The thread is that of a borrower, as the driver's own blocks signals.
+/// Uses a borrower's thread, because the driver's own thread blocks signals.
 #[test]
 fn a_state_that_came_while_the_thread_was_held_up_counts_before_the_silence() {
     const LATE: u64 = 1_000_000;
@@ -226,7 +226,7 @@ fn a_state_that_came_while_the_thread_was_held_up_counts_before_the_silence() {
         for message_id in 1.. {
             robot.send(message_id);
             let taken = lease.turn().expect("the thread lives").expect("a state");
-            // The turn in which the signal comes, for nearly all of its time.
+            // The signal almost always comes in this turn, which takes nearly all of the time.
             let next = lease.turn().expect("the thread lives");
             if HELD_UP.load(Ordering::SeqCst) {
                 let late = [Some(taken), next, lease.turn().expect("the thread lives")];

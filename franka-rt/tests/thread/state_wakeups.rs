@@ -1,12 +1,12 @@
-//! When the thread sends wake-ups.
+//! Conditions under which the thread sends wake-ups.
 
 use franka_rt::driver::Driver;
 use franka_rt::thread::{Core, Handle};
 
 use super::{Peer, Probe, VERSION, config, start, wait_for};
 
-/// Sends so many states, each after the one before has been published; ends the thread; returns how
-/// many notifications came.
+/// Sends this many states, each after the previous one was published, and ends the thread. Returns
+/// the number of notifications.
 fn notifications<C: Core>(mut handle: Handle<C>, robot: &Peer, states: u64) -> u64 {
     for id in 1..=states {
         robot.send(id);

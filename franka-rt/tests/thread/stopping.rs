@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A busy machine may delay single attempts: one of them has to be in time.
+/// A busy machine may delay single attempts, so only one of them must be in time.
 #[test]
 fn stopping_takes_less_than_a_tenth_of_a_second() {
     for silent in [true, false] {
@@ -13,7 +13,7 @@ fn stopping_takes_less_than_a_tenth_of_a_second() {
             let sender = (!silent).then(|| {
                 std::thread::spawn(move || {
                     for message_id in 2..100 {
-                        // The port closes under it.
+                        // The port closes during the send.
                         let _ = robot.0.send(&state(message_id));
                         std::thread::sleep(Duration::from_millis(1));
                     }
@@ -36,7 +36,7 @@ fn dropping_the_owner_stops_the_thread_without_waiting() {
     let (handle, _robot) = start(config(), Driver::new(VERSION));
     let stats = handle.stats.clone();
     drop(handle);
-    // The thread's own clone of the counters goes with it.
+    // The thread's own clone of the counters is dropped with the thread.
     wait_for("end", || {
         (std::sync::Arc::strong_count(&stats) == 1).then_some(())
     });

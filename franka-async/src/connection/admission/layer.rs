@@ -83,7 +83,7 @@ mod tests {
 
     use super::*;
 
-    /// Counts the requests that reach it.
+    /// Counts the requests that reach the service.
     #[derive(Clone, Default)]
     struct Counter(Arc<AtomicUsize>);
 

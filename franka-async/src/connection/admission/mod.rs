@@ -350,7 +350,7 @@ mod tests {
                 let got = check(false, peer, &[(name, host)]);
                 assert_eq!(got, wanted, "{peer} {name} {host}");
             }
-            // With one, each of them is, and none without it.
+            // With the token, each of these requests is answered; without it, none is.
             let bearer = ("authorization", &*format!("Bearer {SECRET}"));
             assert_eq!(check(true, peer, &[("host", host), bearer]), Ok(()));
             assert_eq!(check(true, peer, &[("host", host)]), Err(Refused::Token));

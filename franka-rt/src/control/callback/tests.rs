@@ -15,13 +15,14 @@ fn at(message_id: u64) -> RobotState {
     }
 }
 
-/// Leaves commands as they are.
+/// Returns a shaper that leaves commands as they are.
 fn plain(version: Version) -> Shaper {
     Shaper::new(version, false, 1000.0)
 }
 
-/// Two functions that note each call by name, step in milliseconds and cycle. They finish in
-/// the given cycles, counted from one. They command ten times the cycle, and the cycle.
+/// Returns two functions that note each call by name, step in milliseconds and cycle. They finish
+/// in the given cycles, counted from one. The first commands ten times the cycle, the second the
+/// cycle.
 fn both(
     version: Version,
     motion_ends: u32,

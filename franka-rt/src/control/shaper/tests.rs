@@ -10,7 +10,7 @@ use crate::shaping::{FilterFault, Signal, VelocityBounds};
 
 const OFF: f64 = MAX_CUTOFF_FREQUENCY;
 
-/// At rest in a posture that both robots can take, with an elbow.
+/// Returns a state at rest in a posture that both robots can have, with an elbow.
 fn at_rest() -> RobotState {
     let pose = Isometry3::new(Vector3::new(0.4, 0.1, 0.5), Vector3::new(3.0, 0.2, -0.1));
     RobotState {
@@ -22,7 +22,7 @@ fn at_rest() -> RobotState {
     }
 }
 
-/// The pose of the state, moved and turned a little.
+/// Returns the pose of the state, moved and turned a little.
 fn nudged(state: &RobotState) -> CartesianPose {
     let pose = transform::isometry_from_array(&state.O_T_EE_c).expect("a pose");
     let nudge = Isometry3::new(Vector3::new(1e-3, 0.0, 0.0), Vector3::new(0.0, 0.0, 1e-3));
@@ -58,8 +58,8 @@ fn the_filter_comes_before_the_limiter() {
     let mut state = at_rest();
     state.tau_J_d = [0.0; 7];
     let shaper = Shaper::new(Version::V5, true, 100.0);
-    // Filtered to 0.386 N m, which is inside the rate; limited first it would be filtered from
-    // 0.999999.
+    // The torque is filtered to 0.386 N m, which is inside the rate. If it were limited first, it
+    // would be filtered from 0.999999.
     let gentle = shaper.torques(&Torques([1.0; 7]), &state).expect("finite");
     assert!((gentle.0[0] - 0.385_869_545_095_037_5).abs() < 1e-15);
     let harsh = shaper.torques(&Torques([10.0; 7]), &state).expect("finite");
@@ -91,7 +91,7 @@ fn the_first_position_or_pose_of_a_motion_counts_as_its_own_past_in_protocol_10(
         v5.cartesian_pose(&pose, &state, true),
         v5.cartesian_pose(&pose, &state, false)
     );
-    // Twists have no such start: their elbow is always held against the state.
+    // Twists have no such first command: their elbow is always compared with the state.
     let twist = CartesianVelocities {
         O_dP_EE: [0.0; 6],
         elbow: pose.elbow,
@@ -101,7 +101,7 @@ fn the_first_position_or_pose_of_a_motion_counts_as_its_own_past_in_protocol_10(
     assert!(0.1 < elbow[0] && elbow[0] < 0.100_01 && elbow[1] == -1.0);
 }
 
-/// The state of a robot that leaves the commanded fields at zero.
+/// Returns the state of a robot that leaves the commanded fields at zero.
 fn unfilled(state: &RobotState) -> RobotState {
     RobotState {
         O_T_EE_d: state.O_T_EE_c,
@@ -148,7 +148,7 @@ fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
     let free = moved(&Shaper::new(Version::V5, true, OFF));
     let held = moved(&Shaper::new(Version::V10, true, OFF));
     assert!(held < 0.0 && 0.0 < free, "{held} {free}");
-    // Another description, other envelope.
+    // Another description has another envelope.
     let bounds = Bounds::fr3();
     let VelocityBounds::Envelope { mut joints, .. } = bounds.joint_velocity else {
         panic!("the FR3 has an envelope");
@@ -157,7 +157,7 @@ fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
     let shaper = Shaper::new(Version::V10, true, OFF);
     let other = moved(&shaper.with_bounds(bounds.with_envelope_of(&joints)));
     assert!(other > held);
-    // In either order.
+    // The order of the calls has no effect.
     let described = shaper.with_limits_of(&joints);
     assert_eq!(moved(&described.with_bounds(bounds)), other);
     let bounded = shaper.with_bounds(bounds);
@@ -170,7 +170,7 @@ fn the_envelope_of_a_first_position_is_that_of_the_position_itself() {
     let mut q = JointPositions(state.q_d);
     q.0[0] = 2.75;
     let first = Shaper::new(Version::V10, true, OFF).joint_positions(&q, &state, true);
-    // The joint must turn back at 2.75 rad; at 0.1 rad nothing holds it.
+    // The joint must turn back at 2.75 rad; at 0.1 rad no envelope limits it.
     assert!(first.expect("finite").0[0] < 2.75);
 }
 
@@ -225,7 +225,7 @@ fn an_elbow_of_two_zeros_is_none() {
     );
 }
 
-/// The first step that sees a bad number names it.
+/// The first step that finds a bad number names the signal.
 #[test]
 fn what_is_not_finite_is_refused_by_the_first_step_that_sees_it() {
     let state = at_rest();
@@ -338,7 +338,7 @@ fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() 
     }
 }
 
-/// Ordinary numbers, and all special values of floating point.
+/// Generates ordinary numbers, and all special values of floating point.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -3.0..3.0,
@@ -355,7 +355,7 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
     let damaged = damaged.prop_map(|(index, value, [x, y, z, rx, ry, rz])| {
         let pose = Isometry3::new(Vector3::new(x, y, z), Vector3::new(rx, ry, rz));
         let mut pose = transform::array(&pose);
-        // One in four stays whole.
+        // One number in four stays unchanged.
         pose[index] = if index % 4 == 3 { pose[index] } else { value };
         pose
     });
@@ -368,8 +368,8 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
 
-    /// For any input of the program and the robot there is no panic, and a passed command is finite
-    /// and valid.
+    /// For any input of the program and the robot there is no panic, and a command that passes is
+    /// finite and valid.
     #[test]
     fn no_input_at_all_gives_an_invalid_command_or_a_panic(
         numbers in prop::collection::vec(any_number(), 7 * 4 + 6 * 3),

@@ -112,7 +112,7 @@ const DRIFT: [f64; 2] = [0.2, 5.0];
 mod tests {
     use super::*;
 
-    /// Moves to and fro for four seconds, while a joint takes friction and this bias over time.
+    /// Moves to and fro for four seconds. The joint has this friction and, over time, this bias.
     fn to_and_fro(friction: f64, bias: impl Fn(f64) -> f64) -> Learned {
         let mut this = Learned::default();
         for cycle in 0..4000 {

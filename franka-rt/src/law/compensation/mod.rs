@@ -404,7 +404,7 @@ mod tests {
         assert!(!this.is_working(), "at its bound");
     }
 
-    /// The arm comes to rest while something pushes it, which then ends.
+    /// The arm comes to rest while a push acts on it; then the push ends.
     #[test]
     fn what_stood_against_a_push_is_not_kept() {
         let mut this = learned(0.8, 0.0);
@@ -506,7 +506,8 @@ mod tests {
         let mut this = learned(0.8, 0.0);
         let mut last = run(&mut this, 5000, 0.0, 3.1e-4, 0.05);
         for cycle in (0..300).rev() {
-            // The joint is just within its dead zone for a while, where the integral stands still.
+            // The joint is just within its dead zone for a while, where the integral stays
+            // constant.
             let error = if (100..200).contains(&cycle) {
                 2.9e-4
             } else {

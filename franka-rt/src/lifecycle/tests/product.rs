@@ -1,5 +1,5 @@
-//! Every input in every state, and a stop around each of them: no stop is lost, no path becomes a
-//! straight line, and nothing that is over moves the arm again.
+//! Tries every input in every state, with a stop around each: no stop is lost, no path becomes a
+//! straight line, and nothing that has ended moves the arm again.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use super::*;
 use crate::lifecycle::{Engagement, Tuning};
 use crate::session::Budget;
 
-/// Steps of callers, the robot, the thread and the connection. A goal is named by the newest one.
+/// Steps of callers, the robot, the thread and the connection. Each step refers to the newest goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Begin,
@@ -24,11 +24,11 @@ enum Step {
     Cancel,
     Disengage,
     Stop,
-    /// The robot does as it was asked, and time passes.
+    /// The robot does what it was asked, and time passes.
     Run,
     /// The robot leaves the motion without a reply.
     Leaves,
-    /// The robot ends the motion by a reply, and shows it still.
+    /// The robot ends the motion by a reply, but still shows it.
     Preempts,
     Garbles,
     Stalls,
@@ -64,7 +64,7 @@ const STEPS: [Step; 22] = [
     Disconnects,
 ];
 
-/// Ways into the states: of the motion, its goals, its session and stops.
+/// Steps that lead into the states: of the motion, its goals, its session and stops.
 const STATES: [&[Step]; 24] = [
     &[],
     &[Begin],
@@ -95,11 +95,11 @@ const STATES: [&[Step]; 24] = [
 /// A goal that was accepted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Accepted {
-    /// It goes along a path.
+    /// The goal follows a path.
     path: bool,
-    /// It was given another target, or its motion was asked to end.
+    /// The goal got another target, or its motion was asked to end.
     redirected: bool,
-    /// It was taken back, or a stop came after it.
+    /// The goal was cancelled, or a stop came after it.
     over: bool,
 }
 
@@ -125,9 +125,9 @@ enum Robot {
     Idle,
     Asked(MotionId, Modes),
     Runs(MotionId),
-    /// It shows no motion any more, and has not reported how it ended.
+    /// The robot shows no motion any more, but has not reported how the motion ended.
     Left(MotionId),
-    /// It has reported how the motion ended, and shows it for one state more.
+    /// The robot has reported how the motion ended, and shows it for one state more.
     Ended,
 }
 
@@ -238,7 +238,7 @@ impl Bench {
                 let taken = self.pair.lifecycle.chunk(session, goal, chunk, &state);
                 let after = self.pair.lifecycle.heading().map(|(id, _)| id);
                 if taken.is_ok() && (after == Some(id) || before == after) {
-                    // It has its own name only if it is the first, or comes too late.
+                    // The motion has its own name only if it is the first one, or comes too late.
                     self.accept(id, Accepted::default());
                     if after != Some(id) && !self.pair.lifecycle.is_ending() {
                         self.goals.remove(&id);
@@ -265,7 +265,7 @@ impl Bench {
             Close => lifecycle.close(newest),
             Pause => lifecycle.pause(newest, true),
             GoOn => lifecycle.pause(newest, false),
-            // No caller can take back a stop.
+            // Callers cannot cancel a stop.
             Cancel if self.stops.contains(&newest) => {}
             Cancel => {
                 lifecycle.cancel(newest, NOW);
@@ -355,7 +355,7 @@ impl Bench {
         self.settle();
     }
 
-    /// The robot runs what it was asked to run, as an arm does that follows its reference.
+    /// The robot runs the requested motion, as an arm that follows its reference.
     fn run(&mut self, cycles: u32) {
         for _ in 0..cycles {
             match self.robot {
@@ -442,7 +442,7 @@ impl Bench {
         self.check(kept, || format!("{id:?} has lost its path"));
     }
 
-    /// Lets everything come to its end.
+    /// Runs until everything has ended.
     fn end(&mut self) {
         self.take(Revives);
         self.run(400);

@@ -1,8 +1,8 @@
-//! Stops, beside states that show a motion for longer than they should.
+//! Stops, with states that show a motion for longer than they should.
 
 use super::*;
 
-/// Outcome of a stop, with which nothing but the success counts.
+/// Returns the outcome of a stop; of a success, the report is ignored.
 fn ended(pair: &LifecycleAndDriver, id: u64) -> Option<Result<(), MotionError>> {
     let mut of_id = pair.resolved.iter().filter(|(goal, _)| *goal == GoalId(id));
     let outcome = of_id.next().map(|(_, result)| result.clone().map(drop));
@@ -29,7 +29,7 @@ impl LifecycleAndDriver {
         self.settle();
     }
 
-    /// The robot shows no motion, and joint 1 at this velocity.
+    /// The robot shows no motion, and this velocity at joint 1.
     fn comes_to(&mut self, dq: f64) {
         self.state.motion_generator_mode = MotionGeneratorMode::Idle;
         self.state.dq[0] = dq;
@@ -37,7 +37,7 @@ impl LifecycleAndDriver {
     }
 }
 
-/// The robot was asked to stop, and shows the motion beyond the deadline.
+/// The robot was asked to stop, but shows the motion beyond the deadline.
 fn given_up() -> LifecycleAndDriver {
     let (mut pair, motion, _) = LifecycleAndDriver::moving();
     let violation = Violation::SecondMotionStarted { id: CommandId(1) };
@@ -110,7 +110,7 @@ fn stop_without_a_motion_of_this_program_waits_for_an_arm_that_moves() {
         velocity: 0.2,
     };
     assert_eq!(ended(&pair, 11), Some(Err(moves)));
-    // A state that is not finite shows nothing.
+    // A state that is not finite does not show rest.
     pair.comes_to(f64::NAN);
     assert!(pair.stop(12));
     pair.comes_to(0.0);

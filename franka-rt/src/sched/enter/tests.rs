@@ -1,8 +1,8 @@
-//! Effect of the options in the kernel.
+//! Effect of the scheduling options in the kernel.
 
 use super::*;
 
-/// Runs `asked.enter()` in a new thread and returns its result and what `/proc` shows of that
+/// Runs `asked.enter()` in a new thread. Returns the result and the lines of `/proc` about that
 /// thread.
 fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     std::thread::spawn(move || {
@@ -206,7 +206,7 @@ fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
 
 #[test]
 fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
-    // A descriptor that is not a socket.
+    // This descriptor is not a socket.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
     let duration = Duration::from_micros(50);
     let errno = libc::ENOTSOCK;

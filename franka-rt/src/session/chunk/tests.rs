@@ -1,4 +1,4 @@
-//! Chunks through the ring, the player and the servo, as a session takes them up.
+//! Chunks through the ring, the player and the servo, as in a session.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -272,8 +272,8 @@ fn a_policy_of_10_hz_and_150_ms_latency_follows_a_sine_to_a_tenth_of_a_milliradi
     assert!(naive > 300.0 * worst, "{worst} against {naive}");
 }
 
-/// Error of the same policy if its points are set one by one as targets, each for 50 ms from its
-/// arrival.
+/// Returns the error of the same policy if its points are set one by one as targets, each for 50 ms
+/// from its arrival.
 fn naive_error() -> f64 {
     let budget = Budget::of(Model::fr3().joint_limits());
     let limits = Limits::per_axis(budget.joints).unwrap();
@@ -443,7 +443,7 @@ fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
         "{event:?}"
     );
     assert_eq!(session.fates(), [Fate::Ended]);
-    // Another chunk sets it in motion again.
+    // Another chunk starts the reference again.
     session.chunks.send(GOAL, Session::way()).unwrap();
     session.run(300);
     assert!(JointVector::from(session.state.dq).amax() > 0.01);

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use super::*;
 use crate::session::running::Measured;
 
-/// Shows states to conditions.
+/// Passes states to conditions.
 struct Arm {
     state: RobotState,
     measured: Measured,
@@ -39,7 +39,7 @@ impl Arm {
         }
     }
 
-    /// True if a condition is met in the first state that it sees.
+    /// True if a condition is true in the first state that it sees.
     fn meets(&self, condition: Condition) -> bool {
         assert_eq!(condition.check(), Ok(()));
         Watch::new(condition, self.measured.time).is_met(&self.observed(), &self.measured)
@@ -382,7 +382,7 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
         (torque(0.25), false),
         (Quantity::Torque(Axis::Y).above(0.19), true),
         (joint_torques(0.1), false),
-        // These have no tare.
+        // These quantities have no tare.
         (position.above(0.49), true),
         (position.above(0.51), false),
     ] {

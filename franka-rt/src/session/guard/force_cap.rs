@@ -258,8 +258,8 @@ mod tests {
         assert_eq!(bound, 1, "binds from somewhere on");
     }
 
-    /// An arm released a good way off its stiff reference, under a small cap: it stops there and
-    /// gains no energy.
+    /// An arm is released far from its stiff reference, under a small cap. It stops at the
+    /// reference and gains no energy.
     #[test]
     fn an_arm_at_full_force_does_not_swing_up() {
         let stiff =

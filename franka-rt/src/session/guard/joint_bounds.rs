@@ -205,7 +205,7 @@ mod tests {
         assert!(open.lower.velocity < 0.0);
     }
 
-    /// Drives joint `i` upwards as hard as it may, for a second and a half.
+    /// Drives joint `i` upwards as fast as the bounds allow, for a second and a half.
     fn drive(i: usize, model: &Model, mut reference: Reference, budget: &Budget) -> Vec<Reference> {
         let limits = model.joint_limits();
         let mut passed = Vec::new();

@@ -161,8 +161,8 @@ mod tests {
         }
     }
 
-    /// Returns the first cycle, from 1, in which the guard reports an arm that gets this command in
-    /// each cycle.
+    /// Returns the first cycle, from 1, in which the guard reports an arm that receives this
+    /// command in each cycle.
     fn named(state: &RobotState, commanded: Commanded<'_>) -> Option<u32> {
         let mut this = Unresponsive::default();
         (1..=1000).find(|_| this.watch(state, commanded))
@@ -177,7 +177,8 @@ mod tests {
         };
         assert_eq!(of(8.0, 0.5, 0.0), Some(HOLD));
         assert_eq!(of(-8.0, 0.5, 1e-3), Some(HOLD));
-        // Friction may hold it; something holds it; another joint moves; no estimate.
+        // Four cases: friction may hold the arm; an obstacle holds it; another joint moves; no
+        // estimate.
         for (torque, external, dq) in [
             (1.6, 0.0, 0.0),
             (-4.9, 0.0, 0.0),

@@ -101,7 +101,7 @@ mod tests {
     }
 
     /// Uses the inertia of links and rotors near the ready pose. The torque is the greatest that
-    /// they tolerate at the robot's torque rate, through the filter and the rate limit of the
+    /// the joints tolerate at the robot's torque rate, through the filter and the rate limit of the
     /// cycle.
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {

@@ -1,4 +1,4 @@
-//! Robots that integrate velocities differently from the sent ones.
+//! Robots whose integrated velocities differ from the sent ones.
 
 use std::sync::Arc;
 
@@ -124,7 +124,7 @@ fn twists_make_up_for_a_small_drift_and_go_on_from_a_large_one() {
     }
 }
 
-/// State after a lost command: the robot is at the reference, and moves differently.
+/// After a lost command, the robot is at the reference, but moves at another velocity.
 #[test]
 fn velocities_go_on_from_those_of_the_robot() {
     let model = Model::fr3();
@@ -147,8 +147,8 @@ fn velocities_go_on_from_those_of_the_robot() {
     }
 }
 
-/// The robot's poses differ from the model's, and it fills in the commanded fields or leaves them
-/// at zero.
+/// The robot's poses differ from the model's. The robot fills in the commanded fields or leaves
+/// them at zero.
 #[test]
 fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
     let model = Model::fr3();

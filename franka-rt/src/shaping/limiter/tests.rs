@@ -1,5 +1,5 @@
-//! Bounds of limited commands for any input: walks from rest in which every result is the next last
-//! value.
+//! Bounds of limited commands for any input: walks from rest in which every result is the last
+//! value of the next step.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, READY, RobotKind, Twist, rotation, transform};
@@ -50,7 +50,7 @@ impl<const N: usize> Last<N> {
         acceleration: [0.0; N],
     };
 
-    /// Takes the next velocity and gives the jerk that leads to it.
+    /// Advances to the next velocity and returns the jerk that leads to it.
     fn advance(&mut self, velocity: [f64; N]) -> [f64; N] {
         let rate =
             |new: [f64; N], old: [f64; N]| core::array::from_fn(|i| (new[i] - old[i]) / CYCLE);
@@ -191,7 +191,7 @@ proptest! {
         }
     }
 
-    /// The last values are measured at the poses, as the robot does it.
+    /// The last values are measured at the poses, as in the robot.
     #[test]
     fn poses_keep_velocity_and_acceleration_and_stay_poses(
         shares in commands::<6>(-2.0..2.0),
@@ -227,8 +227,8 @@ proptest! {
     }
 }
 
-/// Sends every joint of the FR3 against the end of its range, upwards or downwards, and gives where
-/// each stands after six seconds and by how much it passed its envelope, `[rad/s]`.
+/// Drives every joint of the FR3 against the end of its range, upwards or downwards. Returns where
+/// each joint is after six seconds and by how much it passed its envelope, `[rad/s]`.
 fn against_the_end(direction: f64) -> ([f64; 7], [f64; 7]) {
     let limits = JointLimits::of(RobotKind::Fr3);
     let bounds = Bounds::fr3();
@@ -264,7 +264,7 @@ fn a_joint_sent_against_the_end_of_its_range_stops_before_it() {
     }
 }
 
-/// As the module states of the limiters of libfranka, the acceleration bound yields downwards only.
+/// As documented in the module, the acceleration bound yields downwards only.
 #[test]
 fn joints_5_and_7_of_the_fr3_pass_their_upper_end() {
     let limits = JointLimits::of(RobotKind::Fr3);
@@ -285,7 +285,7 @@ fn above_its_bounds_a_velocity_keeps_the_acceleration_and_below_them_it_does_not
     };
     assert_eq!(velocity(&bounds, 2.0, 2.0, 0.0), Ok(2.0 - 10.0 * CYCLE));
     assert_eq!(velocity(&bounds, -2.0, -2.0, 0.0), Ok(-2.0 + 500.0 * CYCLE));
-    // The lower bound is taken last: it wins where both cannot be kept.
+    // The lower bound is applied last: it takes precedence where both cannot be kept.
     let turned = AxisBounds {
         upper_velocity: -1.0,
         lower_velocity: 1.0,

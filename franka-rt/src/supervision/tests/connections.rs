@@ -1,4 +1,4 @@
-//! Connections: lost, made again, given up; and their events.
+//! Connections: lost, restored, given up; and their events.
 
 use super::*;
 
@@ -91,7 +91,7 @@ const CHANGES: [fn(&mut RobotState); 4] = [
     |state| state.message_id += 3_600_000,
 ];
 
-/// Loses the connection and makes it again with a robot that has changed; returns the reported
+/// Loses the connection and restores it with a robot that has changed. Returns the reported
 /// differences.
 fn change(robot: &mut Supervised, change: fn(&mut RobotState), mode: RobotMode) -> Differences {
     robot.lose(CloseReason::ClosedByPeer);
@@ -129,7 +129,7 @@ fn robot_that_is_not_recognised_is_recovered_only_by_agreement() {
         robot.answers(asked.number, Ok(()));
         robot.recovers();
         assert_eq!(robot.condition(), Condition::Ready);
-        // From now on it is known.
+        // From now on the robot is known.
         robot.reflex([COLLISION]);
         assert_eq!(robot.recoveries(), [asked.number, asked.number + 1]);
     }
@@ -150,7 +150,7 @@ fn motion_does_not_wait_for_a_robot_that_is_not_recognised() {
             panic!("{motions:?}")
         };
         assert!(matches!(why, Unready::Unrecognised(_)), "{why}");
-        // A caller that asks now takes it as it is.
+        // A caller that requests a motion now accepts the robot as it is.
         assert_eq!(robot.condition(), Condition::Ready);
         assert!(matches!(robot.submit(2), Admission::Begin));
     }

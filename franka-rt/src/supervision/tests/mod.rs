@@ -1,4 +1,4 @@
-//! Policies, mishap by mishap, with a robot that a test makes up.
+//! Policies, mishap by mishap, with a robot whose states a test makes up.
 
 mod connections;
 mod motions;
@@ -33,7 +33,7 @@ struct Supervised {
 }
 
 impl Supervised {
-    /// A robot that is connected, has been for a while, and takes motions.
+    /// Returns a robot that has been connected for a while, and accepts motions.
     fn ready(policy: Policy) -> Self {
         Self::connected(Some(policy))
     }
@@ -57,7 +57,7 @@ impl Supervised {
         this
     }
 
-    /// The clock of a robot that is not restarted.
+    /// Sets the clock of a robot that was not restarted.
     fn goes_on(&mut self) {
         self.state.message_id = (self.state.message_id + 1).max(self.now + 1);
     }
@@ -83,7 +83,7 @@ impl Supervised {
         result
     }
 
-    /// Lets this much time pass, and handles everything when it is due.
+    /// Lets this time pass, and handles every deadline when it is due.
     fn pass(&mut self, milliseconds: u64) {
         let end = self.now + milliseconds;
         while let Some(due) = self.supervision.deadline().filter(|due| *due <= MS(end)) {
@@ -151,7 +151,7 @@ impl Supervised {
         self.supervision.health().condition
     }
 
-    /// Numbers of the reflexes that it has asked to recover from.
+    /// Returns the numbers of the reflexes that the supervision has asked to recover from.
     fn recoveries(&self) -> Vec<u64> {
         let of = |output: &Output| match output {
             Output::Recover { reflex } => Some(*reflex),
@@ -165,7 +165,7 @@ impl Supervised {
         self.asked.iter().filter(is).count()
     }
 
-    /// Results of the motions that waited: whether they began, or why not.
+    /// Returns the results of the motions that waited: whether they began, or why not.
     fn motions(&mut self) -> Vec<(u64, Option<MotionError>)> {
         let asked = std::mem::take(&mut self.asked);
         let of = |output| match output {

@@ -1,4 +1,4 @@
-//! Motions that are asked for while the robot is not ready.
+//! Motions that are requested while the robot is not ready.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn a_motion_meanwhile_is_refused_unless_it_may_wait() {
         panic!("it does not wait")
     };
     assert_eq!(error, not_ready(Unready::Disconnected, 0));
-    // The robot itself refuses what the supervisor will not change.
+    // The robot itself refuses motions for conditions that the supervisor will not change.
     let mut robot = Supervised::ready(without_chance().motions_wait(MS(1000)));
     for mode in [
         RobotMode::UserStopped,
@@ -68,7 +68,8 @@ fn latched_stop_refuses_every_motion_until_released_across_connections() {
         assert_eq!(robot.condition(), Condition::Unready(Unready::StopLatched));
         refused(&mut robot, 1);
         if policy.is_some() {
-            // In a reflex, without a connection, and when the next one is there.
+            // The latch refuses motions in a reflex, without a connection, and on the next
+            // connection.
             robot.reflex([COLLISION]);
             refused(&mut robot, 2);
             robot.lose(CloseReason::ClosedByPeer);
@@ -109,7 +110,7 @@ fn latched_stop_takes_back_the_motion_that_waits() {
     assert_eq!(robot.motions(), [], "it never begins");
 }
 
-/// A program passes the longest duration to wait indefinitely.
+/// A program may pass the longest duration to wait indefinitely.
 #[test]
 fn motions_and_silences_may_take_the_longest_duration() {
     let ever = Duration::MAX;

@@ -1,4 +1,4 @@
-//! Reflexes: reported, recovered from, left alone.
+//! Reflexes: reported, recovered from, or left to a person.
 
 use super::*;
 
@@ -44,7 +44,7 @@ fn a_reflex_is_told_and_recovered_from_once_its_motion_has_ended() {
     assert_eq!(robot.recoveries(), [1]);
 }
 
-/// The states of a busy host may be read after the replies.
+/// On a busy host, states may be read after the replies.
 #[test]
 fn a_reflex_that_ended_a_motion_before_a_state_shows_it_has_its_log_too() {
     let mut robot = Supervised::ready(without_chance().recover(3, WINDOW));
@@ -86,7 +86,7 @@ fn it_recovers_as_often_as_the_policy_allows_and_from_the_errors_that_it_names()
     assert_eq!(without_chance().only([COLLISION]).recover(9, WINDOW), only);
     for (errors, left) in [
         (vec![COLLISION], None),
-        // A reflex whose state names no error may be any.
+        // A reflex whose state names no error may have any cause.
         (vec![], Some(NotRecovered::OtherError)),
         (
             vec![COLLISION, RobotError::PowerLimitViolation],
@@ -114,7 +114,7 @@ fn recoveries_that_fail_are_repeated_with_pauses_and_count() {
     robot.pass(1);
     assert_eq!(robot.recoveries(), [1, 1]);
     robot.answers(1, Ok(()));
-    // Answered, and yet the robot shows the reflex.
+    // The robot has answered, but still shows the reflex.
     robot.pass(2000 + 199);
     assert_eq!(robot.recoveries(), [1, 1]);
     robot.pass(1);
@@ -140,7 +140,7 @@ fn a_recovery_waits_for_the_release_of_the_user_stop() {
     robot.pass(5000);
     robot.reflex([COLLISION]);
     assert_eq!(robot.recoveries(), [1]);
-    // Pressed again while the robot recovers.
+    // The stop is pressed again while the robot recovers.
     robot.shows(RobotMode::UserStopped);
     robot.answers(1, Err(RecoveryFailure::Other));
     robot.pass(5000);

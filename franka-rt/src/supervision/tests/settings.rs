@@ -1,4 +1,4 @@
-//! Settings of a program: on every connection before a motion begins there.
+//! Settings of a program: sent on every connection before a motion begins there.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn reconnect(robot: &mut Supervised) {
     assert!(robot.connect());
 }
 
-/// Number of times that it was asked for settings.
+/// Returns the number of times that the supervision asked to send settings.
 fn configures(robot: &mut Supervised) -> usize {
     let is = |output: &mut Output| matches!(output, Output::Configure);
     robot.asked.extract_if(.., is).count()
@@ -138,7 +138,7 @@ fn setting_that_is_not_taken_again_refuses_motions() {
                 if *command == Command::SetJointImpedance && !text.is_empty())
         });
         assert_eq!(told.count(), 1);
-        // It is not asked for again and again, but when the robot is idle anew.
+        // The setting is not sent again and again, but when the robot becomes idle again.
         robot.pass(10_000);
         robot.shows(RobotMode::Idle);
         assert_eq!(configures(&mut robot), 0);
@@ -147,7 +147,7 @@ fn setting_that_is_not_taken_again_refuses_motions() {
         assert_eq!(configures(&mut robot), 1);
         again(&mut robot, STIFF, refusal());
         assert_eq!(next(&mut robot), None);
-        // Another refused value is no better; a value that is taken is.
+        // Another refused value changes nothing; an accepted value does.
         set(&mut robot, SOFT, &refusal());
         assert_eq!(robot.condition(), Condition::Unready(NOT_SET));
         set(&mut robot, SOFT, &Answer::Taken);
@@ -165,7 +165,7 @@ fn robot_held_otherwise_gets_no_motion_before_its_settings() {
     for mode in [RobotMode::UserStopped, RobotMode::Guiding, RobotMode::Other] {
         robot.state.robot_mode = mode;
         assert!(robot.connect());
-        // The robot may be idle before it has the motion.
+        // The robot may be idle before it receives the motion.
         assert!(matches!(robot.submit(1), Admission::Refuse(_)), "{mode}");
         robot.lose(CloseReason::ClosedByPeer);
         robot.release();
@@ -211,13 +211,13 @@ fn newest_value_counts_unless_it_is_refused() {
     set(&mut robot, STIFF, &Answer::Taken);
     set(&mut robot, SOFT, &Answer::Taken);
     set(&mut robot, STIFF, &refusal());
-    // A first value that is refused is none.
+    // A first value that is refused does not count as set.
     set(&mut robot, FREE, &refusal());
     assert_eq!(robot.condition(), Condition::Ready);
     reconnect(&mut robot);
     again(&mut robot, SOFT, Answer::Taken);
     assert_eq!(next(&mut robot), None);
-    // One without an answer is made again at once: the robot may have it or not.
+    // A setting without an answer is sent again at once, because the robot may have it or not.
     configures(&mut robot);
     set(&mut robot, STIFF, &unknown());
     assert_eq!(robot.condition(), CONFIGURING);
@@ -261,7 +261,7 @@ fn setting_of_the_program_is_awaited_before_motions_begin() {
         set(&mut robot, FREE, &Answer::Taken);
         reconnect(&mut robot);
         assert_eq!(configures(&mut robot), 1);
-        // It is sent while the others are set again.
+        // The setting is sent while the others are sent again.
         let id = robot.supervision.declare(SOFT);
         again(&mut robot, FREE, Answer::Taken);
         assert_eq!(next(&mut robot), None);
@@ -281,7 +281,7 @@ fn setting_of_the_program_is_awaited_before_motions_begin() {
 fn setting_that_states_no_longer_show_refuses_motions() {
     let text = String::from("got 0 kg, expected 0.5 kg");
     let other = Answer::NotShown { text };
-    // A robot that rounds has never shown it.
+    // A robot that rounds has never shown the setting.
     for (before, now) in [
         (&Answer::Taken, Condition::Unready(NOT_SET)),
         (&other, Condition::Ready),

@@ -197,7 +197,7 @@ fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
     plan.duration()
 }
 
-/// The generator of goals is the oracle with jerk: it finds the exact optimum of a straight line.
+/// The generator of goals is the oracle with jerk limits: it finds the exact optimum of a line.
 #[test]
 fn a_line_that_is_gone_too_slowly_is_made_as_fast_as_the_plan_of_a_goal() {
     let model = Model::fr3();
@@ -304,7 +304,7 @@ fn random_paths_take_hardly_longer_than_a_lower_bound() {
 struct Gone {
     /// True if the arm reaches the end.
     arrives: bool,
-    /// Greatest distance of its joints from the path, in units of the permitted distance.
+    /// Greatest distance of the joints from the path, in units of the permitted distance.
     off: f64,
 }
 
@@ -502,7 +502,7 @@ fn a_preview_says_where_the_guards_stop_the_arm() {
     let sunk = here.translation.z - height;
     assert!((0.05..0.2).contains(&sunk), "{sunk}");
     assert!(found.time < preview.duration());
-    // From too near the block, only the way out is free.
+    // If the arm begins too near to the block, only the way out is free.
     assert_eq!(blocked(0.1, 0.01).0, None);
     assert!(blocked(-0.01, 0.01).0.is_some());
     let too_many = vec![Obstacle::floor(0.0); 5];

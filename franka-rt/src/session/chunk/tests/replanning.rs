@@ -111,7 +111,7 @@ fn run(
     seen
 }
 
-/// Sine of 0.4 Hz, which begins in motion: the arm is behind at first.
+/// Returns a sine of 0.4 Hz, which begins in motion: the arm is behind at first.
 fn sine(amplitude: f64, t: f64) -> f64 {
     amplitude * (TAU * 0.4 * t).sin()
 }
@@ -139,7 +139,7 @@ fn what_the_arm_lags_behind_does_not_grow_from_chunk_to_chunk() {
     }
 }
 
-/// Same for joints, and through a session.
+/// Same for joints, in a session.
 #[test]
 fn joints_that_lag_behind_do_not_swing_in_a_session() {
     let rhythm = rhythm(50, 150, 20, 50, 50);
@@ -205,7 +205,7 @@ fn a_policy_that_predicts_from_where_the_arm_is_gets_on() {
 }
 
 /// A chunk may jump, and the next chunk may arrive at any time of the jump. The arm stays between
-/// the two, and stays in its place if the next chunk leads there.
+/// the two chunks, and stays in its place if the next chunk leads there.
 #[test]
 fn a_jump_that_another_chunk_cuts_off_is_not_carried_on() {
     let cases = [480, 510, 525, 540, 560]

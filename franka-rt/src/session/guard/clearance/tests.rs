@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 
 use crate::session::{Budget, course};
 
-/// True if nothing is known to be near within `turns` of `q`.
+/// True if no obstacle is known to be near within `turns` of `q`.
 fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool {
     let known = clearance.known.as_ref();
     let candidates = known.map(|known| known.bound.candidates(&clearance.spacing, q, turns));
