@@ -177,7 +177,7 @@ pub(crate) fn unserved<E>(_: E) -> Outcome {
 /// Receivers of reports on a program, a session or a motion.
 #[derive(Debug)]
 pub(crate) struct Replies {
-    /// Is told when a program or a session has begun.
+    /// Receives the beginning of a program or a session.
     pub(crate) began: Option<oneshot::Sender<()>>,
     /// Receives the outcome.
     pub(crate) ended: EndReply,

@@ -136,7 +136,7 @@ impl What {
     }
 }
 
-/// Whether an action succeeded, or the text of its error.
+/// True if an action succeeded, false if not, or the text of its error.
 pub(crate) type ActionEnd = Result<bool, String>;
 
 /// A goal, a session or a program that was requested.

@@ -136,9 +136,9 @@ impl Robot {
     ///
     /// A load that is impossible for a rigid body is refused before it is sent. It has a mass below
     /// 0, an inertia that is not symmetric, or a principal moment below 0 or above the sum of the
-    /// others. The vendor documents no range. The simulator also refuses more than 10 kg, a centre
-    /// more than 1 m away, and a principal moment above 1 kg m^2. Its configuration can change
-    /// these bounds.
+    /// others. The vendor documents no range. The simulator also refuses more than 10 kg and a
+    /// centre more than 1 m away. It refuses a principal moment above 1 kg m^2. Its configuration
+    /// can change these bounds.
     ///
     /// # Errors
     /// As for [`Self::set_k`].
@@ -191,8 +191,8 @@ impl Robot {
         urdf(&self.channel(), ANSWER).await
     }
 
-    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000
-    /// Hz switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz. The
+    /// upper end switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
     /// vendor: filter in this program instead.
     ///
     /// # Errors

@@ -15,12 +15,12 @@ type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
 /// The program of a motion that calls one or two control functions with every state.
 ///
-/// The rules are those of libfranka's control loops. A function receives a state and the robot's
-/// time since the previous state: zero at first, and more than a millisecond after a loss. The
-/// returned command passes the low-pass filter, the limiter and the checks. Two functions see the
-/// same state and step. Once one function finishes, the other is not called any more; its command
-/// of the previous cycle is part of the last command. In protocol 10 the torque function is called
-/// first, in protocol 5 the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
+/// The rules follow libfranka's control loops. A function receives a state and the robot's time
+/// since the previous state: zero at first, and more than a millisecond after a loss. The returned
+/// command passes the low-pass filter, the limiter and the checks. Two functions see the same state
+/// and step. Once one function finishes, the other is not called any more; its command of the
+/// previous cycle is part of the last command. In protocol 10 the torque function is called first,
+/// in protocol 5 the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
     generator_first: bool,

@@ -66,8 +66,8 @@ impl Execution {
         )
     }
 
-    /// Gives the motion up: it ends once the robot has left it. A program that brakes by itself
-    /// continues until then.
+    /// Gives the motion up: it ends once the robot has left it. A program that brakes without the
+    /// robot continues until then.
     pub(super) fn abandon(&mut self) {
         self.phase = match self.phase {
             Phase::Armed => Phase::Unwanted(0),

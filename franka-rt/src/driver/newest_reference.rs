@@ -23,8 +23,8 @@ pub struct ReferenceState {
     pub elapsed: Duration,
     /// See [`Record::remaining`].
     pub remaining: Duration,
-    /// The guards that bound the command of this cycle or of a recent one: of at least the last
-    /// [`Self::GUARDS_MS`], and of at most twice that.
+    /// The guards that bound the command of this cycle or of a recent one. The set covers at
+    /// least the last [`Self::GUARDS_MS`], and at most twice that.
     pub guards: Bindings,
 }
 

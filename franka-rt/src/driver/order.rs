@@ -39,8 +39,8 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
-    /// End the motion, because no caller waits for it any more. A program of goals brakes by
-    /// itself, as its newest goal requires. Any other program gets no more states, and the robot
+    /// End the motion, because no caller waits for it any more. A program of goals brakes without
+    /// the robot, as its newest goal requires. Any other program gets no more states, and the robot
     /// stops on its own without commands. An armed motion ends once the robot has shown no motion
     /// for 20 states in a row.
     Abandon {

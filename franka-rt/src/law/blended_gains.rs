@@ -1,11 +1,11 @@
-//! Gains as the cycle uses them: only numbers, so that values between those of two goals exist.
+//! Gains as the cycle uses them: only numbers, so that values between two goals exist.
 
 use crate::law::fade::{Blend, mix};
 use crate::law::{Gains, Law};
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
 
 /// Gains and force cap as numbers. A choice is a weight between 0 and 1, so that all values can be
-/// between those of two goals.
+/// between two goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BlendedGains {
     pub(crate) cartesian_stiffness: [f64; 6],

@@ -14,8 +14,8 @@
 //! The thread is armed before the `Move` is sent, so the first state of the motion finds it ready.
 //! Robot and thread then report in any order; the motion has ended when both have reported its end.
 //! Goals come and go meanwhile: a newer goal supersedes the older one within the same motion, and a
-//! goal that came too late for it gets its own motion. A program of the user runs in a motion of
-//! its own. A motion that is given up, because a reply cannot be read or a deadline has passed,
+//! goal that came too late for it gets its own motion. A program of the user runs in a separate
+//! motion. A motion that is given up, because a reply cannot be read or a deadline has passed,
 //! resolves at once; the next motion waits until the thread has seen the robot leave it. The phases
 //! `Stalled` and `Closed` can follow on any other phase. A stop outlives the motion that it brakes:
 //! it waits until a state shows an arm at rest. If a hand keeps the arm in motion, the robot stops

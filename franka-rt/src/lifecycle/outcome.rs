@@ -256,7 +256,7 @@ impl MotionError {
     ///
     /// After a reflex the robot must be recovered first. After a lost link or connection, the
     /// program must reconnect. A failed control function may also have left the robot without
-    /// commands for so long that the robot has stopped itself.
+    /// commands until the robot stopped itself.
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,

@@ -233,8 +233,8 @@ impl Lifecycle {
         })
     }
 
-    /// Postpones the deadlines that have passed by `now`: of the motion under way or given up, and
-    /// of stops.
+    /// Postpones the deadlines that have passed by `now`. They belong to the motion under way or
+    /// given up, and to stops.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {

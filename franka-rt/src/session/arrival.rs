@@ -264,7 +264,7 @@ impl Release {
         self.cycle >= RELEASE && at_rest
     }
 
-    /// True if the arm does not come to rest in time.
+    /// True if the arm does not stop in time.
     pub(super) fn is_in_vain(&self) -> bool {
         u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
     }

@@ -55,7 +55,7 @@ enum GuideStage {
 struct Floating {
     /// Pose in which the fixed axes stay.
     pose: Isometry3<f64>,
-    /// Positions in which the joints stay, as far as the end effector allows.
+    /// Positions in which the joints stay, to the extent that the end effector allows.
     q: JointVector,
     /// Offset of the reference from the arm at the release, of the joints and of the end effector.
     offset: JointVector,

@@ -177,7 +177,7 @@ mod tests {
     }
 
     /// Results of simulated arms: `arms --law joint --scaled joint-damping --gain F` was quiet with
-    /// F = 2.4 and oscillated with 3. With all default gains it was quiet with 4.
+    /// a factor of 2.4 and was not with 3. With all gains of the default it was quiet with 4.
     #[test]
     fn it_is_what_simulated_arms_have() {
         let margin = of(Gains::joint()).damping;

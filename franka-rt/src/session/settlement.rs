@@ -73,7 +73,7 @@ pub enum Lapse {
     /// The [`Deadman`](super::Deadman) that the session is bound to fell silent, or was dropped.
     Deadman,
     /// Something pushed the arm further from its path than [`Deviation`](super::Deviation) allows.
-    /// From further away, the arm must not return by itself.
+    /// From further away, the arm must not return automatically.
     Displaced,
     /// The path comes too near to the arm itself or a keep-out region: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).

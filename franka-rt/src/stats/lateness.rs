@@ -9,10 +9,10 @@ use super::cycle::CYCLE_NANOS;
 /// Estimates when the next state is due, from the arrivals of earlier states.
 ///
 /// The robot sends one state per millisecond of its own clock, and no state arrives before it was
-/// sent. The offset between the two clocks is therefore that of the most punctual state of a recent
-/// window. The lateness of another state is the delay of network, kernel and scheduler. The window
-/// is short, so that clock drift and pauses of a simulated robot are soon forgotten. A drift of 100
-/// ppm makes 6 us in a window.
+/// sent. The offset between the two clocks is therefore taken from the most punctual state of a
+/// recent window. The lateness of another state is the delay of network, kernel and scheduler. The
+/// window is short, so that clock drift and pauses of a simulated robot are soon forgotten. A drift
+/// of 100 ppm makes 6 us in a window.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
     /// `message_id` and arrival of the state from which all offsets are counted.

@@ -45,7 +45,7 @@ pub struct Backoff {
 }
 
 impl Default for Backoff {
-    /// Returns pauses from 100 ms to 5 s, with a jitter of 0.3.
+    /// Returns pauses from 100 ms to 5 s. The jitter is 0.3.
     fn default() -> Self {
         Self {
             first: Duration::from_millis(100),

@@ -30,7 +30,7 @@
 //! Something holds the arm if the springs demand more than that bound or a guard bounds them. Then
 //! nothing is learned, the torques against friction at rest fade, and the integral returns to the
 //! value that held the arm at rest. After a goal has reacted to a contact, nothing is learned until
-//! the next goal: a push on the arm would look like friction or a load, and later motions would end
+//! the next goal. A push on the arm would look like friction or a load, and later motions would end
 //! short of their targets.
 
 mod learned;
@@ -404,7 +404,7 @@ mod tests {
         assert!(!this.is_working(), "at its bound");
     }
 
-    /// The arm comes to rest while a push acts on it; then the push ends.
+    /// The arm stops while a push acts on it; then the push ends.
     #[test]
     fn what_stood_against_a_push_is_not_kept() {
         let mut this = learned(0.8, 0.0);

@@ -64,7 +64,7 @@ const STEPS: [Step; 22] = [
     Disconnects,
 ];
 
-/// Steps that lead into the states: of the motion, its goals, its session and stops.
+/// Steps that lead into the states of the motion, its goals, its session and stops.
 const STATES: [&[Step]; 24] = [
     &[],
     &[Begin],

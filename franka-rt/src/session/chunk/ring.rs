@@ -85,7 +85,7 @@ pub struct ChunkReader {
     returns: Sender<Returned>,
     /// The newest chunk, until the session begins it.
     newest: Option<Sent>,
-    /// Of the chunks that waited since a chunk last began, the chunk that was due first.
+    /// The chunk that was due first, of the chunks that waited since a chunk last began.
     due: Option<Waiting>,
 }
 

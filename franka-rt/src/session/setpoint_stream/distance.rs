@@ -80,8 +80,8 @@ pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     apart(shaped, asked).amax() <= most
 }
 
-/// Returns the distance between two setpoints of the same kind: of the joints, `[rad]`, or of
-/// translation, elements of the rotation, and elbow, `[m, rad]`.
+/// Returns the distance between two setpoints of the same kind. The distance has the joints,
+/// `[rad]`, or translation, elements of the rotation, and elbow, `[m, rad]`.
 pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     let squares = |a: &[f64], b: &[f64]| -> f64 {
         let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));

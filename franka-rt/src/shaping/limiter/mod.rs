@@ -1,5 +1,5 @@
-//! Rate limiters: move the last command towards the given command, as far as the bounds on
-//! derivatives allow.
+//! Rate limiters: move the last command as near to the given command as the bounds on derivatives
+//! allow.
 //!
 //! | command | function | bounded quantity |
 //! |---|---|---|
@@ -23,7 +23,7 @@
 //! * Above its upper bound a velocity returns at the bound of the acceleration. Below the lower
 //!   bound it returns by half of the excess per cycle, at any acceleration.
 //! * Joints 5 and 7 of the FR3 have envelopes for a deceleration of 17 rad/s^2. The limiter brakes
-//!   with 10. At full speed towards the upper end of their range, they pass that end.
+//!   with 10. At full speed towards the upper end of their range, these joints pass that end.
 //!
 //! The robot judges every command by its own limits. Commands that stay away from the bounds cause
 //! none of these cases.
