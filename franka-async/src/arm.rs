@@ -39,10 +39,9 @@ impl Engage {
 
     /// Keeps the arm out of these regions, in the base frame; none by default. The reference slows
     /// down on its way to a region and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before
-    /// the region. A goal behind the region is given up as
-    /// [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream continues and waits for other
-    /// targets. An arm that stands in a region may leave it. Links and the Franka Hand are kept
-    /// out; other tools are not.
+    /// the region. A goal that a region blocks is given up as
+    /// [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream waits for other targets. An arm
+    /// inside a region may leave it. Links and the Franka Hand are kept out, no other tool.
     /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
     /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
@@ -76,18 +75,17 @@ impl Engage {
     }
 
     /// Sets the backend that turns setpoints into torques; by default the session's own law.
-    /// [`Backend`] lists the guards of each backend. [`Setpoints`](crate::goal::Setpoints) lists
-    /// the goals that each kind of setpoint supports. Goals that a backend does not support are
-    /// refused as [`GoalError::Backend`](crate::error::GoalError::Backend).
+    /// [`Backend`] lists the guards of each backend, [`Setpoints`](crate::goal::Setpoints) the
+    /// goals of each kind of setpoint. Other goals are refused as
+    /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self
     }
 
-    /// Calls `function` in every cycle, on the real-time thread, once the command has left. The
-    /// arguments are the record of the cycle and its state. The function must not lock, allocate,
-    /// print or wait. If the function panics, it is not called again, and the session continues.
-    /// For records outside the thread see [`Robot::records`].
+    /// Calls `function` in every cycle, on the real-time thread, once the command has left, with
+    /// the record and the state. The function must not lock, allocate, print or wait. After a panic
+    /// it is not called again. For records outside the thread see [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         let mut function = UserValue::new("an observer", function);
         let observer = Observer::new(move |record, state| (*function)(record, state));
@@ -99,10 +97,9 @@ impl Engage {
 /// A session of target control: the session holds the arm and moves it from goal to goal of any
 /// kind without a stop in between. Made by [`Robot::engage`].
 ///
-/// A cheap handle: clones share the session, and motions that are awaited are handles too. Dropping
-/// the last handle brakes the arm and ends the session, in the background. [`Self::disengage`] does
-/// the same and can be awaited. [`Robot::stop`] and a reflex of the robot also end the session.
-/// Every later call on the session then returns the reason.
+/// A cheap handle: clones share the session, and awaited motions are handles, too. Dropping the
+/// last handle brakes the arm and ends the session, in the background. [`Self::disengage`] does so
+/// and can be awaited. [`Robot::stop`] and a reflex end it, too. Later calls return the reason.
 ///
 /// While a session controls the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
@@ -114,8 +111,7 @@ pub struct Arm {
 
 impl Robot {
     /// Begins a session of target control that holds the arm where it is, and resolves when the
-    /// session has begun. If a dropped motion or session is still braking the arm, the new session
-    /// begins after it.
+    /// session has begun. A dropped motion or session first brakes and releases the arm.
     ///
     /// # Errors
     /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains
@@ -167,9 +163,8 @@ impl Arm {
         self.session.robot()
     }
 
-    /// Returns a motion to a pose or to joint positions; see [`Robot::move_to`]. The motion
-    /// resolves when the arm has arrived and rests; the session then holds the arm. Dropping the
-    /// motion brakes the arm and holds it.
+    /// Returns a motion to a pose or to joint positions; see [`Robot::move_to`]. It resolves when
+    /// the arm has arrived and rests, held. Dropping the motion brakes and holds the arm.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::within(&self.session, destination.into())
     }
@@ -185,8 +180,8 @@ impl Arm {
         self.move_to(offset)
     }
 
-    /// Returns a motion through several poses, or several joint positions. The arm does not stop at
-    /// waypoints that are [rounded](Waypoint::blend). Otherwise like [`Self::move_to`]; see
+    /// Returns a motion through several poses or joint positions, without stops at waypoints that
+    /// are [rounded](Waypoint::blend). Otherwise like [`Self::move_to`]; see
     /// [`Robot::move_through`].
     pub fn move_through<W: Into<Waypoint>>(
         &self,
@@ -195,15 +190,13 @@ impl Arm {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// Returns a motion that brakes the arm, and resolves when the arm rests and is held there. May
-    /// be used at any time.
+    /// Returns a motion that brakes the arm at any time, and resolves when the arm rests.
     pub fn hold(&self) -> Motion {
         self.move_to(Target::Rest)
     }
 
     /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
-    /// Returns as soon as the session has accepted the goal. For programs that set goals at their
-    /// own rate and read the state for the progress.
+    /// Returns as soon as the session has accepted the goal. For goals at the program's own rate.
     ///
     /// The arm follows a target with a velocity without a lag. Without new targets, such a target
     /// moves on for [`Target::MOVES_ON_MS`].
