@@ -198,8 +198,8 @@ impl Arm {
     /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
     /// Returns as soon as the session has accepted the goal. For goals at the program's own rate.
     ///
-    /// The arm follows a target with a velocity without a lag. Without new targets, such a target
-    /// moves on for [`Target::MOVES_ON_MS`].
+    /// The arm follows a target with a velocity without a lag. Without new targets, this target
+    /// keeps moving for [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a

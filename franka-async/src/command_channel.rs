@@ -104,7 +104,7 @@ struct QueuedRequest {
 enum ReplyTo {
     /// The lifecycle of a motion: replies go to the bridge, without a deadline.
     Motion(MotionId),
-    /// No reader: the lifecycle sends `StopMove` and watches the states instead.
+    /// No one receives the reply: the lifecycle sends `StopMove` and watches the states instead.
     Discarded,
     Caller {
         answer: oneshot::Sender<Result<Response, CommandError>>,

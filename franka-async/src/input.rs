@@ -213,8 +213,8 @@ impl EndReply {
 /// Sender to the bridge's inbox, and the bridge's publications.
 #[derive(Clone, Debug)]
 pub(crate) struct BridgeHandle {
-    /// Unbounded, because dropping a motion must be able to send. Callers that await an answer
-    /// limit themselves.
+    /// Inbox of the bridge. It is unbounded, because dropping a motion must be able to send.
+    /// Callers that await an answer limit themselves.
     pub(crate) inbox: mpsc::UnboundedSender<Input>,
     pub(crate) subscriptions: Subscriptions,
 }

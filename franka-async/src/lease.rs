@@ -67,7 +67,8 @@ struct Held {
     name: String,
     silence: Duration,
     heard: Instant,
-    /// Dropped with the lease, so that no later message revives the sessions that are bound to it.
+    /// Deadman of the bound sessions. It is dropped with the lease, so that no later message
+    /// revives these sessions.
     deadman: Deadman,
 }
 

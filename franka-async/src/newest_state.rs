@@ -13,7 +13,7 @@ use tokio::sync::watch;
 /// control thread wake the bridge for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
-    /// Never advanced, so that each of its clones finds everything that came later.
+    /// Reader that is never advanced, so that each of its clones finds all later states.
     reader: StateReader,
     /// The state before the first state that `reader` finds.
     first: RobotState,

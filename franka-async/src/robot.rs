@@ -61,8 +61,8 @@ struct Shared {
     /// The newest connection.
     link: RwLock<Arc<Link>>,
     supervisor: Arc<Supervisor>,
-    /// Held until a setting has its place among the requests, so that no older setting overtakes
-    /// it.
+    /// Lock that is held until a setting has its place among the requests, so that no older setting
+    /// overtakes it.
     setting: Arc<Mutex<()>>,
     /// Sender to the task that reconnects; `None` without such a task. Closed when the task has
     /// ended.

@@ -68,8 +68,8 @@ type Outcome = Result<MotionReport, MotionError>;
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,
-    /// Held while the goals of a joint motion are sent, so that all arms get the goals of two
-    /// motions in the same order.
+    /// Lock that is held while the goals of a joint motion are sent, so that all arms get the goals
+    /// of two motions in the same order.
     submission: Arc<Mutex<()>>,
 }
 

@@ -39,8 +39,8 @@ use core::time::Duration;
 /// The most members of a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Default silence of a member's robot after which the others brake. A robot that misses as many
-/// commands stops on its own. Detection may take up to 20 ms longer, one wait of the member's
+/// Default silence of a member's robot after which the other members brake. A robot that misses as
+/// many commands stops on its own. Detection may take up to 20 ms longer, one wait of the member's
 /// thread.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
@@ -324,7 +324,7 @@ impl Member {
         self.shared.stop(self.number, Cause::Member(fault));
     }
 
-    /// Reports the member's progress in `round` to the others.
+    /// Reports the member's progress in `round` to the other members.
     pub fn tell(&self, round: Round, carrying: Carrying) {
         let micrometres = (carrying.remaining.max(0.0) * 1e6) as u64;
         let way = micrometres.min(WAY_MAX);

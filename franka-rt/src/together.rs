@@ -58,8 +58,8 @@ impl Default for StartBarrier {
 }
 
 impl StartBarrier {
-    /// Default time for which a motion waits for the others: twice the time in which a robot must
-    /// show the modes of a motion.
+    /// Default time for which a motion waits for the other motions: twice the time in which a robot
+    /// must show the modes of a motion.
     pub const TIMEOUT: Duration = Duration::from_secs(10);
 
     /// Largest number of members.
@@ -72,8 +72,8 @@ impl StartBarrier {
         }
     }
 
-    /// Replaces the time for which a motion waits for the others, counted from its own arrival by
-    /// its robot's clock.
+    /// Replaces the time for which a motion waits for the other motions, counted from its own
+    /// arrival by its robot's clock.
     pub fn timeout(mut self, timeout: Duration) -> Self {
         self.timeout = timeout;
         self
@@ -108,7 +108,7 @@ impl StartBarrier {
 }
 
 /// The part of one motion in a common start. Dropping the ticket before the start ends the wait of
-/// the others with an error.
+/// the other motions with an error.
 #[derive(Debug)]
 #[must_use = "dropping a ticket ends the common start"]
 pub struct StartTicket {
@@ -259,7 +259,7 @@ impl StartTicket {
     }
 
     /// Removes the motion from the common start: the motion continues alone. Ends the wait of the
-    /// others with an error.
+    /// other motions with an error.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
@@ -267,8 +267,8 @@ impl StartTicket {
         }
     }
 
-    /// Notes that the motion has ended. Ends the wait of the others with an error, if they still
-    /// wait.
+    /// Notes that the motion has ended. If the other motions still wait, ends their wait with an
+    /// error.
     pub fn end(&mut self) {
         self.leave(Cause::Ended);
     }

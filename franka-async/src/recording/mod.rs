@@ -117,7 +117,7 @@ pub enum TrackError {
         /// The name that was given.
         name: String,
     },
-    /// This robot has such an end effector in the recording already.
+    /// The robot has a recorded end effector of this kind already.
     #[error("this end effector is already recorded with the robot {name:?}")]
     Attached {
         /// The robot's name.

@@ -44,7 +44,8 @@ impl Observer {
     }
 }
 
-/// Must be freed elsewhere: see [`Event::Ended`](super::Event::Ended).
+/// Frees the function, which must not happen on the thread: see
+/// [`Event::Ended`](super::Event::Ended).
 impl Drop for Observer {
     fn drop(&mut self) {
         // The panic has been reported.

@@ -77,7 +77,7 @@ pub struct Record {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Activity {
-    /// No motion.
+    /// No motion is armed or runs.
     #[default]
     Watching,
     /// A motion is armed, and the robot does not show its modes yet.

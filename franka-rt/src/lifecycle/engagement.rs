@@ -60,9 +60,9 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// Limits of the motion.
     pub budget: Option<Budget>,
-    /// Largest force of springs and dampers. It fades as the gains do.
+    /// Largest force of springs and dampers. The cap fades as the gains do.
     pub force_cap: Option<ForceCap>,
-    /// Largest distance of the reference ahead of the arm. It fades as the gains do.
+    /// Largest distance of the reference ahead of the arm. The leash fades as the gains do.
     pub leash: Option<Leash>,
     /// Distance that the arm may be pushed off its path.
     pub deviation: Option<Deviation>,

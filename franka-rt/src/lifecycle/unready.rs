@@ -50,7 +50,7 @@ pub enum Unready {
 }
 
 impl Unready {
-    /// True if the supervisor is about to end this condition. People must end the others.
+    /// True if the supervisor is about to end this condition. People must end all other conditions.
     pub fn is_passing(self) -> bool {
         matches!(
             self,

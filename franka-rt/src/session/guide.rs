@@ -162,7 +162,8 @@ impl Floating {
         }
     }
 
-    /// Same at the end effector. Fixed axes are held within the leash.
+    /// Returns the distance at the end effector, and true if the leash held it. Fixed axes are held
+    /// within the leash.
     fn at_end_effector(
         &mut self,
         free: Free,

@@ -67,9 +67,9 @@ impl Tolerance {
         }
     }
 
-    /// Returns the error that remains on such an arm under the robot's own controllers with their
-    /// default impedance, for all kinds of setpoints: 2 mm and 5 mrad under joint impedance. Under
-    /// Cartesian impedance it is 5 mm and 15 mrad.
+    /// Returns the error that remains on an arm with friction under the robot's own controllers
+    /// with their default impedance, for all kinds of setpoints: 2 mm and 5 mrad under joint
+    /// impedance. Under Cartesian impedance it is 5 mm and 15 mrad.
     pub fn under(controller: Controller) -> Self {
         match controller {
             Controller::JointImpedance => Self {

@@ -55,7 +55,7 @@ struct Setting {
 enum Standing {
     /// The program has sent the setting, and has no answer yet.
     Sent,
-    /// It is not known whether the robot has the setting.
+    /// The robot may have the setting or not.
     Open,
     Holds,
     /// The robot could not be given the setting, for this reason.

@@ -262,8 +262,8 @@ impl<C: Core> Cycle<C> {
 /// far more. These wake-ups, twenty a second, use less than a thousandth of a core.
 const STATES_PER_WAKE_MAX: u32 = 50;
 
-/// Largest number of orders per cycle; the others wait for the next cycle.
+/// Largest number of orders per cycle; further orders wait for the next cycle.
 const ORDERS_PER_CYCLE: usize = 8;
 
-/// Largest number of events passed on per cycle; the others wait for the next cycle.
+/// Largest number of events passed on per cycle; further events wait for the next cycle.
 const EVENTS_PER_CYCLE: usize = 8;

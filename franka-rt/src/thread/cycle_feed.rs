@@ -73,7 +73,7 @@ impl<R> Clone for CycleFeed<R> {
 struct Shared {
     /// Number of readers.
     readers: AtomicUsize,
-    /// Set, with Release, when no further cycle will come.
+    /// Flag that is set, with Release, when no further cycle will come.
     ended: AtomicBool,
 }
 

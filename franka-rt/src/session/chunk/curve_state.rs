@@ -13,7 +13,7 @@ use crate::session::reference::Reference;
 /// Greatest distance of the reference behind a path, `[m]`; at that distance the path waits.
 const LAG_TRANSLATION: f64 = 0.005;
 
-/// Same for the end effector's rotation, and for each joint, `[rad]`.
+/// Greatest lag of the end effector's rotation, and of each joint, on a path, `[rad]`.
 const LAG_ROTATION: f64 = 0.01;
 
 /// A state with its first two derivatives, as a point of chunks.

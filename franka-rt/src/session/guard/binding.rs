@@ -37,7 +37,7 @@ pub enum Guard {
     Deviation,
     /// The target was further ahead of the arm than the lead allows, and was drawn nearer.
     Lead,
-    /// No plan to the target could be made (only by a defect). The previous course continues.
+    /// No plan to the target could be made (only by a defect). The previous plan continues.
     PlanFailure,
     /// The condition of the goal was true. The arm therefore brakes, moves to the other target, or
     /// has reached it.

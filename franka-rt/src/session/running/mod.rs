@@ -121,7 +121,8 @@ enum Standing {
     GivenUp {
         action: OnTimeout,
         cause: Lapse,
-        /// Set if the goal's condition had been true by then.
+        /// Observations at the time when the goal's condition was true; `None` if it was not by
+        /// then.
         reacted: Option<Reacted>,
     },
     /// The goal's condition was true. The arm brakes, and continues to the other target if there is
