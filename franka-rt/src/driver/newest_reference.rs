@@ -23,7 +23,7 @@ pub struct ReferenceState {
     pub elapsed: Duration,
     /// See [`Record::remaining`].
     pub remaining: Duration,
-    /// The guards that bound the command of this cycle or of a recent one. The set covers at
+    /// The guards that limited the command of this cycle or of a recent one. The set covers at
     /// least the last [`Self::GUARDS_MS`], and at most twice that.
     pub guards: Bindings,
 }

@@ -103,7 +103,7 @@ impl Fit {
     }
 
     /// Adds the record of a cycle. Do not add records of motions under the robot's own controller.
-    /// Slower motions, cycles in which a guard bounds the command, and missed records do no harm.
+    /// Slower motions, cycles in which a guard limits the command, and missed records do no harm.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });

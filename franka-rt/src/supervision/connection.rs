@@ -114,9 +114,9 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns the condition in `state`. Of two states with the same condition, only one must be
-    /// passed to [`Supervision::on_state`](super::Supervision::on_state), unless there was a
-    /// silence between them.
+    /// Returns the condition in `state`. Of two states with the same condition it is enough to pass
+    /// one to [`Supervision::on_state`](super::Supervision::on_state), unless there was a silence
+    /// between them.
     pub fn of(state: &RobotState) -> Self {
         Self {
             mode: state.robot_mode,

@@ -1,4 +1,4 @@
-//! Guards that bound a command; every record has this field.
+//! Guards that limited a command; every record has this field.
 
 /// A guard that can hold a command back or give up a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -146,18 +146,18 @@ impl Bindings {
         self.set(guard, true);
     }
 
-    /// True if `guard` bound the command.
+    /// True if `guard` limited the command.
     pub fn contains(self, guard: Guard) -> bool {
         self.0 & (1 << guard as u32) != 0
     }
 
-    /// Returns the guards that bound the command.
+    /// Returns the guards that limited the command.
     pub fn iter(self) -> impl Iterator<Item = Guard> {
         let all = Guard::ALL.into_iter();
         all.filter(move |guard| self.contains(*guard))
     }
 
-    /// True if no guard bound the command.
+    /// True if no guard limited the command.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
