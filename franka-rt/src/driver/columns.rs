@@ -165,7 +165,7 @@ macro_rules! reference {
     };
 }
 
-/// Column that is true while a guard bounds the command.
+/// Column that is true while a guard limits the command.
 macro_rules! binds {
     ($name:literal, $guard:ident) => {
         cycle!($name, &[], "", ColumnKind::Flag, |cycle, row| {

@@ -29,7 +29,7 @@ pub struct ReferenceState {
 }
 
 impl ReferenceState {
-    /// Time for which a guard that has bounded a command stays listed, `[ms]` of the robot's clock.
+    /// Time for which a guard that has limited a command stays listed, `[ms]` of the robot's clock.
     /// Readers look a few dozen times per second.
     pub const GUARDS_MS: u64 = 100;
 
@@ -51,7 +51,7 @@ impl ReferenceState {
 #[derive(Debug)]
 pub(super) struct ReferenceWriter {
     newest: SlotWriter<ReferenceState>,
-    /// The guards that have bounded a command since `begin`, and the guards of the period before.
+    /// The guards that have limited a command since `begin`, and the guards of the period before.
     guards: [Bindings; 2],
     begin: u64,
 }

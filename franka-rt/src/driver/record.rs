@@ -59,7 +59,7 @@ pub struct Record {
     /// Part of the torque that compensates friction and bias, before the guards, `[N m]`; zero
     /// outside target control.
     pub compensation: [f64; 7],
-    /// Guards that bounded the command.
+    /// Guards that limited the command.
     pub bindings: Bindings,
     /// Delay between the time when the state was due and the time when the thread had it: see
     /// [`CycleTimes::late`](crate::stats::CycleTimes::late).
