@@ -184,10 +184,7 @@ mod tests {
 
     #[test]
     fn the_text_names_the_causes_of_a_host_with_a_slow_card() {
-        let fixture = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../franka-doctor/tests/fixtures/usb_card"
-        );
+        let fixture = include_str!("../../franka-doctor/tests/fixtures/usb_card.txt");
         let robot = Ipv4Addr::new(172, 16, 0, 2);
         let found = HostDiagnosis {
             evidence: Evidence::Lost,

@@ -2,10 +2,11 @@
 
 use core::fmt;
 use core::time::Duration;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::net::Ipv4Addr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 
 use franka_rt::sched::Kernel;
@@ -13,8 +14,7 @@ use franka_rt::sched::Kernel;
 use crate::latencies::Latencies;
 use crate::round_trip::RoundTrips;
 
-/// A host to examine. [`System`](crate::System) is the running host, [`Tree`] a directory with a
-/// host's files.
+/// A host to examine. [`System`](crate::System) is the running one, [`Tree`] one in a text.
 ///
 /// No method changes anything on the host.
 pub trait Host {
@@ -146,32 +146,77 @@ impl fmt::Display for Unread {
     }
 }
 
-/// A host in a directory. It contains the files of the host. Values that are not in files of the
-/// host are below `calls`:
+/// The files of a host in one text, for tests: blocks of a header and the file's content.
+///
+/// ```text
+/// == /proc/swaps ==
+/// Filename  Type  Size  Used  Priority
+/// == /sys/class/net/eth0 -> ../../devices/virtual/net/eth0 ==
+/// == /sys/devices/virtual/net/eth0/mtu ==
+/// 1500
+/// ```
+///
+/// A header with an arrow is a symbolic link. In a content, `\x00` is a byte, and `\` before a line
+/// break removes the break. Values that are not in files are in these:
 ///
 /// | file | contents |
 /// |---|---|
-/// | `calls/fifo` | a priority, or the reason for a refusal |
-/// | `calls/own_address` | an IPv4 address |
-/// | `calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
-/// | `calls/is_lasting` | `true` if the host has its own address permanently, otherwise `false` |
-/// | `calls/free_disk` | free bytes |
-/// | `calls/busy_frequency` | the frequency of any processor under load, in kHz |
-/// | `calls/wake_ups`, `calls/loopback` | lines with a latency in microseconds and its count |
-/// | `calls/round_trips` | a line with the numbers of sent and answered requests, then lines as above |
-#[derive(Clone, Debug)]
+/// | `/calls/fifo` | a priority, or the reason for a refusal |
+/// | `/calls/own_address` | an IPv4 address |
+/// | `/calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
+/// | `/calls/is_lasting` | `true` if the host has its own address permanently, otherwise `false` |
+/// | `/calls/free_disk` | free bytes |
+/// | `/calls/busy_frequency` | the frequency of any processor under load, in kHz |
+/// | `/calls/wake_ups`, `/calls/loopback` | lines with a latency in microseconds and its count |
+/// | `/calls/round_trips` | a line with the numbers of sent and answered requests, then lines as above |
+#[derive(Clone, Debug, Default)]
 pub struct Tree {
-    root: PathBuf,
+    /// Contents by path, without the first slash.
+    files: BTreeMap<String, String>,
+    /// Targets of symbolic links, likewise.
+    links: BTreeMap<String, String>,
 }
 
 impl Tree {
-    /// Creates a host with the files below `root`.
-    pub fn new(root: impl Into<PathBuf>) -> Self {
-        Self { root: root.into() }
+    /// Creates a host from its text.
+    pub fn new(text: &str) -> Self {
+        let mut tree = Self::default();
+        let mut path = "";
+        for line in text.split_inclusive('\n') {
+            let header = line.strip_prefix("== /");
+            match header.and_then(|header| header.strip_suffix(" ==\n")) {
+                Some(header) => match header.split_once(" -> ") {
+                    Some((link, target)) => drop(tree.links.insert(link.into(), target.into())),
+                    None => {
+                        path = header;
+                        tree.files.entry(path.to_owned()).or_default();
+                    }
+                },
+                None => *tree.files.entry(path.to_owned()).or_default() += line,
+            }
+        }
+        for content in tree.files.values_mut() {
+            *content = unescaped(content);
+        }
+        tree
     }
 
-    fn below(&self, path: &str) -> PathBuf {
-        self.root.join(path.trim_start_matches('/'))
+    /// The path with all links replaced by their targets, without the first slash.
+    fn resolved(&self, path: &str) -> String {
+        let mut parts: Vec<&str> = Vec::new();
+        let mut rest: Vec<&str> = path.rsplit('/').collect();
+        while let Some(part) = rest.pop() {
+            match part {
+                "" => {}
+                ".." => drop(parts.pop()),
+                part => parts.push(part),
+            }
+            if let Some(target) = self.links.get(&parts.join("/")) {
+                parts.pop();
+                rest.extend(target.rsplit('/'));
+            }
+        }
+        parts.join("/")
     }
 
     fn call(&self, name: &str) -> Result<String, Unread> {
@@ -219,23 +264,31 @@ impl Tree {
 
 impl Host for Tree {
     fn read(&self, path: &str) -> Result<String, Unread> {
-        let bytes = fs::read(self.below(path)).map_err(|error| Unread::new(path, &error))?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
+        let content = self.files.get(&self.resolved(path));
+        content.cloned().ok_or_else(|| Unread::Absent(path.into()))
     }
 
     fn list(&self, path: &str) -> Result<Vec<String>, Unread> {
-        names_in(&self.below(path)).map_err(|error| Unread::new(path, &error))
-    }
-
-    fn link(&self, path: &str) -> Result<String, Unread> {
-        match fs::read_link(self.below(path)) {
-            Ok(target) => Ok(target.to_string_lossy().into_owned()),
-            Err(error) => Err(Unread::new(path, &error)),
+        let directory = self.resolved(path) + "/";
+        let below = |path: &String| {
+            let name = path.strip_prefix(&directory)?.split('/').next()?;
+            Some(name.to_owned())
+        };
+        let paths = self.files.keys().chain(self.links.keys());
+        let names: BTreeSet<String> = paths.filter_map(below).collect();
+        match names.is_empty() {
+            true => Err(Unread::Absent(path.into())),
+            false => Ok(names.into_iter().collect()),
         }
     }
 
+    fn link(&self, path: &str) -> Result<String, Unread> {
+        let target = self.links.get(path.trim_start_matches('/'));
+        target.cloned().ok_or_else(|| Unread::Absent(path.into()))
+    }
+
     fn kernel(&self) -> Kernel {
-        Kernel::read_below(&self.root)
+        Kernel::read_by(|path| self.read(path).ok())
     }
 
     fn fifo(&self) -> Result<i32, String> {
@@ -297,6 +350,23 @@ impl Host for Tree {
         }
         Ok(round_trips)
     }
+}
+
+/// Replaces `\xNN` by the byte, and removes line breaks after `\`.
+fn unescaped(content: &str) -> String {
+    let content = content.replace("\\\n", "");
+    let mut parts = content.split("\\x");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let byte = part
+            .get(..2)
+            .and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match byte {
+            Some(byte) => text.extend([char::from(byte).to_string().as_str(), &part[2..]]),
+            None => text.extend(["\\x", part]),
+        }
+    }
+    text
 }
 
 /// Returns the names in a directory, sorted.

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! * [`Doctor`]: runs all checks for a [`Purpose`].
-//! * [`Host`]: the interface to a host. [`System`] is the running host, [`Tree`] a directory with
-//!   the files of any host, for tests.
+//! * [`Host`]: the interface to a host. [`System`] is the running host, [`Tree`] has the
+//!   files of any host in one text, for tests.
 //! * [`Finding`]: a value, the expected value with reason and source, and a command that fixes the
 //!   value. A value that cannot be read gives [`Verdict::Unknown`], which is neither good nor bad.
 //! * [`likely_causes`]: the causes on this host if a motion ended because of missing packets.

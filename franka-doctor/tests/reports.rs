@@ -1,7 +1,7 @@
 //! Reports about hosts whose files are in `fixtures`, compared exactly with the texts in `golden`.
 //!
-//! The trees contain the files that the checks read. They are modelled after real hosts, but none
-//! is a copy. With `FRANKA_DOCTOR_REWRITE=1`, the tests rewrite the texts.
+//! The texts contain the files that the checks read, modelled after real hosts; none is a copy of a
+//! real host. With `FRANKA_DOCTOR_REWRITE=1` the texts are rewritten.
 
 use std::fs;
 use std::net::Ipv4Addr;
@@ -30,7 +30,8 @@ fn directory(name: &str) -> PathBuf {
 }
 
 fn tree(host: &str) -> Tree {
-    Tree::new(directory("fixtures").join(host))
+    let text = fs::read_to_string(directory("fixtures").join(format!("{host}.txt")));
+    Tree::new(&text.expect("a host"))
 }
 
 /// Returns the robot address to which this host has a route.
@@ -138,19 +139,14 @@ fn what_each_host_is_known_for_is_found() {
 
 #[test]
 fn kernel_advice_works_on_the_host() {
-    let name = format!("franka-doctor-kernels-{}", std::process::id());
-    let root = std::env::temp_dir().join(name);
     let advice = |files: &[(&str, &str)]| {
-        let _ = fs::remove_dir_all(&root);
         let plain = [("proc/sys/kernel/version", "#1 SMP PREEMPT")];
-        for (path, content) in plain.iter().chain(files) {
-            let path = root.join(path);
-            fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
-            fs::write(path, content).expect("a file");
-        }
+        let files = plain.iter().chain(files);
+        let blocks = files.map(|(path, content)| format!("== /{path} ==\n{content}\n"));
+        let host = Tree::new(&blocks.collect::<String>());
         let kernel = Selection::new(vec!["kernel.rt".into()], Vec::new());
         let doctor = Doctor::new(Purpose::Move).select(kernel);
-        let report = doctor.run(&Tree::new(&root), &mut |_, _| ());
+        let report = doctor.run(&host, &mut |_, _| ());
         let [finding] = &report.findings[..] else {
             panic!("{:?}", report.findings)
         };
@@ -211,7 +207,6 @@ fn kernel_advice_works_on_the_host() {
         assert!(fix.unwrap_or_default().contains(command), "{files:?}");
         assert!(read.contains(words), "{files:?}: {read}");
     }
-    fs::remove_dir_all(&root).expect("it is there");
 }
 
 #[test]
@@ -239,7 +234,7 @@ fn any_host_may_simulate_and_only_the_good_one_may_move() {
 #[test]
 fn unknown_findings_say_what_is_missing_and_have_no_fix() {
     // A host without files: no check can be good.
-    let nothing = Tree::new(directory("fixtures").join("none"));
+    let nothing = Tree::default();
     let report = Doctor::new(Purpose::Move).run(&nothing, &mut |_, _| ());
     assert_eq!(
         report.count(Verdict::Good),

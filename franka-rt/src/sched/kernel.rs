@@ -10,7 +10,6 @@
 
 use core::fmt;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 /// Kernel of a host. [`Kernel::read`] reads the running one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,20 +28,19 @@ pub struct Kernel {
 impl Kernel {
     /// Reads the files of the running host.
     pub fn read() -> Self {
-        Self::read_below(Path::new("/"))
+        Self::read_by(|path| fs::read_to_string(path).ok())
     }
 
-    /// Reads the files below `root`, for example copies of another host's files.
-    pub fn read_below(root: &Path) -> Self {
-        let read = |path: &str| fs::read_to_string(root.join(path)).ok();
+    /// Reads the files of a host by `read`, which returns the content of a file or `None`.
+    pub fn read_by(read: impl Fn(&str) -> Option<String>) -> Self {
         let line = |path| read(path).unwrap_or_default().trim().to_owned();
-        let release = line("proc/sys/kernel/osrelease");
+        let release = line("/proc/sys/kernel/osrelease");
         let configuration = configuration_files(&release)
-            .into_iter()
-            .find_map(|path| read(path.strip_prefix("/").ok()?.to_str()?));
+            .iter()
+            .find_map(|path| read(path));
         Self {
-            version: line("proc/sys/kernel/version"),
-            flag: read("sys/kernel/realtime").map(|flag| flag.trim().to_owned()),
+            version: line("/proc/sys/kernel/version"),
+            flag: read("/sys/kernel/realtime").map(|flag| flag.trim().to_owned()),
             configured: configuration.map(|text| {
                 text.lines()
                     .any(|line| line.trim() == "CONFIG_PREEMPT_RT=y")
@@ -76,7 +74,6 @@ impl fmt::Display for Kernel {
             Some(_) => write!(f, "; kernel configuration: no CONFIG_PREEMPT_RT=y"),
             None => {
                 let [boot, modules] = configuration_files(&self.release);
-                let (boot, modules) = (boot.display(), modules.display());
                 write!(f, "; {boot} and {modules}: cannot be read")?;
                 write!(f, "; /proc/config.gz: not read, because it is compressed")
             }
@@ -85,10 +82,10 @@ impl fmt::Display for Kernel {
 }
 
 /// Places where distributions keep the configuration of a kernel.
-fn configuration_files(release: &str) -> [PathBuf; 2] {
+fn configuration_files(release: &str) -> [String; 2] {
     [
-        format!("/boot/config-{release}").into(),
-        format!("/lib/modules/{release}/config").into(),
+        format!("/boot/config-{release}"),
+        format!("/lib/modules/{release}/config"),
     ]
 }
 
@@ -156,32 +153,28 @@ mod tests {
 
     #[test]
     fn the_files_of_a_host_are_read() {
-        let root = std::env::temp_dir().join(format!("franka-kernel-{}", std::process::id()));
-        let write = |path: &str, text: &str| {
-            let path = root.join(path);
-            fs::create_dir_all(path.parent().expect("it has one")).expect("a directory");
-            fs::write(path, text).expect("a file");
+        let read = |files: &[(&str, &str)]| {
+            let content = |path: &str| {
+                let file = files.iter().find(|(name, _)| *name == path);
+                file.map(|(_, content)| (*content).to_owned())
+            };
+            Kernel::read_by(content)
         };
-        assert_eq!(
-            Kernel::read_below(&root),
-            Kernel::default(),
-            "nothing there"
-        );
-        write("proc/sys/kernel/osrelease", "6.6.1-x\n");
-        write("proc/sys/kernel/version", "#3 SMP PREEMPT\n");
-        write("sys/kernel/realtime", "0\n");
-        write(
-            "lib/modules/6.6.1-x/config",
-            "CONFIG_PREEMPT=y\n# CONFIG_PREEMPT_RT is not set\n",
-        );
+        assert_eq!(read(&[]), Kernel::default(), "nothing there");
+        let configuration = "CONFIG_PREEMPT=y\n# CONFIG_PREEMPT_RT is not set\n";
+        let mut files = vec![
+            ("/proc/sys/kernel/osrelease", "6.6.1-x\n"),
+            ("/proc/sys/kernel/version", "#3 SMP PREEMPT\n"),
+            ("/sys/kernel/realtime", "0\n"),
+            ("/lib/modules/6.6.1-x/config", configuration),
+        ];
         let expected = Kernel {
             release: "6.6.1-x".into(),
             ..kernel("#3 SMP PREEMPT", Some("0"), Some(false))
         };
-        assert_eq!(Kernel::read_below(&root), expected);
-        write("boot/config-6.6.1-x", "CONFIG_PREEMPT_RT=y\n");
-        assert!(Kernel::read_below(&root).is_realtime());
-        fs::remove_dir_all(root).expect("it is ours");
+        assert_eq!(read(&files), expected);
+        files.push(("/boot/config-6.6.1-x", "CONFIG_PREEMPT_RT=y\n"));
+        assert!(read(&files).is_realtime());
     }
 
     #[test]
