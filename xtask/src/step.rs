@@ -70,7 +70,7 @@ fn processor_time() -> Option<f64> {
 /// The steps taken so far.
 #[derive(Debug, Default)]
 pub struct Steps {
-    taken: Vec<(&'static str, Outcome, Cost)>,
+    taken: Vec<(String, Outcome, Cost)>,
 }
 
 impl Steps {
@@ -80,7 +80,7 @@ impl Steps {
     /// The errors of the work.
     pub fn take(
         &mut self,
-        name: &'static str,
+        name: &str,
         about: &str,
         work: impl FnOnce() -> anyhow::Result<Outcome>,
     ) -> anyhow::Result<()> {
@@ -104,7 +104,7 @@ impl Steps {
             Outcome::Partly(what) => println!("=== {name}: passed in {cost}; NOT CHECKED: {what}"),
             Outcome::Skipped(why) => println!("=== {name}: SKIPPED, NOTHING WAS CHECKED: {why}"),
         }
-        self.taken.push((name, outcome, cost));
+        self.taken.push((name.to_owned(), outcome, cost));
         Ok(())
     }
 

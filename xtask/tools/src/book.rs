@@ -11,9 +11,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
-use clap::Subcommand as _;
 
-use crate::Task;
 use crate::metadata::copy_directory;
 use crate::names;
 use crate::package;
@@ -28,7 +26,6 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let pages = names::pages(&sources(workspace))?;
     let mut found = unlisted(workspace, &pages)?;
     found.extend(untested(workspace, &pages)?);
-    found.extend(unknown(workspace, &pages)?);
     ensure!(found.is_empty(), "the book:\n{}", found.join("\n"));
     let tools = match Tools::find(workspace)? {
         Ok(tools) => tools,
@@ -183,39 +180,6 @@ fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Stri
         let has_program = programs(&fs::read_to_string(page)?);
         if has_program && !tests.contains(&format!("../{name}\"")) {
             found.push(format!("{name} has Rust programs and is not in {DOCTESTS}"));
-        }
-    }
-    Ok(found)
-}
-
-/// Commands of Cargo with missing examples, and unknown tasks of this program.
-fn unknown(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
-    let manifest = fs::read_to_string(workspace.root().join("examples/Cargo.toml"))?;
-    let mut found = Vec::new();
-    let outside = REPOSITORY_PAGES.map(|page| workspace.root().join(page));
-    for page in pages.iter().chain(&outside) {
-        let text = fs::read_to_string(page)?;
-        let mut words = text.split_whitespace().peekable();
-        while let Some(word) = words.next() {
-            let name = words.peek().copied().unwrap_or_default();
-            let name = name.trim_end_matches(|c: char| !c.is_ascii_alphanumeric());
-            let is_known = match word {
-                "--example" => {
-                    let is_in = |folder: &str| {
-                        let file = format!("{folder}/examples/{name}.rs");
-                        workspace.root().join(file).exists()
-                    };
-                    manifest.contains(&format!("name = \"{name}\""))
-                        || is_in("franka-async")
-                        || is_in("franka-otg")
-                }
-                "xtask" => name == "test" || Task::has_subcommand(name),
-                _ => true,
-            };
-            if !is_known {
-                let page = page.strip_prefix(workspace.root())?.display();
-                found.push(format!("{page}: there is no {word} {name}"));
-            }
         }
     }
     Ok(found)

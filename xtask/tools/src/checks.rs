@@ -5,6 +5,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::process::{Command, Stdio};
 
+use anyhow::Context as _;
 use clap::ValueEnum;
 use xtask::peers;
 use xtask::selection::{self, LIVE, PACKAGES, packages};
@@ -13,7 +14,6 @@ use xtask::suite;
 use xtask::workspace::Workspace;
 
 use crate::others::OTHERS;
-use crate::ours::Ours;
 use crate::{
     book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground,
     prose, recordings, reference_pages, release, schemas, texts, tidy,
@@ -22,11 +22,11 @@ use crate::{
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Check {
-    /// Formatting, and comments as wide as code.
+    /// Formatting, and the width of comments.
     Fmt,
     /// No imports in a circle between the modules of a crate.
     Circles,
-    /// Few names at the root of the driver, none of them in two places.
+    /// Public names, and what the book says of them.
     Names,
     /// Spelling, and the workflows.
     Texts,
@@ -77,9 +77,6 @@ pub(crate) enum Nightly {
 
 /// The steps of a command, for `--only`.
 pub(crate) trait StepOf: ValueEnum + PartialEq {
-    /// Name, and one line of description.
-    fn describe(&self) -> (&'static str, &'static str);
-
     fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome>;
 }
 
@@ -88,8 +85,10 @@ pub(crate) fn run<S: StepOf>(workspace: &Workspace, only: &[S]) -> anyhow::Resul
     let mut steps = Steps::default();
     for step in S::value_variants() {
         if only.is_empty() || only.contains(step) {
-            let (name, about) = step.describe();
-            steps.take(name, about, || step.run(workspace))?;
+            let value = step.to_possible_value().context("a step has a name")?;
+            let about = value.get_help().map(ToString::to_string);
+            let about = about.unwrap_or_default();
+            steps.take(value.get_name(), &about, || step.run(workspace))?;
         }
     }
     println!("\n{}", steps.summary());
@@ -97,19 +96,6 @@ pub(crate) fn run<S: StepOf>(workspace: &Workspace, only: &[S]) -> anyhow::Resul
 }
 
 impl StepOf for Nightly {
-    fn describe(&self) -> (&'static str, &'static str) {
-        match self {
-            Self::Mujoco => ("mujoco", "the simulator's MuJoCo plant"),
-            Self::Phases => ("phases", "tests with every phase of a cycle timed"),
-            Self::Dashboard => ("dashboard", "the dashboard's page in a real browser"),
-            Self::Playground => ("playground", "the book's playground in a real browser"),
-            Self::Targets => (
-                "targets",
-                "the portable crates, for other systems and machines",
-            ),
-        }
-    }
-
     fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome> {
         match self {
             Self::Mujoco => {
@@ -135,29 +121,6 @@ impl StepOf for Nightly {
 }
 
 impl StepOf for Check {
-    fn describe(&self) -> (&'static str, &'static str) {
-        match self {
-            Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
-            Self::Circles => ("circles", "imports between the modules of a crate"),
-            Self::Names => ("names", "public names, and their places"),
-            Self::Texts => ("texts", "names of files, spelling, and the workflows"),
-            Self::Prose => ("prose", "plain English in comments, texts and the book"),
-            Self::Dependencies => ("dependencies", "their licences and sources"),
-            Self::Release => ("release", "crates, version and change log"),
-            Self::Book => ("book", "pages, programs and links of the book"),
-            Self::Clippy => ("clippy", "lints of every target, warnings denied"),
-            Self::Doc => ("doc", "documentation, warnings denied"),
-            Self::Quickstart => ("quickstart", "the README's first command"),
-            Self::Rest => ("rest", "the tests that `cargo xtask test` leaves out"),
-            Self::Schemas => ("schemas", "the code of recordings matches its definitions"),
-            Self::Bare => ("bare", "without features, and without the standard library"),
-            Self::Peers => ("peers", "other clients against the simulator"),
-            Self::Python => ("python", "the Python package: its tests and types"),
-            Self::Recordings => ("recordings", "recordings read by the standard reader"),
-            Self::Assets => ("assets", "the dashboard's files match its sources"),
-        }
-    }
-
     fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome> {
         match self {
             Self::Fmt => {
@@ -170,8 +133,7 @@ impl StepOf for Check {
             }
             Self::Circles => circles::check(workspace)?,
             Self::Names => {
-                names::check(workspace)?;
-                let ours = Ours::read(workspace)?;
+                let ours = names::check(workspace)?;
                 peer_pages::check(workspace, &ours)?;
                 reference_pages::check(workspace, &ours)?;
                 let steps = suite::Step::ALL.map(|step| step.name().to_owned());
@@ -237,7 +199,8 @@ fn rest(workspace: &Workspace) -> anyhow::Result<Outcome> {
 }
 
 fn name_of(step: &impl StepOf) -> String {
-    step.describe().0.to_owned()
+    let value = step.to_possible_value();
+    value.map_or(String::new(), |value| value.get_name().to_owned())
 }
 
 /// Lints, warnings denied.

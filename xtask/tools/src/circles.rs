@@ -1,32 +1,45 @@
 //! Imports that run in a circle between the top-level modules of a crate.
 //!
-//! ```text
-//! lib.rs, main.rs ── mod x; ──> files ── crate::a, super::a ──> module -> module ──> circles
-//! ```
-//!
 //! A module that cannot be read without another one, which cannot be read without the first, is one
 //! module in two places. An export at the root of a crate counts as the module where it is
 //! declared. Unit tests do not count: they may use any module.
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::str::FromStr as _;
+use std::path::Path;
 
-use anyhow::{Context as _, anyhow, bail};
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use anyhow::{Context as _, bail};
+use syn::visit::{self, Visit};
+use syn::{Attribute, Item, UseTree};
 
 use crate::metadata;
 use xtask::workspace::Workspace;
 
-/// Fails with each circle, and the places of its imports.
+/// Fails with the imports of each circle.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let crates = metadata::crates(workspace)?;
     let mut found = Vec::new();
     for (name, root) in &crates {
-        for circle in Imports::of(root)?.circles() {
-            found.push(format!("{name}: {}", circle.tell(workspace.root())));
+        let mut imports = Imports::default();
+        let items = parse(root)?.items;
+        let directory = root.parent().context("a file is in a directory")?;
+        for item in &items {
+            match item {
+                Item::Mod(item) if item.content.is_none() && !is_for_tests(&item.attrs) => {
+                    let module = item.ident.to_string();
+                    imports.read(&module, &directory.join(&module).with_extension("rs"), 1)?;
+                    imports.read(&module, &directory.join(&module), 1)?;
+                }
+                Item::Use(item) => imports.export(&item.tree, None),
+                _ => {}
+            }
         }
+        found.extend(
+            imports
+                .circles()
+                .into_iter()
+                .map(|it| format!("{name}: {it}")),
+        );
     }
     if !found.is_empty() {
         bail!("imports in a circle between modules:\n{}", found.join("\n"));
@@ -35,415 +48,257 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Position of an import.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Place {
-    file: PathBuf,
-    line: usize,
+fn parse(file: &Path) -> anyhow::Result<syn::File> {
+    let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+    syn::parse_file(&text).with_context(|| file.display().to_string())
 }
 
-/// Modules that all import each other, directly or through other modules of the circle.
-#[derive(Debug, PartialEq, Eq)]
-struct Circle {
-    modules: BTreeSet<String>,
-    /// The shortest circle: each module imports the next one, the last one the first.
-    way: Vec<(String, Place)>,
+/// True for a Rust file, except one with unit tests.
+fn is_source(path: &Path) -> bool {
+    path.extension().is_some_and(|it| it == "rs") && !path.ends_with("tests.rs")
 }
 
-impl Circle {
-    /// Its modules, and a line per import of the circle.
-    fn tell(&self, root: &Path) -> String {
-        let modules: Vec<&str> = self.modules.iter().map(String::as_str).collect();
-        let mut text = modules.join(", ");
-        for (index, (from, place)) in self.way.iter().enumerate() {
-            let (to, _) = &self.way[(index + 1) % self.way.len()];
-            let file = place.file.strip_prefix(root).unwrap_or(&place.file);
-            text += &format!(
-                "\n    {from} imports {to} at {}:{}",
-                file.display(),
-                place.line
-            );
-        }
-        text
-    }
-}
-
-/// Imports of a crate's modules, as they are read.
+/// Imports of a crate's modules.
 #[derive(Debug, Default)]
 struct Imports {
-    modules: BTreeSet<String>,
     /// Names at the root of the crate, and their top-level modules.
     exported: BTreeMap<String, String>,
-    /// The importing top-level module, the imported name at the root of the crate, and the place.
-    found: Vec<(String, String, Place)>,
+    /// What each top-level module imports from the root of the crate, and one file that does.
+    found: BTreeMap<String, BTreeMap<String, String>>,
+    /// The file that is read, its top-level module, and its number of modules below the root.
+    file: String,
+    module: String,
+    depth: usize,
 }
 
 impl Imports {
-    /// Reads a crate from the file of its root.
-    fn of(root: &Path) -> anyhow::Result<Self> {
-        let mut imports = Self::default();
-        imports.read(root, &[], true)?;
-        Ok(imports)
-    }
-
-    /// Reads a file as the module `path`. Modules of a `root`, and of a `mod.rs`, are in the same
-    /// directory; modules of another file are in a directory of its name.
-    fn read(&mut self, file: &Path, path: &[String], is_root: bool) -> anyhow::Result<()> {
-        let text = fs::read_to_string(file)
-            .with_context(|| format!("module {} has no {}", path.join("::"), file.display()))?;
-        let tokens = TokenStream::from_str(&text)
-            .map_err(|error| anyhow!("cannot read {}: {error}", file.display()))?;
-        let directory = if is_root || file.ends_with("mod.rs") {
-            file.with_file_name("")
-        } else {
-            file.with_extension("")
-        };
-        self.scan(tokens, path, file, &directory)
-    }
-
-    fn scan(
-        &mut self,
-        tokens: TokenStream,
-        path: &[String],
-        file: &Path,
-        directory: &Path,
-    ) -> anyhow::Result<()> {
-        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-        let mut rest = &tokens[..];
-        // From an attribute of the next module.
-        let mut located = None;
-        while let Some((token, after)) = rest.split_first() {
-            rest = after;
-            match (token, after) {
-                (TokenTree::Punct(hash), [TokenTree::Group(attribute), after @ ..])
-                    if hash.as_char() == '#' =>
-                {
-                    rest = after;
-                    if is_for_tests(attribute.stream()) {
-                        rest = after_item(after);
-                    }
-                    located = path_of(attribute.stream()).or(located);
-                }
-                (TokenTree::Ident(word), [TokenTree::Ident(name), after @ ..]) if word == "mod" => {
-                    let name = name.to_string();
-                    let path = [path, std::slice::from_ref(&name)].concat();
-                    if let [name] = &path[..] {
-                        self.modules.insert(name.clone());
-                    }
-                    if let Some(TokenTree::Group(body)) = after.first() {
-                        self.scan(body.stream(), &path, file, &directory.join(&name))?;
-                        rest = &after[1..];
-                    } else {
-                        let beside = directory.join(&name).with_extension("rs");
-                        let within = directory.join(&name).join("mod.rs");
-                        let file = match located.take() {
-                            Some(located) => file.with_file_name(located),
-                            None if within.exists() => within,
-                            None => beside,
-                        };
-                        self.read(&file, &path, false)?;
-                    }
-                }
-                (TokenTree::Ident(word), after) if word == "use" && path.is_empty() => {
-                    // The purpose of the root is to import from everywhere.
-                    self.export(after, None);
-                    rest = after_item(after);
-                }
-                (TokenTree::Ident(word), after) if word == "crate" || word == "super" => {
-                    let line = word.span().start().line;
-                    let place = || Place {
-                        file: file.to_owned(),
-                        line,
-                    };
-                    let (up, named) = climb(word == "super", after);
-                    let is_at_root = word == "crate" || up == path.len();
-                    if let (Some(module), true, Some(named)) = (path.first(), is_at_root, named) {
-                        for name in first_names(named) {
-                            self.found.push((module.clone(), name, place()));
-                        }
-                    }
-                }
-                (TokenTree::Group(group), _) => {
-                    self.scan(group.stream(), path, file, directory)?;
-                }
-                _ => {}
+    /// Reads a file, or all files below a directory, of a top-level module. `depth` is the number
+    /// of modules in its path.
+    fn read(&mut self, module: &str, path: &Path, depth: usize) -> anyhow::Result<()> {
+        if path.is_dir() {
+            for entry in fs::read_dir(path)? {
+                let path = entry?.path();
+                let is_same = path.ends_with("mod.rs");
+                self.read(module, &path, depth + usize::from(!is_same))?;
             }
+        } else if path.exists() && is_source(path) {
+            self.file = path.display().to_string();
+            self.module = module.to_owned();
+            self.depth = depth;
+            self.found.entry(module.to_owned()).or_default();
+            self.visit_file(&parse(path)?);
         }
         Ok(())
     }
 
+    /// Records a path, by its words, if it begins at the root of the crate.
+    fn note(&mut self, words: &[String]) {
+        let up = words.iter().take_while(|word| *word == "super").count();
+        let name = match words {
+            [first, name, ..] if first == "crate" => name,
+            _ if up > 0 && up == self.depth => match words.get(up) {
+                Some(name) => name,
+                None => return,
+            },
+            _ => return,
+        };
+        let of = self.found.entry(self.module.clone()).or_default();
+        of.entry(name.clone()).or_insert_with(|| self.file.clone());
+    }
+
     /// Records the names that a `use` at the root of the crate imports. `module` is the first
     /// top-level module of the path, once it is known.
-    fn export(&mut self, tokens: &[TokenTree], module: Option<&str>) {
-        let mut module = module.map(str::to_owned);
-        let mut last = None;
-        let mut rest = tokens;
-        while let Some((token, after)) = rest.split_first() {
-            rest = after;
-            match token {
-                TokenTree::Punct(sign) if [',', ';'].contains(&sign.as_char()) => break,
-                TokenTree::Punct(_) => {}
-                TokenTree::Ident(word) if word == "as" || word == "self" || word == "crate" => {}
-                TokenTree::Ident(word) => {
-                    module.get_or_insert_with(|| word.to_string());
-                    last = Some(word.to_string());
-                }
-                TokenTree::Group(group) => {
-                    let members: Vec<TokenTree> = group.stream().into_iter().collect();
-                    let is_comma = |token: &TokenTree| matches!(token, TokenTree::Punct(sign) if sign.as_char() == ',');
-                    for member in members.split(is_comma) {
-                        self.export(member, module.as_deref());
-                    }
-                    last = None;
-                }
-                TokenTree::Literal(_) => {}
+    fn export(&mut self, tree: &UseTree, module: Option<&str>) {
+        each_path(tree, Vec::new(), &mut |path| {
+            let path: Vec<&String> = path.iter().filter(|word| *word != "crate").collect();
+            if let [first, .., last] = path[..] {
+                let module = module.unwrap_or(first);
+                self.exported.insert(last.clone(), module.to_owned());
             }
-        }
-        if let (Some(module), Some(last)) = (module, last) {
-            self.exported.insert(last, module);
-        }
+        });
     }
 
-    /// The imports between different top-level modules, and the first place of each.
-    fn edges(&self) -> BTreeMap<&str, BTreeMap<&str, &Place>> {
-        let mut edges = BTreeMap::<_, BTreeMap<_, _>>::new();
-        for (from, name, place) in &self.found {
-            let to = match self.modules.get(name) {
-                Some(module) => Some(module),
-                None => self
+    /// A line for each import between modules that import each other, directly or through others.
+    fn circles(&self) -> Vec<String> {
+        let mut edges: BTreeMap<&str, BTreeMap<&str, &str>> = BTreeMap::new();
+        for (from, names) in &self.found {
+            for (name, file) in names {
+                let module = self
                     .exported
                     .get(name)
-                    .and_then(|name| self.modules.get(name)),
-            };
-            if let Some(to) = to.filter(|to| *to != from) {
-                let from = edges.entry(from.as_str()).or_default();
-                from.entry(to.as_str()).or_insert(place);
+                    .filter(|_| !self.found.contains_key(name));
+                let to = module.unwrap_or(name);
+                if to != from && self.found.contains_key(to) {
+                    edges.entry(from).or_default().insert(to, file);
+                }
             }
         }
-        edges
-    }
-
-    /// Every largest set of modules that import each other.
-    fn circles(&self) -> Vec<Circle> {
-        let edges = self.edges();
-        let mut circles: Vec<Circle> = Vec::new();
-        for module in edges.keys() {
-            if circles
-                .iter()
-                .any(|circle| circle.modules.contains(*module))
-            {
-                continue;
+        // A module that imports nothing left, or that nothing left imports, is in no circle.
+        loop {
+            let before = edges.len();
+            let left: Vec<&str> = edges.keys().copied().collect();
+            edges.retain(|_, to| to.keys().any(|to| left.contains(to)));
+            let used: Vec<&str> = edges.values().flat_map(|to| to.keys().copied()).collect();
+            edges.retain(|from, _| used.contains(from));
+            if edges.len() == before {
+                break;
             }
-            let Some(way) = shortest_way(&edges, module, module) else {
-                continue;
-            };
-            let is_beside = |other: &&&str| {
-                shortest_way(&edges, module, other).is_some()
-                    && shortest_way(&edges, other, module).is_some()
-            };
-            let modules = edges.keys().filter(is_beside);
-            circles.push(Circle {
-                modules: modules.map(|module| (*module).to_owned()).collect(),
-                way,
-            });
         }
-        circles
+        let left: Vec<&str> = edges.keys().copied().collect();
+        let lines = edges.iter().flat_map(|(from, to)| {
+            let to = to.iter().filter(|(to, _)| left.contains(to));
+            to.map(move |(to, file)| format!("{from} imports {to} in {file}"))
+        });
+        lines.collect()
     }
 }
 
-/// The shortest path from one module to another, with at least one import: each module on it except
-/// the last, and the place where it imports the next one.
-fn shortest_way(
-    edges: &BTreeMap<&str, BTreeMap<&str, &Place>>,
-    from: &str,
-    to: &str,
-) -> Option<Vec<(String, Place)>> {
-    let mut ways = VecDeque::from([(from, Vec::new())]);
-    let mut seen = BTreeSet::new();
-    while let Some((module, way)) = ways.pop_front() {
-        for (next, place) in edges.get(module).into_iter().flatten() {
-            let mut way = way.clone();
-            way.push((module.to_owned(), (*place).clone()));
-            if *next == to {
-                return Some(way);
-            }
-            if seen.insert(*next) {
-                ways.push_back((next, way));
-            }
+impl<'a> Visit<'a> for Imports {
+    fn visit_item_mod(&mut self, item: &'a syn::ItemMod) {
+        if !is_for_tests(&item.attrs) {
+            self.depth += 1;
+            visit::visit_item_mod(self, item);
+            self.depth -= 1;
         }
     }
-    None
-}
 
-/// Number of modules that `super::` goes up, including `from_super`, and the tokens after the last
-/// `::`; `None` without any `::`.
-fn climb(from_super: bool, mut rest: &[TokenTree]) -> (usize, Option<&[TokenTree]>) {
-    let mut up = usize::from(from_super);
-    loop {
-        let [TokenTree::Punct(a), TokenTree::Punct(b), after @ ..] = rest else {
-            return (up, None);
-        };
-        if (a.as_char(), b.as_char()) != (':', ':') {
-            return (up, None);
+    fn visit_item_use(&mut self, item: &'a syn::ItemUse) {
+        if !is_for_tests(&item.attrs) {
+            each_path(&item.tree, Vec::new(), &mut |path| self.note(path));
         }
-        match after {
-            [TokenTree::Ident(word), more @ ..] if word == "super" => {
-                up += 1;
-                rest = more;
-            }
-            _ => return (up, Some(after)),
+    }
+
+    fn visit_item_fn(&mut self, item: &'a syn::ItemFn) {
+        if !is_for_tests(&item.attrs) {
+            visit::visit_item_fn(self, item);
+        }
+    }
+
+    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
+        if !is_for_tests(&item.attrs) {
+            visit::visit_item_impl(self, item);
+        }
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        let words = path
+            .segments
+            .iter()
+            .map(|segment| segment.ident.to_string());
+        self.note(&words.collect::<Vec<_>>());
+        visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, item: &'a syn::Macro) {
+        let text = item.tokens.to_string();
+        for rest in text.split("crate :: ").skip(1) {
+            let name = rest.split(' ').next().unwrap_or_default();
+            self.note(&["crate".to_owned(), name.to_owned()]);
         }
     }
 }
 
-/// The next names of a path: one name, or the names of a list in braces.
-fn first_names(tokens: &[TokenTree]) -> Vec<String> {
-    match tokens.first() {
-        Some(TokenTree::Ident(name)) => vec![name.to_string()],
-        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
-            let members: Vec<TokenTree> = group.stream().into_iter().collect();
-            members
-                .split(|token| matches!(token, TokenTree::Punct(sign) if sign.as_char() == ','))
-                .flat_map(first_names)
-                .collect()
+/// Calls `each` with every path of a `use`.
+fn each_path(tree: &UseTree, mut path: Vec<String>, each: &mut impl FnMut(&[String])) {
+    match tree {
+        UseTree::Path(inner) => {
+            path.push(inner.ident.to_string());
+            each_path(&inner.tree, path, each);
         }
-        _ => Vec::new(),
+        UseTree::Group(group) => {
+            for tree in &group.items {
+                each_path(tree, path.clone(), each);
+            }
+        }
+        UseTree::Name(name) if name.ident == "self" => each(&path),
+        UseTree::Name(name) => {
+            path.push(name.ident.to_string());
+            each(&path);
+        }
+        UseTree::Rename(rename) => {
+            let name = if path.is_empty() {
+                &rename.ident
+            } else {
+                &rename.rename
+            };
+            path.push(name.to_string());
+            each(&path);
+        }
+        UseTree::Glob(_) => each(&path),
     }
 }
 
 /// True if an attribute keeps its item for tests.
-fn is_for_tests(attribute: TokenStream) -> bool {
-    let words = words(attribute);
-    let has = |name: &str| words.iter().any(|word| word == name);
-    words.first().is_some_and(|word| word == "cfg")
-        && (has("test") || has("doctest"))
-        && !has("not")
-        && !has("any")
-}
-
-/// The file in an attribute `path`.
-fn path_of(attribute: TokenStream) -> Option<String> {
-    let tokens: Vec<TokenTree> = attribute.into_iter().collect();
-    match &tokens[..] {
-        [TokenTree::Ident(word), _, TokenTree::Literal(file)] if word == "path" => {
-            Some(file.to_string().trim_matches('"').to_owned())
-        }
-        _ => None,
-    }
-}
-
-/// All identifiers, including those in groups.
-fn words(tokens: TokenStream) -> Vec<String> {
-    let of = |token| match token {
-        TokenTree::Ident(word) => vec![word.to_string()],
-        TokenTree::Group(group) => words(group.stream()),
-        _ => Vec::new(),
-    };
-    tokens.into_iter().flat_map(of).collect()
-}
-
-/// The tokens after the item that begins here: after its semicolon or its braces. `use` has braces
-/// before its semicolon.
-fn after_item(tokens: &[TokenTree]) -> &[TokenTree] {
-    let is_use = tokens
-        .iter()
-        .take(3)
-        .any(|token| token.to_string() == "use");
-    let ends = |token: &TokenTree| match token {
-        TokenTree::Punct(sign) => sign.as_char() == ';',
-        TokenTree::Group(group) => !is_use && group.delimiter() == Delimiter::Brace,
-        _ => false,
-    };
-    match tokens.iter().position(ends) {
-        Some(end) => &tokens[end + 1..],
-        None => &[],
-    }
+fn is_for_tests(attributes: &[Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        let is_test = |path: &syn::Path| path.is_ident("test") || path.is_ident("doctest");
+        let condition = attribute.parse_args::<syn::Path>();
+        attribute.path().is_ident("cfg") && condition.is_ok_and(|path| is_test(&path))
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The circles of a crate of these files, each with its modules and its shortest circle.
-    fn circles(files: &[(&str, &str)]) -> Vec<(Vec<String>, Vec<String>)> {
-        static NEXT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
-        let next = NEXT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let name = format!("circles-{}-{next}", std::process::id());
-        let directory = std::env::temp_dir().join(name);
-        for (file, text) in files {
-            let file = directory.join(file);
-            fs::create_dir_all(file.parent().unwrap()).unwrap();
-            fs::write(file, text).unwrap();
+    /// The circles of a crate with this root and these top-level modules.
+    fn circles(root: &str, modules: &[(&str, &str)]) -> Vec<String> {
+        let mut imports = Imports::default();
+        for item in syn::parse_file(root).expect("it is Rust").items {
+            if let Item::Use(item) = item {
+                imports.export(&item.tree, None);
+            }
         }
-        let imports = Imports::of(&directory.join("lib.rs")).unwrap();
-        fs::remove_dir_all(&directory).unwrap();
-        let told = |(module, place): (String, Place)| {
-            let file = place
-                .file
-                .strip_prefix(&directory)
-                .unwrap()
-                .display()
-                .to_string();
-            format!("{module} {file}:{}", place.line)
-        };
-        let circles = imports.circles().into_iter().map(|circle| {
-            let way = circle.way.into_iter().map(told).collect();
-            (circle.modules.into_iter().collect(), way)
-        });
-        circles.collect()
+        for (module, text) in modules {
+            imports.module = (*module).to_owned();
+            imports.file = format!("{module}.rs");
+            imports.depth = 1;
+            imports.found.entry(imports.module.clone()).or_default();
+            imports.visit_file(&syn::parse_file(text).expect("it is Rust"));
+        }
+        imports.circles()
     }
 
     #[test]
-    fn a_circle_is_told_with_the_place_of_each_import() {
-        let found = circles(&[
-            ("lib.rs", "mod a;\nmod b;\nmod c;\n"),
-            (
-                "a.rs",
-                "use crate::c::C;\nuse crate::{b::B, std};\nmod deep;\n",
-            ),
-            ("a/deep.rs", "use super::super::c::C;\n"),
-            (
-                "b/mod.rs",
-                "//! Text.\nfn f() -> crate::c::C { super::c::make() }\n",
-            ),
-            ("c.rs", "\nuse crate::b;\n"),
-        ]);
-        let modules = vec!["b".to_owned(), "c".to_owned()];
-        let way = vec!["b b/mod.rs:2".to_owned(), "c c.rs:2".to_owned()];
-        assert_eq!(found, [(modules, way)]);
+    fn modules_that_import_each_other_are_a_circle() {
+        let (one, other) = (
+            "use crate::b::{C, D};",
+            "fn f() { super::a::g(); } use std::fmt;",
+        );
+        let expected = ["a imports b in a.rs", "b imports a in b.rs"];
+        assert_eq!(circles("", &[("a", one), ("b", other)]), expected);
+        assert_eq!(circles("", &[("a", one), ("b", "")]), Vec::<String>::new());
+        let outside = ("c", "use crate::a;");
+        assert_eq!(circles("", &[("a", one), ("b", other), outside]), expected);
+        let macros = "m!(crate::a::X);";
+        assert_eq!(circles("", &[("a", one), ("b", macros)]), expected);
     }
 
     #[test]
-    fn what_the_root_exports_counts_as_its_module() {
-        let found = circles(&[
-            (
-                "lib.rs",
-                "mod a;\nmod b;\npub use a::{deep::Thing as Other, More};\n",
-            ),
-            ("a.rs", "mod deep { use super::super::b::B; }\n"),
-            ("b.rs", "use crate::Other;\n"),
-        ]);
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert_eq!(found[0].1, ["a a.rs:1", "b b.rs:1"]);
+    fn an_export_of_the_root_is_in_its_module() {
+        let modules = [("a", "use crate::b::C;"), ("b", "use crate::{D, std::E};")];
+        let found = circles("pub use a::{x::D, F as G};", &modules);
+        assert_eq!(found, ["a imports b in a.rs", "b imports a in b.rs"]);
     }
 
     #[test]
-    fn neighbours_within_a_module_and_unit_tests_do_not_count() {
-        let found = circles(&[
-            (
-                "lib.rs",
-                "mod a;\nmod b;\n#[cfg(test)]\nmod tests;\nfn f() { crate::a::f() }\n",
-            ),
-            (
-                "a.rs",
-                "mod x { use super::y::Y; }\nmod y { use super::x::X; use crate::b::B; }\n",
-            ),
-            (
-                "b.rs",
-                "#[cfg(test)]\nmod tests { use crate::a::A; }\n#[cfg(test)]\nuse crate::{a::A};\n\
-                 pub(crate) fn f() {}\n",
-            ),
-        ]);
-        assert_eq!(found, []);
+    fn tests_may_import_anything() {
+        let tests = "#[cfg(test)] mod tests { use crate::a::X; } #[cfg(test)] use crate::a;";
+        let found = circles("", &[("a", "use crate::b;"), ("b", tests)]);
+        assert_eq!(found, Vec::<String>::new());
+        let both = "#[cfg(any(test, feature = \"f\"))] use crate::a;";
+        assert_eq!(circles("", &[("a", "use crate::b;"), ("b", both)]).len(), 2);
+    }
+
+    #[test]
+    fn a_nested_module_goes_up_through_its_parents() {
+        let nested = "mod m { use super::super::a::X; use super::a::Y; }";
+        assert_eq!(
+            circles("", &[("a", "use crate::b;"), ("b", nested)]).len(),
+            2
+        );
+        let own = "mod m { use super::a::Y; }";
+        let found = circles("", &[("a", "use crate::b;"), ("b", own)]);
+        assert_eq!(found, Vec::<String>::new());
     }
 }

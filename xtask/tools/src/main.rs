@@ -17,9 +17,8 @@
 //! | [`members`] | the members of types in Rust sources |
 //! | [`metadata`] | the packages of the workspace |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
-//! | [`names`] | the step that counts the names of the driver's root |
+//! | [`names`] | our public names in Rust |
 //! | [`others`] | the packages whose tests `cargo xtask test` leaves out |
-//! | [`ours`] | our public names in Rust |
 //! | [`package`] | the step that builds and tests the Python package, and its wheels |
 //! | [`page`] | tables and anchors of pages of the book |
 //! | [`peer_pages`] | the chapters for users of other packages |
@@ -44,7 +43,6 @@ mod metadata;
 mod mujoco;
 mod names;
 mod others;
-mod ours;
 mod package;
 mod page;
 mod peer_pages;

@@ -6,16 +6,16 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::Context as _;
-use proc_macro2::{TokenStream, TokenTree};
-use syn::{ImplItem, Item, TraitItem, Type, Visibility};
+use syn::visit::{self, Visit};
+use syn::{Ident, ImplItem, TraitItem, Type};
 
 /// Members by the name of their type. Types of the same name in several modules are merged.
 #[derive(Debug, Default)]
 pub(crate) struct Members {
     of: BTreeMap<String, BTreeSet<String>>,
-    fields: BTreeMap<String, BTreeSet<String>>,
-    variants: BTreeMap<String, BTreeSet<String>>,
-    /// Functions that a macro writes; their types are unknown.
+    /// Fields and variants, by `struct S` and `enum E`.
+    parts: BTreeMap<String, BTreeSet<String>>,
+    /// The words in macros, which may write functions of any type.
     in_macros: BTreeSet<String>,
     /// Functions and constants outside types.
     free: BTreeSet<String>,
@@ -34,33 +34,16 @@ impl Members {
                 let text = fs::read_to_string(&path)?;
                 let file = syn::parse_file(&text)
                     .with_context(|| format!("cannot parse {}", path.display()))?;
-                self.scan(&file.items);
+                self.visit_file(&file);
             }
         }
         Ok(())
     }
 
-    /// The members of the type with this name, if any.
-    pub(crate) fn of(&self, name: &str) -> Option<&BTreeSet<String>> {
-        self.of.get(name)
-    }
-
-    /// The public fields of a structure.
-    pub(crate) fn fields(&self, name: &str) -> impl Iterator<Item = &str> {
-        self.fields
-            .get(name)
-            .into_iter()
-            .flatten()
-            .map(String::as_str)
-    }
-
-    /// The variants of an enumeration.
-    pub(crate) fn variants(&self, name: &str) -> impl Iterator<Item = &str> {
-        self.variants
-            .get(name)
-            .into_iter()
-            .flatten()
-            .map(String::as_str)
+    /// The fields of `struct S`, or the variants of `enum E`.
+    pub(crate) fn parts(&self, of: &str) -> BTreeSet<&str> {
+        let parts = self.parts.get(of).into_iter().flatten();
+        parts.map(String::as_str).collect()
     }
 
     /// True if a type of this name may have this member.
@@ -80,179 +63,103 @@ impl Members {
         self.in_macros.contains(member) || self.of.values().any(|of| of.contains(member))
     }
 
-    fn insert(&mut self, name: &syn::Ident, members: impl IntoIterator<Item = String>) {
+    fn insert_parts<'a>(
+        &mut self,
+        kind: &str,
+        name: &Ident,
+        parts: impl Iterator<Item = &'a Ident> + Clone,
+    ) {
+        self.insert(name, parts.clone());
+        let all = self.parts.entry(format!("{kind} {name}")).or_default();
+        all.extend(parts.map(ToString::to_string));
+    }
+
+    fn insert<'a>(&mut self, name: &Ident, members: impl Iterator<Item = &'a Ident>) {
+        let members = members.map(ToString::to_string);
         self.of.entry(name.to_string()).or_default().extend(members);
     }
-
-    fn scan(&mut self, items: &[Item]) {
-        for item in items {
-            match item {
-                Item::Struct(item) => {
-                    let public = item.fields.iter().filter(|field| is_public(&field.vis));
-                    let names = public.filter_map(|field| field.ident.as_ref());
-                    let names: BTreeSet<String> = names.map(ToString::to_string).collect();
-                    self.insert(&item.ident, names.clone());
-                    self.fields
-                        .entry(item.ident.to_string())
-                        .or_default()
-                        .extend(names);
-                }
-                Item::Enum(item) => {
-                    let names = item.variants.iter();
-                    let names: BTreeSet<String> =
-                        names.map(|variant| variant.ident.to_string()).collect();
-                    self.insert(&item.ident, names.clone());
-                    self.variants
-                        .entry(item.ident.to_string())
-                        .or_default()
-                        .extend(names);
-                }
-                Item::Trait(item) => {
-                    let names = item.items.iter().filter_map(|item| match item {
-                        TraitItem::Fn(function) => Some(function.sig.ident.to_string()),
-                        TraitItem::Const(constant) => Some(constant.ident.to_string()),
-                        _ => None,
-                    });
-                    self.insert(&item.ident, names);
-                }
-                Item::Impl(item) => {
-                    let Type::Path(path) = &*item.self_ty else {
-                        continue;
-                    };
-                    let Some(last) = path.path.segments.last() else {
-                        continue;
-                    };
-                    if item.trait_.is_some() {
-                        continue;
-                    }
-                    let names = item.items.iter().filter_map(|item| match item {
-                        ImplItem::Fn(function) if is_public(&function.vis) => {
-                            Some(function.sig.ident.to_string())
-                        }
-                        ImplItem::Const(constant) if is_public(&constant.vis) => {
-                            Some(constant.ident.to_string())
-                        }
-                        ImplItem::Macro(inner) => {
-                            self.in_macros.extend(functions(inner.mac.tokens.clone()));
-                            None
-                        }
-                        _ => None,
-                    });
-                    let names: Vec<_> = names.collect();
-                    self.insert(&last.ident, names);
-                }
-                Item::Macro(item) => {
-                    self.in_macros.extend(functions(item.mac.tokens.clone()));
-                    if let Some(name) = declared(item.mac.tokens.clone()) {
-                        self.of.entry(name).or_default();
-                    }
-                }
-                Item::Fn(item) if is_public(&item.vis) => {
-                    self.free.insert(item.sig.ident.to_string());
-                }
-                Item::Const(item) if is_public(&item.vis) => {
-                    self.free.insert(item.ident.to_string());
-                }
-                Item::Mod(item) => {
-                    if let Some((_, items)) = &item.content {
-                        self.scan(items);
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
 }
 
-fn is_public(visibility: &Visibility) -> bool {
-    matches!(visibility, Visibility::Public(_))
-}
-
-/// The names after each `fn` in the tokens of a macro.
-fn functions(tokens: TokenStream) -> BTreeSet<String> {
-    let mut found = BTreeSet::new();
-    let mut is_function = false;
-    for token in tokens {
-        match token {
-            TokenTree::Group(group) => found.extend(functions(group.stream())),
-            TokenTree::Ident(name) => {
-                if is_function {
-                    found.insert(name.to_string());
-                }
-                is_function = name == "fn";
-                continue;
-            }
-            _ => {}
-        }
-        is_function = false;
+impl<'a> Visit<'a> for Members {
+    fn visit_item_struct(&mut self, item: &'a syn::ItemStruct) {
+        let fields = item.fields.iter().filter_map(|field| field.ident.as_ref());
+        self.insert_parts("struct", &item.ident, fields);
     }
-    found
-}
 
-/// The type that a macro declares, if the tokens name one.
-fn declared(tokens: TokenStream) -> Option<String> {
-    let mut is_type = false;
-    for token in tokens {
-        match token {
-            TokenTree::Group(group) => {
-                let inner = declared(group.stream());
-                if inner.is_some() {
-                    return inner;
-                }
-            }
-            TokenTree::Ident(name) => {
-                if is_type {
-                    return Some(name.to_string());
-                }
-                is_type = name == "struct" || name == "enum";
-                continue;
-            }
-            _ => {}
-        }
-        is_type = false;
+    fn visit_item_enum(&mut self, item: &'a syn::ItemEnum) {
+        let variants = item.variants.iter().map(|variant| &variant.ident);
+        self.insert_parts("enum", &item.ident, variants);
     }
-    None
+
+    fn visit_item_trait(&mut self, item: &'a syn::ItemTrait) {
+        let members = item.items.iter().filter_map(|item| match item {
+            TraitItem::Fn(function) => Some(&function.sig.ident),
+            TraitItem::Const(constant) => Some(&constant.ident),
+            _ => None,
+        });
+        self.insert(&item.ident, members);
+    }
+
+    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
+        if let (Type::Path(path), None) = (&*item.self_ty, &item.trait_)
+            && let Some(of) = path.path.segments.last()
+        {
+            let members = item.items.iter().filter_map(|item| match item {
+                ImplItem::Fn(function) => Some(&function.sig.ident),
+                ImplItem::Const(constant) => Some(&constant.ident),
+                _ => None,
+            });
+            self.insert(&of.ident, members);
+        }
+        visit::visit_item_impl(self, item);
+    }
+
+    fn visit_item_fn(&mut self, item: &'a syn::ItemFn) {
+        self.free.insert(item.sig.ident.to_string());
+    }
+
+    fn visit_item_const(&mut self, item: &'a syn::ItemConst) {
+        self.free.insert(item.ident.to_string());
+    }
+
+    fn visit_macro(&mut self, item: &'a syn::Macro) {
+        let text = item.tokens.to_string();
+        let words = text.split(|it: char| !it.is_alphanumeric() && it != '_');
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+        for pair in words.windows(2) {
+            if ["struct", "enum"].contains(&pair[0]) {
+                self.of.entry(pair[1].to_owned()).or_default();
+            }
+        }
+        self.in_macros.extend(words.into_iter().map(str::to_owned));
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn members(source: &str) -> Members {
-        let mut members = Members::default();
-        members.scan(&syn::parse_file(source).expect("it is Rust").items);
-        members
-    }
-
     #[test]
     fn methods_fields_variants_and_constants_are_members() {
-        let members = members(
-            "pub struct S { pub a: u8, b: u8 } enum E { C } trait T { fn d(); } \
-             impl S { pub fn e() {} fn f() {} pub const G: u8 = 0; } mod m { enum E { H } }",
-        );
+        let mut members = Members::default();
+        let source = "pub struct S { pub a: u8 } enum E { C } trait T { fn d(); } \
+             impl S { pub fn e() {} pub const G: u8 = 0; } mod m { enum E { H } } \
+             macro_rules! m { ($t:ident) => { impl $t { pub fn i(self) {} } struct M; } }";
+        members.visit_file(&syn::parse_file(source).expect("it is Rust"));
         for (name, member, is_there) in [
             ("S", "a", true),
-            ("S", "b", false),
             ("E", "C", true),
             ("T", "d", true),
             ("S", "e", true),
             ("S", "f", false),
             ("S", "G", true),
             ("E", "H", true),
+            ("S", "i", true),
             ("X", "a", false),
         ] {
             assert_eq!(members.has(name, member), is_there, "{name}::{member}");
         }
-    }
-
-    #[test]
-    fn what_a_macro_writes_may_be_of_any_type() {
-        let members = members(
-            "macro_rules! m { ($t:ident) => { impl $t { pub fn a(self) {} } } } struct S; \
-             macro_rules! n { () => { pub enum E {} } }",
-        );
-        assert!(members.has("S", "a") && members.any_has("a"));
-        assert!(!members.has("S", "b") && !members.has("T", "a"));
-        assert!(members.of("E").is_some());
+        assert!(members.any_has("i") && members.declares("M"));
+        assert_eq!(members.parts("enum E"), BTreeSet::from(["C", "H"]));
     }
 }

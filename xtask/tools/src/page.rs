@@ -14,11 +14,6 @@ impl<'a> Table<'a> {
         self.header.0.iter().position(|cell| *cell == name)
     }
 
-    /// The cells of each row.
-    pub(crate) fn texts(&self) -> Vec<String> {
-        self.rows.iter().map(Row::text).collect()
-    }
-
     /// The text of the first cell of the header.
     pub(crate) fn first(&self) -> &'a str {
         self.header.cell(0)

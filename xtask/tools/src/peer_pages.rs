@@ -12,83 +12,45 @@
 //! same names. Names in the column `Python` are checked by the package's own tests
 //! (`franka-py/tests/test_names.py`).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
 
-use crate::members::Members;
-use crate::names::{Names, join};
-use crate::ours::Ours;
+use crate::names::Ours;
 use crate::page::{Table, tables};
 use xtask::workspace::Workspace;
 
-/// A package and its chapter.
-struct Peer {
-    /// The file of its names, in `tests/peers/names`.
-    list: &'static str,
-    /// Its chapter, in `docs/src`.
-    page: &'static str,
-    /// Separator between a type and its member.
-    separator: &'static str,
-}
-
-const PEERS: [Peer; 6] = [
-    Peer {
-        list: "libfranka.txt",
-        page: "from-libfranka.md",
-        separator: "::",
-    },
-    Peer {
-        list: "pylibfranka.txt",
-        page: "from-pylibfranka.md",
-        separator: ".",
-    },
-    Peer {
-        list: "franky.txt",
-        page: "from-franky.md",
-        separator: ".",
-    },
-    Peer {
-        list: "panda_py.txt",
-        page: "from-panda-py.md",
-        separator: ".",
-    },
-    Peer {
-        list: "franka_rs.txt",
-        page: "from-franka-rs.md",
-        separator: "::",
-    },
-    Peer {
-        list: "franka.txt",
-        page: "from-franka-rs-python.md",
-        separator: ".",
-    },
+/// The list of a package's names, its chapter, and what separates a type from its member.
+const PEERS: [(&str, &str, &str); 6] = [
+    ("libfranka.txt", "from-libfranka.md", "::"),
+    ("pylibfranka.txt", "from-pylibfranka.md", "."),
+    ("franky.txt", "from-franky.md", "."),
+    ("panda_py.txt", "from-panda-py.md", "."),
+    ("franka_rs.txt", "from-franka-rs.md", "::"),
+    ("franka.txt", "from-franka-rs-python.md", "."),
 ];
 
 /// Fails with every missing row, and every name that does not exist.
 pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let mut found = Vec::new();
     let mut rows = 0;
-    for peer in &PEERS {
-        let list = workspace.root().join("tests/peers/names").join(peer.list);
-        let list =
-            fs::read_to_string(&list).with_context(|| format!("cannot read {}", list.display()))?;
-        if peer.list == "franka_rs.txt" {
-            check_franka_rs(workspace, &names_of(&list))?;
-        }
-        let page = workspace.root().join("docs/src").join(peer.page);
-        let page =
-            fs::read_to_string(&page).with_context(|| format!("cannot read {}", page.display()))?;
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(workspace.root().join(&path));
+        text.with_context(|| format!("cannot read {}", path.display()))
+    };
+    for (list, chapter, separator) in PEERS {
+        let names = read(Path::new("tests/peers/names").join(list))?;
+        let names = names_of(&names);
+        let page = read(Path::new("docs/src").join(chapter))?;
         let maps: Vec<Table<'_>> = tables(&page).into_iter().filter(is_map).collect();
-        let names = names_of(&list);
-        let faults = differences(&names, &maps, peer.separator);
         let strange = maps
             .iter()
-            .flat_map(|table| strange(table, &maps, &names, peer.separator, ours));
+            .flat_map(|table| strange(table, &maps, &names, separator, ours));
+        let faults = differences(&names, &maps, separator);
         let faults = faults.into_iter().chain(strange);
-        found.extend(faults.map(|fault| format!("{}: {fault}", peer.page)));
+        found.extend(faults.map(|fault| format!("{chapter}: {fault}")));
         rows += maps.iter().map(|table| table.rows.len()).sum::<usize>();
     }
     if !found.is_empty() {
@@ -103,73 +65,6 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     );
     Ok(())
 }
-
-/// Fails unless the list of franka-rs has the public names of its sources. Nothing is checked if
-/// they have not been fetched.
-fn check_franka_rs(workspace: &Workspace, list: &BTreeSet<String>) -> anyhow::Result<()> {
-    let manifest = "tests/peers/franka_rs/Cargo.toml";
-    let mut metadata = workspace.cargo();
-    metadata.args(["metadata", "--format-version=1", "--offline", "--locked"]);
-    // The packages for other systems may be absent.
-    metadata.args(["--filter-platform", "x86_64-unknown-linux-gnu"]);
-    metadata.args(["--manifest-path", manifest]);
-    let output = metadata.output().context("cannot run cargo")?;
-    if !output.status.success() {
-        println!("franka-rs is not fetched: its names are not compared with its sources");
-        return Ok(());
-    }
-    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout)?;
-    let packages = metadata["packages"].as_array().context("no packages")?;
-    let package = packages
-        .iter()
-        .find(|package| package["name"] == "franka-rs");
-    let manifest = package.and_then(|package| package["manifest_path"].as_str());
-    let source = Path::new(manifest.context("no franka-rs")?).with_file_name("src");
-    let names = listing(&source)?;
-    let faults: Vec<String> = (names
-        .difference(list)
-        .map(|name| format!("it lacks {name}")))
-    .chain(
-        list.difference(&names)
-            .map(|name| format!("it has {name}, which no longer exists")),
-    )
-    .collect();
-    if !faults.is_empty() {
-        bail!("the list of franka-rs:\n{}", faults.join("\n"));
-    }
-    Ok(())
-}
-
-/// The public names of a crate: items by their shortest path, each type with its members.
-fn listing(source: &Path) -> anyhow::Result<BTreeSet<String>> {
-    let names = Names::with_opaque(&source.join("lib.rs"), &FRANKA_RS_OPAQUE)?;
-    let mut members = Members::default();
-    members.read(source)?;
-    let mut places: BTreeMap<String, String> = BTreeMap::new();
-    for (module, items) in &names.modules {
-        for name in items.keys() {
-            let place = join(module, name);
-            if names.modules.contains_key(&place) {
-                continue;
-            }
-            let shortest = places.entry(names.declared_at(module, name)).or_default();
-            if shortest.is_empty() || place.len() < shortest.len() {
-                *shortest = place;
-            }
-        }
-    }
-    let mut found = BTreeSet::new();
-    for (declared, place) in places {
-        let of = declared.rsplit("::").next().unwrap_or(&declared);
-        let inner = members.of(of).into_iter().flatten();
-        found.extend(inner.map(|member| format!("{place}::{member}")));
-        found.insert(place);
-    }
-    Ok(found)
-}
-
-/// Internal modules of franka-rs: bytes, sockets, the connection behind `Robot`.
-const FRANKA_RS_OPAQUE: [&str; 4] = ["network", "wire", "robot::robot_impl", "robot::commands"];
 
 /// True if a table maps names to ours.
 fn is_map(table: &Table<'_>) -> bool {

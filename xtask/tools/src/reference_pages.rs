@@ -1,6 +1,5 @@
 //! Required content of the reference chapters: every field of a state, every error of the robot,
-//! every variant of the errors of `franka-async`, and a target for each link of an error. Figures
-//! that a chapter copies must be equal to those of the chapter where they were measured.
+//! every variant of the errors of `franka-async`, and a target for each link of an error.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,8 +8,8 @@ use std::path::Path;
 use anyhow::{Context as _, bail};
 
 use crate::members::Members;
-use crate::ours::Ours;
-use crate::page::{Table, anchors, tables};
+use crate::names::Ours;
+use crate::page::{anchors, tables};
 use xtask::workspace::Workspace;
 
 /// Fails with every name that a chapter lacks, or that does not exist.
@@ -31,12 +30,6 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let anchors = anchors(&errors);
     let lost = entries.iter().filter(|entry| !anchors.contains(*entry));
     found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
-    found.extend(keys(
-        &page("dev/benchmarks.md")?,
-        &workspace.root().join("bench/src"),
-    )?);
-    let measured = [page("dev/benchmarks.md")?, page("dev/sticking.md")?];
-    found.extend(copies(&page("compared.md")?, &measured));
     if !found.is_empty() {
         bail!("reference chapters:\n{}", found.join("\n"));
     }
@@ -51,8 +44,8 @@ fn states(page: &str, state: &Members) -> Vec<String> {
     let named: BTreeSet<&str> = of_robot
         .flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)))
         .collect();
-    let fields = state.fields("RobotState").chain(state.fields("TotalLoad"));
-    let fields: BTreeSet<&str> = fields.collect();
+    let mut fields = state.parts("struct RobotState");
+    fields.extend(state.parts("struct TotalLoad"));
     differences("states.md", &named, &fields)
 }
 
@@ -64,7 +57,7 @@ fn variants(page: &str, ours: &Ours) -> Vec<String> {
         let header = table.spans(0);
         let [name] = header[..] else { continue };
         let named: BTreeSet<&str> = table.rows.iter().flat_map(|row| row.spans(0)).collect();
-        let variants = ours.variants(name).into_iter().collect();
+        let variants = ours.members.parts(&format!("enum {name}"));
         found.extend(differences(
             &format!("errors.md: {name}"),
             &named,
@@ -102,18 +95,6 @@ fn robot_errors(page: &str, workspace: &Workspace) -> anyhow::Result<Vec<String>
         .collect())
 }
 
-/// Keys of benchmarks that no benchmark writes, because no source has them as a text.
-fn keys(page: &str, sources: &Path) -> anyhow::Result<Vec<String>> {
-    let mut texts = String::new();
-    read_all(sources, &mut texts)?;
-    let tables = tables(page);
-    let named = tables.iter().filter(|table| table.first() == "key");
-    let named = named.flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)));
-    let lost = named.filter(|key| !texts.contains(&format!("\"{key}\"")));
-    let lost = lost.map(|key| format!("dev/benchmarks.md: nothing measures {key}"));
-    Ok(lost.collect())
-}
-
 /// Appends all Rust files below a directory.
 fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
     for entry in fs::read_dir(directory)? {
@@ -125,21 +106,6 @@ fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
         }
     }
     Ok(())
-}
-
-/// Rows with figures that differ from the chapters where they were measured. The last table of the
-/// page lists the features of each package.
-fn copies(page: &str, measured: &[String]) -> Vec<String> {
-    let there = measured.iter().flat_map(|page| tables(page));
-    let there: BTreeSet<String> = there.flat_map(|table| table.texts()).collect();
-    let mut copied = tables(page);
-    copied.pop();
-    let lost = copied
-        .iter()
-        .flat_map(Table::texts)
-        .filter(|row| !there.contains(row));
-    lost.map(|row| format!("compared.md: measured nowhere: {row}"))
-        .collect()
 }
 
 /// The names that methods `entry` return: all texts in functions of that name.
@@ -189,15 +155,6 @@ mod tests {
                       match self {\n            A => \"a-b\",\n            B => \"c\",\n        }\n    }\n    \
                       fn other() { \"no\" }\n}\n";
         assert_eq!(texts_of_entries(source), ["a-b", "c"]);
-    }
-
-    #[test]
-    fn a_figure_that_differs_from_the_measured_one_is_found() {
-        let page =
-            "| a | b |\n|---|---|\n| x | 1 |\n| y | 2 |\n\n| c | d |\n|---|---|\n| z | 3 |\n";
-        let measured = "| a | b |\n|---|---|\n| x | 1 |\n| y | 3 |\n".to_owned();
-        let found = copies(page, &[measured]);
-        assert_eq!(found, ["compared.md: measured nowhere: y | 2"]);
     }
 
     #[test]
