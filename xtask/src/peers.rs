@@ -4,7 +4,6 @@ use std::env;
 use std::fmt;
 use std::io::{self, BufRead as _, BufReader, PipeReader};
 use std::iter;
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use std::sync::{Mutex, PoisonError, mpsc};
@@ -13,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 
-use crate::python::{Python, Version};
+use crate::python::Uv;
 use crate::selection::{PACKAGES, packages};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
@@ -274,12 +273,11 @@ fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
 /// If the client cannot be installed.
 pub fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     let requirements = directory(workspace).join("requirements.txt");
-    match supported().and_then(|()| Python::find(PYTHON)) {
-        Ok(python) => Ok(Ok(python.environment(
-            workspace,
-            "python",
-            &requirements,
-        )?)),
+    if let Err(why) = supported() {
+        return Ok(Err(why));
+    }
+    match Uv::find(workspace)? {
+        Ok(uv) => uv.environment(workspace, "python", PYTHON, &requirements),
         Err(why) => Ok(Err(why)),
     }
 }
@@ -411,7 +409,7 @@ const SMOKE: [&str; 5] = [
 const VIRTUAL: &str = "--virtual-time";
 
 /// Versions of Python with wheels of the vendor.
-const PYTHON: RangeInclusive<Version> = (3, 9)..=(3, 12);
+const PYTHON: &str = ">=3.9,<3.13";
 
 /// The port of every FCI server; the vendor's client uses no other.
 const PORT: &str = "1337";

@@ -16,7 +16,7 @@ use crate::metadata::copy_directory;
 use crate::names;
 use crate::package;
 use crate::playground;
-use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::python;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
@@ -101,13 +101,8 @@ struct Tools {
 impl Tools {
     /// Installs the tools, or returns the missing requirement.
     fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
-        let python = match Python::find(OLDEST..=NEWEST) {
-            Ok(python) => python,
-            Err(why) => return Ok(Err(why)),
-        };
-        let requirements = workspace.root().join("docs").join("requirements.txt");
-        let interpreter = python.environment(workspace, "python-book", &requirements)?;
-        Ok(Ok(Self { interpreter }))
+        let interpreter = python::environment(workspace, "python-book", "docs/requirements.txt")?;
+        Ok(interpreter.map(|interpreter| Self { interpreter }))
     }
 
     /// A program of the environment.

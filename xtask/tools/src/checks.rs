@@ -99,7 +99,7 @@ impl StepOf for Nightly {
     fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome> {
         match self {
             Self::Mujoco => {
-                if let Err(why) = mujoco::prepare(workspace)? {
+                if let Err(why) = mujoco::provide(workspace)? {
                     return Outcome::without(why);
                 }
                 let mut arguments = packages(&MUJOCO);

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, ensure};
 
-use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::python;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
@@ -121,13 +121,10 @@ pub(crate) fn is_installed(program: &str) -> bool {
 /// The value of `PATH` with which Cargo finds zig and the programs that build with it, or the
 /// missing requirement.
 pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<Result<OsString, String>> {
-    let python = match Python::find(OLDEST..=NEWEST) {
-        Ok(python) => python,
-        Err(why) => return Ok(Err(why)),
-    };
-    let requirements = workspace.root().join("franka-cli/dist/build.txt");
-    let interpreter = python.environment(workspace, "python-dist", &requirements)?;
-    path_with(&interpreter).map(Ok)
+    match python::environment(workspace, "python-dist", "franka-cli/dist/build.txt")? {
+        Ok(interpreter) => path_with(&interpreter).map(Ok),
+        Err(why) => Ok(Err(why)),
+    }
 }
 
 /// The value of `PATH` with which the programs of a virtual environment come first. Programs that

@@ -24,7 +24,7 @@ pub(crate) fn run(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
 
 /// Measures the simulator, each case for `seconds`, and writes `target/bench_sim.json`.
 pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
-    let mujoco = mujoco::prepare(workspace)?;
+    let mujoco = mujoco::provide(workspace)?;
     let mut measure = measure(workspace, "simulator", "bench_sim.json", seconds);
     match mujoco {
         Ok(()) => {

@@ -296,7 +296,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Bench { rounds, .. } => {
             let output = workspace.target().join("bench.json");
             // Without MuJoCo its row is missing.
-            let features = match mujoco::prepare(&workspace)? {
+            let features = match mujoco::provide(&workspace)? {
                 Ok(()) => &["mujoco"][..],
                 Err(why) => {
                     println!("the MuJoCo plant is not measured: {why}");
@@ -329,7 +329,7 @@ fn run(task: Task) -> anyhow::Result<()> {
             println!("{:?}", dashboard::film(&workspace)?);
             Ok(())
         }
-        Task::Mujoco => mujoco::provide(&workspace),
+        Task::Mujoco => mujoco::provide(&workspace)?.map_err(anyhow::Error::msg),
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;
             println!("{outcome:?}");

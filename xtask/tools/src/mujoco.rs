@@ -1,8 +1,7 @@
 //! `cargo xtask mujoco`: the native library of the simulator's MuJoCo plant, kept inside the tree.
 //!
 //! ```text
-//! pkg-config mujoco, if it is exactly the version ─────────┐
-//! PyPI wheel, pinned by hash ── pip download ── unpack ──> .mujoco/by-cargo-xtask-mujoco/libmujoco.so
+//! PyPI wheel, pinned by hash ── uv pip install ──> .mujoco/by-cargo-xtask-mujoco/libmujoco.so
 //!                                                               ^
 //! .cargo/config.toml: MUJOCO_DYNAMIC_LINK_DIR, unless set ──────┘
 //! ```
@@ -14,89 +13,47 @@
 use std::env;
 use std::ffi::OsStr;
 use std::fs;
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::Path;
 
-use anyhow::{Context as _, bail};
-
-use xtask::python::{NEWEST, Python, Version};
+use xtask::python::Uv;
 use xtask::workspace::Workspace;
 
-/// Makes the library available, and prints its source.
-pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
-    match fetch(workspace)? {
-        Ok(()) => Ok(()),
-        Err(why) => bail!("{why}"),
-    }
-}
-
-/// Makes the library available for builds. The inner error names the missing requirement of this
-/// machine.
-pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
-    match rust() {
-        Some(version) if version < RUST => Ok(Err(format!(
-            "the MuJoCo plant needs Rust {}.{}, this is {}.{}",
-            RUST.0, RUST.1, version.0, version.1
-        ))),
-        _ => fetch(workspace),
-    }
-}
-
-/// Does nothing if the user names another library or the right one exists. The inner error gives
-/// the reason why this machine cannot have one.
-fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
+/// Makes the library available, unless it is there or the user names another one. The inner error
+/// is the reason why this machine cannot have it.
+pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     if let Some(variable) = named_by_user(workspace) {
         println!("using the library of {variable}");
         return Ok(Ok(()));
     }
-    let directory = directory(workspace);
-    let stamp = directory.join("installed.txt");
-    let (origin, source) = match pkg_config() {
-        Some(library) => (format!("{}\n", library.display()), Source::Own(library)),
-        None => match Wheel::of(env::consts::OS, env::consts::ARCH) {
-            Some(wheel) => (format!("{}\n", wheel.hash), Source::Wheel(wheel)),
-            None => {
-                return Ok(Err(format!(
-                    "MuJoCo {VERSION} is fetched for Linux on x86-64 and aarch64 only; install it, so that pkg-config \
-                     finds it, or set MUJOCO_DYNAMIC_LINK_DIR to the absolute path of its libraries"
-                )));
-            }
-        },
+    let Some(wheel) = Wheel::of(env::consts::OS, env::consts::ARCH) else {
+        return Ok(Err(format!(
+            "MuJoCo {VERSION} is fetched for Linux on x86-64 and aarch64 only; install it, and set \
+             MUJOCO_DYNAMIC_LINK_DIR to the absolute path of its libraries"
+        )));
     };
+    let directory = workspace.root().join(".mujoco");
+    let stamp = directory.join("installed.txt");
     let library = directory.join(LIBRARIES).join(LIBRARY);
-    if library.exists() && fs::read_to_string(&stamp).is_ok_and(|text| text == origin) {
+    if library.exists() && fs::read_to_string(&stamp).is_ok_and(|text| text == wheel.hash) {
         println!("{} is up to date", library.display());
         return Ok(Ok(()));
     }
+    let uv = match Uv::find(workspace)? {
+        Ok(uv) => uv,
+        Err(why) => return Ok(Err(format!("MuJoCo is fetched with uv: {why}"))),
+    };
     if directory.exists() {
         fs::remove_dir_all(&directory)?;
     }
     fs::create_dir_all(directory.join(LIBRARIES))?;
-    match source {
-        Source::Own(own) => link(&own, &library)?,
-        Source::Wheel(wheel) => {
-            let python = match Python::find(FETCHING) {
-                Ok(python) => python,
-                Err(why) => return Ok(Err(format!("MuJoCo is fetched with pip: {why}"))),
-            };
-            wheel.unpack(workspace, &python, &directory)?;
-            // Linkers look for the plain name, programs for the name with the version.
-            link(Path::new(VERSIONED), &library)?;
-        }
-    }
+    wheel.unpack(workspace, &uv, &directory)?;
+    // Linkers look for the plain name, programs for the name with the version.
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(VERSIONED, &library)?;
     // Written last, so that an interrupted installation is repeated.
-    fs::write(&stamp, origin)?;
+    fs::write(&stamp, wheel.hash)?;
     println!("{} exists", library.display());
     Ok(Ok(()))
-}
-
-/// Source of the library.
-enum Source {
-    /// Installed on this machine.
-    Own(PathBuf),
-    /// Published by the vendor.
-    Wheel(&'static Wheel),
 }
 
 /// A wheel that carries the library, pinned.
@@ -115,39 +72,19 @@ impl Wheel {
     }
 
     /// Puts the library below `directory`.
-    fn unpack(
-        &self,
-        workspace: &Workspace,
-        python: &Python,
-        directory: &Path,
-    ) -> anyhow::Result<()> {
+    fn unpack(&self, workspace: &Workspace, uv: &Uv, directory: &Path) -> anyhow::Result<()> {
         let scratch = directory.join("scratch");
-        let interpreter = python.make_environment(workspace, &scratch.join("python"))?;
+        fs::create_dir(&scratch)?;
         let requirement = scratch.join("requirements.txt");
-        fs::write(
-            &requirement,
-            format!("mujoco=={VERSION} --hash=sha256:{}\n", self.hash),
-        )?;
-        let mut download = workspace.program(&interpreter);
-        download
-            .args(["-m", "pip", "download", "--quiet", "--no-deps"])
-            .args(["--disable-pip-version-check", "--only-binary=:all:"])
-            .args(["--require-hashes", "--implementation", "cp"])
-            .args(["--python-version", PYTHON.0, "--abi", PYTHON.1])
-            .arg("--platform")
-            .arg(format!("manylinux_2_28_{}", self.machine))
-            .arg("--dest")
-            .arg(&scratch)
-            .arg("--requirement")
-            .arg(&requirement);
-        workspace.run(&mut download)?;
-        let wheel = fs::read_dir(&scratch)?
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .find(|path| path.extension().is_some_and(|ending| ending == "whl"))
-            .context("pip has downloaded no wheel")?;
-        let mut unpack = workspace.program(&interpreter);
-        unpack.args(["-m", "zipfile", "--extract"]);
-        workspace.run(unpack.arg(&wheel).arg(&scratch))?;
+        let text = format!("mujoco=={VERSION} --hash=sha256:{}\n", self.hash);
+        fs::write(&requirement, text)?;
+        let interpreter = uv.create(workspace, &scratch.join("python"), ">=3.9")?;
+        let mut install = uv.pip(workspace, "install", &interpreter);
+        install.args(["--no-deps", "--require-hashes", "--only-binary=:all:"]);
+        install.args(["--python-version", PYTHON, "--python-platform"]);
+        install.arg(format!("{}-manylinux_2_28", self.machine));
+        install.arg("--target").arg(&scratch);
+        workspace.run(install.arg("--requirement").arg(&requirement))?;
         fs::rename(
             scratch.join("mujoco").join(VERSIONED),
             directory.join(LIBRARIES).join(VERSIONED),
@@ -155,11 +92,6 @@ impl Wheel {
         fs::remove_dir_all(&scratch)?;
         Ok(())
     }
-}
-
-/// Directory of the library, as in `.cargo/config.toml`.
-fn directory(workspace: &Workspace) -> PathBuf {
-    workspace.root().join(".mujoco")
 }
 
 /// The variable with which the user names a library. Cargo sets one of them itself, from its
@@ -179,44 +111,6 @@ fn is_in(root: &Path, value: &OsStr) -> bool {
         && path.ancestors().nth(2).is_some_and(same)
 }
 
-/// Major and minor number of the compiler; `None` if unknown.
-fn rust() -> Option<(u32, u32)> {
-    let output = Command::new("rustc").arg("--version").output().ok()?;
-    parse_rust(&String::from_utf8_lossy(&output.stdout))
-}
-
-fn parse_rust(text: &str) -> Option<(u32, u32)> {
-    let mut numbers = text.strip_prefix("rustc ")?.split('.');
-    Some((numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?))
-}
-
-/// The library of exactly this version, if pkg-config finds one.
-fn pkg_config() -> Option<PathBuf> {
-    let output = Command::new("pkg-config")
-        .arg(format!("mujoco = {VERSION}"))
-        .arg("--variable=libdir")
-        .stderr(Stdio::null())
-        .output()
-        .ok()?;
-    let directory = String::from_utf8_lossy(&output.stdout);
-    let library = Path::new(directory.trim()).join(LIBRARY);
-    (output.status.success() && library.exists()).then_some(library)
-}
-
-#[cfg(unix)]
-fn link(target: &Path, link: &Path) -> std::io::Result<()> {
-    std::os::unix::fs::symlink(target, link)
-}
-
-/// Other systems fetch nothing.
-#[cfg(not(unix))]
-fn link(target: &Path, link: &Path) -> std::io::Result<()> {
-    fs::copy(target, link).map(|_| ())
-}
-
-/// The oldest compiler of the crate `mujoco-rs`.
-const RUST: (u32, u32) = (1, 95);
-
 /// The MuJoCo version for the crate `mujoco-rs`.
 const VERSION: &str = "3.17.0";
 
@@ -228,12 +122,9 @@ const LIBRARIES: &str = "by-cargo-xtask-mujoco";
 const LIBRARY: &str = "libmujoco.so";
 const VERSIONED: &str = "libmujoco.so.3.17.0";
 
-/// Version and ABI of the Python for which the wheels are made. The Python that fetches them may be
+/// Version of the Python for which the wheels are made. The Python that fetches them may be
 /// another: all wheels contain the same library.
-const PYTHON: (&str, &str) = ("3.12", "cp312");
-
-/// Versions of the Python that fetches: all versions whose pip has the options used here.
-const FETCHING: RangeInclusive<Version> = (3, 9)..=NEWEST;
+const PYTHON: &str = "3.12";
 
 /// The wheels on PyPI.
 const WHEELS: &[Wheel] = &[
@@ -278,14 +169,6 @@ mod tests {
             text.contains("MUJOCO_DYNAMIC_LINK_DIR = { value = \".mujoco/by-cargo-xtask-mujoco\", relative = true }"),
             "{text}"
         );
-    }
-
-    #[test]
-    fn the_version_of_the_compiler_is_read() {
-        let text = "rustc 1.95.0 (59807616e 2026-04-14)";
-        assert_eq!(parse_rust(text), Some((1, 95)));
-        assert!(parse_rust("rustc 1.89.0").is_some_and(|version| version < RUST));
-        assert_eq!(parse_rust("gcc 12"), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Recordings and datasets, read by the standard readers in Python.
 
 use crate::others;
-use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::python;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
@@ -9,13 +9,11 @@ use xtask::workspace::Workspace;
 /// and a dataset with them. LeRobot's own loader, which is large, also reads the dataset if
 /// `FRANKA_LEROBOT_PYTHON` names an interpreter that has it.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let python = match Python::find(OLDEST..=NEWEST) {
-        Ok(python) => python,
+    let requirements = "franka-record/tests/python/requirements.txt";
+    let interpreter = match python::environment(workspace, "python-recordings", requirements)? {
+        Ok(interpreter) => interpreter,
         Err(why) => return Outcome::without(why),
     };
-    let requirements = workspace.root().join("franka-record/tests/python");
-    let requirements = requirements.join("requirements.txt");
-    let interpreter = python.environment(workspace, "python-recordings", &requirements)?;
     let mut test = others::other_test(workspace, "recording");
     test.args(["--ignored", "--nocapture", "python_"]);
     workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;

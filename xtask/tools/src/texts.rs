@@ -7,7 +7,7 @@ use anyhow::bail;
 
 use crate::cross::is_installed;
 use crate::release::git;
-use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::python;
 use xtask::realtime::succeeds;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
@@ -16,12 +16,11 @@ use xtask::workspace::Workspace;
 /// installed, actionlint.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     check_paths(&git(workspace, &["ls-files", "-z"])?)?;
-    let python = match Python::find(OLDEST..=NEWEST) {
-        Ok(python) => python,
+    let tools = "xtask/tools/texts/tools.txt";
+    let interpreter = match python::environment(workspace, "python-texts", tools)? {
+        Ok(interpreter) => interpreter,
         Err(why) => return Outcome::without(why),
     };
-    let requirements = workspace.root().join("xtask/tools/texts/tools.txt");
-    let interpreter = python.environment(workspace, "python-texts", &requirements)?;
     let tool = |name| workspace.program(interpreter.with_file_name(name));
     workspace.run(tool("typos").args(["--format", "brief"]))?;
     // Without the network, in which it would only look up the hashes behind tags.

@@ -24,7 +24,7 @@ use super::program::{Running, moves};
 use super::{Machine, Release, debian};
 use crate::cross::is_installed;
 use crate::package::wheels;
-use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::python::{ANY, Uv};
 use xtask::workspace::Workspace;
 
 /// Tries archive and package of a program for this machine, from `artefacts`, and crates and wheel
@@ -186,12 +186,10 @@ impl Outside {
         franka: &Path,
         wheel: &Path,
     ) -> anyhow::Result<String> {
-        let python = Python::find(OLDEST..=NEWEST).map_err(anyhow::Error::msg)?;
-        let interpreter = python.make_environment(workspace, &self.at("python"))?;
-        let mut install = self.beside(Command::new(&interpreter));
-        install.args(["-m", "pip", "install", "--quiet"]);
-        install.args(["--disable-pip-version-check", "--only-binary=:all:"]);
-        workspace.run(install.arg(wheel))?;
+        let uv = Uv::find(workspace)?.map_err(anyhow::Error::msg)?;
+        let interpreter = uv.create(workspace, &self.at("python"), ANY)?;
+        let mut install = self.beside(uv.pip(workspace, "install", &interpreter));
+        workspace.run(install.arg("--only-binary=:all:").arg(wheel))?;
         let script = self.at("quickstart.py");
         fs::write(&script, SCRIPT)?;
         let (_sim, address) = self.simulator(franka)?;

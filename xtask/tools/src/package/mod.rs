@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
-use xtask::python::{NEWEST, OLDEST, Python, Version};
+use xtask::python::{ANY, Uv};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
@@ -16,9 +16,8 @@ use xtask::workspace::Workspace;
 /// has them, or the reason why none is available.
 pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     // The profile of the tests, in which the computations of a cycle are optimised.
-    let [environment, profile] = ["python-package", "dev"];
-    match Python::find(OLDEST..=NEWEST) {
-        Ok(python) => install(workspace, &python, environment, "tests", profile).map(Ok),
+    match Uv::find(workspace)? {
+        Ok(uv) => install(workspace, &uv, "python-package", ANY, "tests", "dev"),
         Err(why) => Ok(Err(why)),
     }
 }
@@ -26,27 +25,34 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, S
 /// Builds the package optimised and installs it together with the packages for comparison. Returns
 /// the interpreter that has them, or the reason why none is available.
 pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    let uv = match Uv::find(workspace)? {
+        Ok(uv) => uv,
+        Err(why) => return Ok(Err(why)),
+    };
     // Some packages have no wheels for newer versions, but ours does.
-    let python = Python::find(OLDEST..=NEWEST_OF_ALL).or_else(|_| Python::find(OLDEST..=NEWEST));
-    match python {
-        Ok(python) => install(workspace, &python, "python-bench", "bench", "dist").map(Ok),
-        Err(why) => Ok(Err(why)),
-    }
+    let of_all = ">=3.10,<3.13";
+    let versions = if uv.has(of_all) { of_all } else { ANY };
+    install(workspace, &uv, "python-bench", versions, "bench", "dist")
 }
 
 /// Builds the package and installs it in a virtual environment with the requirements in one of its
 /// directories; returns the interpreter.
 fn install(
     workspace: &Workspace,
-    python: &Python,
+    uv: &Uv,
     environment: &str,
+    versions: &str,
     requirements: &str,
     profile: &str,
-) -> anyhow::Result<PathBuf> {
+) -> anyhow::Result<Result<PathBuf, String>> {
     let requirements = directory(workspace)
         .join(requirements)
         .join("requirements.txt");
-    let interpreter = python.environment(workspace, environment, &requirements)?;
+    let environment = uv.environment(workspace, environment, versions, &requirements)?;
+    let interpreter = match environment {
+        Ok(interpreter) => interpreter,
+        Err(why) => return Ok(Err(why)),
+    };
     let wheels = built(workspace, profile);
     if wheels.exists() {
         // A wheel of an earlier version must not be mistaken for this one.
@@ -58,12 +64,10 @@ fn install(
     build.arg(&wheels).arg("--interpreter").arg(&interpreter);
     build.env("CARGO_TARGET_DIR", workspace.target());
     workspace.run(&mut build)?;
-    let mut install = module(workspace, &interpreter, "pip");
-    install.args(["install", "--quiet", "--force-reinstall"]);
-    install.args(["--disable-pip-version-check", "--no-deps", "--no-index"]);
-    install.arg("--find-links").arg(&wheels).arg("franka-async");
-    workspace.run(&mut install)?;
-    Ok(interpreter)
+    let mut install = uv.pip(workspace, "install", &interpreter);
+    install.args(["--reinstall", "--no-deps", "--no-index", "--find-links"]);
+    workspace.run(install.arg(&wheels).arg("franka-async"))?;
+    Ok(Ok(interpreter))
 }
 
 /// Runs the tests and the checks of the types at the same time.
@@ -76,7 +80,8 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let beside = scope.spawn(|| {
             types(workspace, &interpreter)?;
             let wheel = wheels::only_wheel(&built(workspace, "dev"))?;
-            wheels::check(workspace, &wheel)
+            println!("{}", wheels::import(workspace, &wheel)?);
+            anyhow::Ok(Outcome::Passed)
         });
         let mut tests = module(workspace, &interpreter, "pytest");
         // Most tests mostly wait. A finished worker takes over tests of the others.
@@ -116,6 +121,3 @@ pub(crate) fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> C
 pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-py")
 }
-
-/// The newest Python for which all compared packages have wheels.
-const NEWEST_OF_ALL: Version = (3, 12);
