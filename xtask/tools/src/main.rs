@@ -28,6 +28,7 @@
 //! | [`schemas`] | the code of recordings, from definitions |
 //! | [`texts`] | the steps that check spelling, workflows and dependencies |
 //! | [`tidy`] | the width of comments |
+//! | [`tools`] | programs from crates.io |
 
 mod book;
 mod checks;
@@ -54,6 +55,7 @@ mod release;
 mod schemas;
 mod texts;
 mod tidy;
+mod tools;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
