@@ -63,7 +63,7 @@ fn is_source(path: &Path) -> bool {
 struct Imports {
     /// Names at the root of the crate, and their top-level modules.
     exported: BTreeMap<String, String>,
-    /// What each top-level module imports from the root of the crate, and one file that does.
+    /// Imports of each top-level module from the root of the crate, with one file each.
     found: BTreeMap<String, BTreeMap<String, String>>,
     /// The file that is read, its top-level module, and its number of modules below the root.
     file: String,

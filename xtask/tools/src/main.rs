@@ -1,34 +1,4 @@
-//! The tasks of this workspace except its tests: `cargo xtask check`, `cargo xtask vectors [DIR]`,
-//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`,
-//! `cargo xtask release-check`, `cargo xtask version X.Y.Z`.
-//!
-//! | module | task |
-//! |---|---|
-//! | [`book`] | the book, checked or served |
-//! | [`checks`] | the steps of `cargo xtask check` and `cargo xtask nightly` |
-//! | [`circles`] | the step that finds imports in a circle between modules |
-//! | [`commands`] | the commands that the book names |
-//! | [`cross`] | building for other machines, and running the results |
-//! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
-//! | [`dist`] | the program `franka` for other machines, packed |
-//! | [`fuzz`] | the fuzz targets |
-//! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
-//! | [`members`] | the members of types in Rust sources |
-//! | [`metadata`] | the packages of the workspace |
-//! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
-//! | [`names`] | our public names in Rust |
-//! | [`others`] | the packages whose tests `cargo xtask test` leaves out |
-//! | [`package`] | the step that builds and tests the Python package, and its wheels |
-//! | [`page`] | tables and anchors of pages of the book |
-//! | [`peer_pages`] | the chapters for users of other packages |
-//! | [`prose`] | plain English in comments, texts and the book |
-//! | [`reference_pages`] | names that the reference chapters must contain |
-//! | [`release`] | requirements of a release: crates, version, change log |
-//! | [`schemas`] | the code of recordings, from definitions |
-//! | [`texts`] | the steps that check spelling, workflows and dependencies |
-//! | [`tidy`] | the width of comments |
-//! | [`tools`] | programs from crates.io |
+//! The tasks of this workspace except its tests: `cargo xtask help` lists them.
 
 mod book;
 mod checks;
@@ -60,7 +30,6 @@ mod tools;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context as _;
 use clap::{Parser, Subcommand};
 
 use crate::checks::{Check, Nightly};
@@ -214,17 +183,6 @@ enum Task {
         #[arg(long = "final")]
         last: bool,
     },
-    /// Print the change log's section of the workspace's version.
-    ReleaseNotes,
-    /// Set the version of all crates, of the citation and of the unreleased section of the change
-    /// log.
-    Version {
-        /// X.Y.Z; prints the version if absent.
-        version: Option<String>,
-        /// The day of the release, YYYY-MM-DD [default: today].
-        #[arg(long, requires = "version")]
-        date: Option<String>,
-    },
 }
 
 /// The tasks, each with the names of its options; no options for a task that passes its arguments
@@ -335,22 +293,6 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;
             println!("{outcome:?}");
-            Ok(())
-        }
-        Task::ReleaseNotes => {
-            let version = release::version::of(&workspace)?;
-            let log = release::changelog::read(&workspace)?;
-            let notes = log.notes_of(&version);
-            let notes = notes.with_context(|| format!("CHANGELOG.md: no section [{version}]"))?;
-            println!("{notes}");
-            Ok(())
-        }
-        Task::Version {
-            version: Some(version),
-            date,
-        } => release::version::set(&workspace, &version, date),
-        Task::Version { version: None, .. } => {
-            println!("{}", release::version::of(&workspace)?);
             Ok(())
         }
     }

@@ -15,6 +15,11 @@ pub(crate) fn crates(workspace: &Workspace) -> anyhow::Result<Vec<(String, PathB
 
 /// Cargo's description of each package of the workspace.
 pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<Value>> {
+    Ok(list(&of(workspace)?["packages"]))
+}
+
+/// Cargo's description of the workspace.
+pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<Value> {
     let output = workspace
         .cargo()
         .args(["metadata", "--format-version=1", "--no-deps"])
@@ -22,8 +27,7 @@ pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<Value>> {
         .output()
         .context("cannot run cargo")?;
     ensure!(output.status.success(), "cargo metadata failed");
-    let metadata: Value = serde_json::from_slice(&output.stdout)?;
-    Ok(list(&metadata["packages"]))
+    Ok(serde_json::from_slice(&output.stdout)?)
 }
 
 /// The targets of all packages that are libraries or programs.

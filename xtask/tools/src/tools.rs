@@ -7,6 +7,8 @@ use xtask::workspace::Workspace;
 
 /// Builds fuzz targets, and runs them.
 pub(crate) const FUZZ: &str = "cargo-fuzz@0.13.2";
+/// Packs programs for Debian.
+pub(crate) const DEB: &str = "cargo-deb@3.8.0";
 
 /// Builds a program into the build directory, which takes minutes, unless it is there. Returns the
 /// value of `PATH` with which Cargo finds it.

@@ -1,5 +1,8 @@
 //! The bill of materials of a program: every crate that is part of it, with version, licence and
 //! hash, as CycloneDX 1.5. Also the texts of their licences.
+//!
+//! cargo-cyclonedx 0.5.9 lists what the whole workspace needs, with the features of all members,
+//! writes a file beside each manifest, and knows no packages of npm.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -55,7 +58,7 @@ impl Bill {
         let lock = fs::read_to_string(workspace.root().join("Cargo.lock"))?;
         let page = fs::read_to_string(workspace.root().join("franka-dash/page/package.json"))?;
         Ok(Self {
-            parts: details(&parts, &metadata, &hashes(&lock)?)?,
+            parts: details(&parts, &metadata, &hashes(&lock))?,
             page: of_page(&page)?,
             version: version.to_owned(),
         })
@@ -172,16 +175,17 @@ fn parse_tree(text: &str) -> BTreeSet<Id> {
 }
 
 /// The hash of each package of a registry, from the lock file.
-fn hashes(lock: &str) -> anyhow::Result<BTreeMap<Id, String>> {
-    let lock = lock.parse::<toml_edit::DocumentMut>()?;
-    let packages = lock["package"]
-        .as_array_of_tables()
-        .context("no packages")?;
-    let hash = |package: &toml_edit::Table| {
-        let text = |name| Some(package.get(name)?.as_str()?.to_owned());
+fn hashes(lock: &str) -> BTreeMap<Id, String> {
+    let hash = |package: &str| {
+        let text = |name| {
+            let value =
+                |line: &str| Some(line.strip_prefix(name)?.strip_prefix(" = \"")?.to_owned());
+            let value: String = package.lines().find_map(value)?;
+            Some(value.trim_end_matches('"').to_owned())
+        };
         Some(((text("name")?, text("version")?), text("checksum")?))
     };
-    Ok(packages.iter().filter_map(hash).collect())
+    lock.split("[[package]]").filter_map(hash).collect()
 }
 
 /// Details of the chosen crates from Cargo's description.
@@ -291,7 +295,7 @@ mod tests {
     #[test]
     fn the_bill_of_this_machines_program_names_the_driver_and_its_needs() {
         let workspace = Workspace::find().unwrap();
-        let version = crate::release::version::of(&workspace).unwrap();
+        let version = crate::release::version(&crate::metadata::of(&workspace).unwrap());
         let bill = Bill::of(&workspace, "x86_64-unknown-linux-gnu", &version).unwrap();
         let json: Value = serde_json::from_str(&bill.to_json().unwrap()).unwrap();
         let components = json["components"].as_array().unwrap();

@@ -9,40 +9,31 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | this | machines, and building for them |
-//! | `archive` | archives that depend on their content only |
+//! | this | machines, building for them, and packing with tar, cargo-deb and buildah |
 //! | `bill` | parts of the program, and their licences |
-//! | `content` | files delivered with the program |
-//! | `debian` | the package for Debian |
-//! | `image` | the container image |
 //! | `program` | checking a built program |
 //! | `trial` | packed artefacts, used outside the repository |
 //!
-//! Two builds of one commit are the same, byte for byte: `--twice` builds twice and compares. All
-//! times are the commit's, and the build contains no paths of this machine.
+//! Two builds of one commit are the same program, byte for byte: `--twice` builds twice and
+//! compares. All times are the commit's, and the build contains no paths of this machine.
 
-mod archive;
 mod bill;
-mod content;
-mod debian;
-mod image;
 mod program;
 mod trial;
 
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 
 use anyhow::{Context as _, ensure};
-use sha2::{Digest as _, Sha256};
-use toml_edit::DocumentMut;
+use jiff::Timestamp;
 
-use crate::cross::{architecture, lacks, sysroot, zig};
+use crate::cross::{architecture, is_installed, lacks, sysroot, zig};
+use crate::metadata::{self, copy_directory};
 use crate::release;
-use archive::gzip;
+use crate::tools;
 use bill::Bill;
-use content::Content;
-use image::Part;
 use program::Program;
 use xtask::step::is_ci;
 use xtask::workspace::Workspace;
@@ -74,50 +65,38 @@ const MACHINES: [Machine; 3] = [
 struct Release {
     version: String,
     /// Time of the commit, in seconds since 1970.
-    epoch: u64,
-    /// The commit.
-    revision: String,
-    /// Address of the repository; empty without one.
-    repository: String,
-    /// Maintainer of the package, `Name <address>`; empty without one.
+    epoch: String,
+    /// Maintainer of the package for Debian, `Name <address>`.
     maintainer: String,
+    /// The directory of the artefacts.
+    artefacts: PathBuf,
 }
 
 impl Release {
-    fn of(workspace: &Workspace) -> anyhow::Result<Self> {
-        let manifest = fs::read_to_string(workspace.root().join("Cargo.toml"))?;
-        let manifest = manifest.parse::<DocumentMut>()?;
-        let text = |table: &str, name: &str| {
-            let value = manifest["workspace"].get(table).and_then(|it| it.get(name));
-            value
-                .and_then(|it| it.as_str())
-                .unwrap_or_default()
-                .to_owned()
-        };
-        let epoch = match env::var("SOURCE_DATE_EPOCH") {
-            Ok(epoch) => epoch,
-            Err(_) => release::git(workspace, &["log", "-1", "--format=%ct"])?,
-        };
+    /// Removes the artefacts of an earlier run.
+    fn begin(workspace: &Workspace) -> anyhow::Result<Self> {
+        let metadata = metadata::of(workspace)?;
+        let artefacts = empty(workspace.target().join("artefacts"))?;
+        let maintainer = metadata["metadata"]["maintainer"].as_str();
         Ok(Self {
-            version: release::version::of(workspace)?,
-            epoch: epoch
-                .parse()
-                .with_context(|| format!("got the time {epoch:?}"))?,
-            revision: release::git(workspace, &["rev-parse", "HEAD"])?,
-            repository: text("package", "repository"),
-            maintainer: release::version::maintainer(workspace)?,
+            version: release::version(&metadata),
+            epoch: match env::var("SOURCE_DATE_EPOCH") {
+                Ok(epoch) => epoch,
+                Err(_) => release::git(workspace, &["log", "-1", "--format=%ct"])?,
+            },
+            maintainer: match maintainer.unwrap_or_default() {
+                // No address below `.invalid` exists (RFC 2606).
+                "" => "Unreleased build <nobody@franka-async.invalid>".to_owned(),
+                maintainer => maintainer.to_owned(),
+            },
+            artefacts,
         })
     }
 
-    #[cfg(test)]
-    fn example() -> Self {
-        Self {
-            version: "0.1.0".to_owned(),
-            epoch: 1_800_000_000,
-            revision: "0".repeat(40),
-            repository: String::new(),
-            maintainer: String::new(),
-        }
+    /// Name of the package for Debian.
+    fn package(&self, machine: &Machine) -> String {
+        let architecture = machine.architecture();
+        format!("franka-cli_{}-1_{architecture}.deb", self.version)
     }
 }
 
@@ -139,9 +118,9 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
     let chosen: Vec<&Machine> = MACHINES.iter().filter(is_chosen).collect();
     let targets = MACHINES.map(|machine| machine.target).join(", ");
     ensure!(!chosen.is_empty(), "the targets are {targets}");
-    let release = Release::of(workspace)?;
-    let mut artefacts = Artefacts::begin(workspace)?;
-    let (mut built, mut lines, mut parts) = (0, Vec::new(), Vec::new());
+    let release = Release::begin(workspace)?;
+    let image = empty(workspace.target().join("image"))?;
+    let (mut built, mut lines) = (0, Vec::new());
     let mut of_this_machine = None;
     for machine in &chosen {
         let line = match machine.build(workspace, &release, "")? {
@@ -151,13 +130,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
                     Err(why) => format!("NOT CHECKED, NOT PACKED: {why}"),
                     Ok(program) => {
                         let about = program.check(machine.is_static())?;
-                        let packed = machine.pack(
-                            workspace,
-                            &release,
-                            &program,
-                            &mut artefacts,
-                            &mut parts,
-                        )?;
+                        let packed = machine.pack(workspace, &release, &program, &image)?;
                         if program.is_of_this_machine() {
                             of_this_machine.get_or_insert(*machine);
                         }
@@ -165,7 +138,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
                     }
                 };
                 if depth.twice {
-                    line += &machine.compare(workspace, &release, &path)?;
+                    line += machine.compare(workspace, &release, &path)?;
                 }
                 line
             }
@@ -173,19 +146,16 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
         };
         lines.push(format!("{}: {line}", machine.target));
     }
-    lines.push(match parts.is_empty() {
-        true => "image: NOT BUILT: it needs a static program".to_owned(),
-        false => {
-            let name = format!("franka-{}.oci.tar", release.version);
-            let file = artefacts.add(&name, &image::image(&release, &parts)?)?;
-            let work = workspace.target().join("image-copy");
-            format!("{name}: {}", image::check(workspace, &file, &work)?)
-        }
-    });
-    let directory = artefacts.end()?;
+    lines.push(format!(
+        "image: {}",
+        containers(workspace, &release, &image)?
+    ));
+    let mut sums = workspace.program("sh");
+    sums.current_dir(&release.artefacts);
+    workspace.run(sums.args(["-c", "sha256sum -- * > SHA256SUMS"]))?;
     if depth.trial {
         let machine = of_this_machine.context("no chosen program is for this machine")?;
-        lines.extend(trial::run(workspace, &release, machine, &directory)?);
+        lines.extend(trial::run(workspace, &release, machine)?);
     }
     println!("\n{}", lines.join("\n"));
     ensure!(built > 0, "nothing was built");
@@ -226,7 +196,7 @@ impl Machine {
         });
         build.env("PATH", path);
         build.env("CARGO_TARGET_DIR", &target);
-        build.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
+        build.env("SOURCE_DATE_EPOCH", &release.epoch);
         // Panics and debug information use the file names of the repository. The last match counts,
         // and the build directory is inside the workspace.
         let places = [
@@ -253,56 +223,98 @@ impl Machine {
         format!("franka-{}-{}", release.version, self.target)
     }
 
-    fn for_debian(&self) -> anyhow::Result<debian::Target<'static>> {
-        let architecture = match architecture(self.target) {
-            "x86_64" => "amd64",
+    /// The architecture's name in Go and for Debian.
+    fn architecture(&self) -> &'static str {
+        match architecture(self.target) {
             "aarch64" => "arm64",
-            other => anyhow::bail!("no name for {other}"),
-        };
-        Ok(debian::Target {
-            architecture,
-            glibc: (!self.is_static()).then_some(self.glibc),
-        })
+            _ => "amd64",
+        }
     }
 
-    /// Packs a program; adds it to the parts of the image if it can run in one. Returns a line
+    /// Packs a program; adds it to the files of the `image` if it can run in one. Returns a line
     /// about it.
     fn pack(
         &self,
         workspace: &Workspace,
         release: &Release,
         program: &Program,
-        artefacts: &mut Artefacts,
-        parts: &mut Vec<Part>,
+        image: &Path,
     ) -> anyhow::Result<String> {
         let bill = Bill::of(workspace, self.target, &release.version)?;
-        let work = workspace.target().join("man-pages");
-        if work.exists() {
-            fs::remove_dir_all(&work)?;
-        }
-        let content = Content::collect(workspace, program, &work, bill.licences()?)?;
         let name = self.name(release);
-        artefacts.add(&format!("{name}.cdx.json"), bill.to_json()?.as_bytes())?;
-        let archive = archive::tar(&content.portable(&name), release.epoch)?;
-        artefacts.add(&format!("{name}.tar.gz"), &gzip(&archive)?)?;
-        let for_debian = self.for_debian()?;
-        // One package per architecture, of the static program, which is built first if possible.
-        let package = artefacts.add_first(&debian::file_name(release, for_debian), || {
-            debian::package(release, for_debian, &content)
-        })?;
+        let file = release.artefacts.join(format!("{name}.cdx.json"));
+        fs::write(file, bill.to_json()?)?;
+        // The directory where `package.metadata.deb` finds the files.
+        let stage = empty(program.path.with_file_name("stage"))?;
+        stage_files(workspace, program, &stage, &bill.licences()?)?;
+        let mut archive = workspace.program("tar");
+        archive.args(["--sort=name", "--owner=0", "--group=0", "--numeric-owner"]);
+        archive.args(["--mode=u=rwX,go=rX", "--use-compress-program=gzip -9n"]);
+        archive.arg(format!("--mtime=@{}", release.epoch));
+        archive.arg(format!("--transform=s,^\\.,{name},"));
+        archive.arg("--directory").arg(&stage).arg("--create");
+        archive
+            .arg("--file")
+            .arg(release.artefacts.join(format!("{name}.tar.gz")));
+        workspace.run(archive.arg("."))?;
         if self.is_static() {
-            parts.push(Part {
-                architecture: for_debian.architecture,
-                program: content.program,
-                papers: content.papers,
-            });
+            let root = image.join(self.architecture());
+            let (programs, doc) = (root.join("usr/bin"), root.join("usr/share/doc/franka"));
+            for directory in [&programs, &doc] {
+                fs::create_dir_all(directory)?;
+            }
+            fs::copy(stage.join("franka"), programs.join("franka"))?;
+            for paper in PAPERS.iter().chain(&["THIRD-PARTY"]) {
+                fs::copy(stage.join(paper), doc.join(paper))?;
+            }
         }
         let count = bill.count();
-        let package = match package {
-            Some(package) => debian::check(workspace, &package)?,
-            None => "is the bill of the static program".to_owned(),
-        };
+        let package = self.package(workspace, release, &stage)?;
         Ok(format!("{count} crates in its bill; package {package}"))
+    }
+
+    /// Makes the package for Debian, one per architecture. The static program, which is built first
+    /// if possible, is in it. Returns a line about it.
+    fn package(
+        &self,
+        workspace: &Workspace,
+        release: &Release,
+        stage: &Path,
+    ) -> anyhow::Result<&'static str> {
+        let package = release.artefacts.join(release.package(self));
+        if package.exists() {
+            return Ok("is that of the static program");
+        }
+        let time = Timestamp::from_second(release.epoch.parse()?)?;
+        let changes = format!(
+            "franka-cli ({}-1) unstable; urgency=medium\n\n  * See changelog.gz beside this file.\n\n -- {}  {}\n",
+            release.version,
+            release.maintainer,
+            time.strftime("%a, %d %b %Y %H:%M:%S +0000"),
+        );
+        fs::write(stage.join("changelog.Debian"), changes)?;
+        let mut gzip = workspace.program("gzip");
+        gzip.args(["-9nr", "man", "THIRD-PARTY", "changelog.Debian"]);
+        workspace.run(gzip.current_dir(stage))?;
+        let mut deb = workspace.cargo();
+        deb.args(["deb", "--no-build", "--no-strip", "--locked", "--quiet"]);
+        deb.args(["--package", "franka-cli", "--profile", "dist"]);
+        deb.args(["--target", self.target, "--maintainer", &release.maintainer]);
+        if !self.is_static() {
+            deb.args(["--variant", "glibc"]);
+        }
+        deb.arg("--output").arg(&package);
+        deb.env("PATH", tools::path_with(workspace, tools::DEB)?);
+        workspace.run(deb.env("SOURCE_DATE_EPOCH", &release.epoch))?;
+        if !is_installed("lintian") {
+            return Ok("NOT CHECKED: lintian is not installed");
+        }
+        let mut lintian = workspace.program("lintian");
+        lintian.args(["--fail-on", "error,warning", "--allow-root"]);
+        // The home page is the repository, which is not set yet.
+        lintian.args(["--suppress-tags", "bad-homepage,empty-field"]);
+        workspace.run(lintian.arg(package))?;
+        Ok("checked by lintian")
     }
 
     /// Builds again, in another directory, and compares.
@@ -311,80 +323,98 @@ impl Machine {
         workspace: &Workspace,
         release: &Release,
         first: &Path,
-    ) -> anyhow::Result<String> {
+    ) -> anyhow::Result<&'static str> {
         let second = self.build(workspace, release, "second")?;
         let second = second.map_err(|why| anyhow::anyhow!("the second build: {why}"))?;
-        let [one, other] = [hash(&fs::read(first)?), hash(&fs::read(second)?)];
-        ensure!(
-            one == other,
-            "two builds of {}: {one} and {other}",
-            self.target
-        );
-        Ok(format!("; built twice, both times {one}"))
+        let is_same = fs::read(first)? == fs::read(second)?;
+        ensure!(is_same, "two builds of {} differ", self.target);
+        Ok("; built twice, both times the same")
     }
 }
 
-/// The delivered files and their checksums.
-struct Artefacts {
-    directory: PathBuf,
-    sums: Vec<(String, String)>,
+/// Collects the files that are delivered with a program, from the workspace and from the program
+/// itself.
+fn stage_files(
+    workspace: &Workspace,
+    program: &Program,
+    stage: &Path,
+    licences: &str,
+) -> anyhow::Result<()> {
+    fs::copy(&program.path, stage.join("franka"))?;
+    fs::write(stage.join("THIRD-PARTY"), licences)?;
+    for name in ["LICENSE", "NOTICE", "CHANGELOG.md"] {
+        fs::copy(workspace.root().join(name), stage.join(name))?;
+    }
+    let package = workspace.root().join("franka-cli");
+    fs::copy(package.join("README.md"), stage.join("README.md"))?;
+    copy_directory(&package.join("dist/examples"), &stage.join("examples"))?;
+    let mut man = program.command();
+    let status = man.arg("man").arg(stage.join("man")).stdout(Stdio::null());
+    ensure!(status.status()?.success(), "no man pages were written");
+    fs::create_dir(stage.join("completions"))?;
+    for shell in ["bash", "fish", "zsh"] {
+        let output = program.command().args(["completions", shell]).output()?;
+        ensure!(output.status.success(), "no completions for {shell}");
+        let file = stage.join(format!("completions/franka.{shell}"));
+        fs::write(file, output.stdout)?;
+    }
+    Ok(())
 }
 
-impl Artefacts {
-    /// Replaces the artefacts of an earlier run.
-    fn begin(workspace: &Workspace) -> anyhow::Result<Self> {
-        let directory = workspace.target().join("artefacts");
-        if directory.exists() {
-            fs::remove_dir_all(&directory)?;
-        }
-        fs::create_dir_all(&directory)?;
-        Ok(Self {
-            directory,
-            sums: Vec::new(),
-        })
+/// Makes the image of the static programs whose files are in `context`, without a daemon and
+/// without root: an OCI layout in one tar file. Returns a line about it.
+fn containers(workspace: &Workspace, release: &Release, context: &Path) -> anyhow::Result<String> {
+    let there = |it: &&str| context.join(it).exists();
+    let architectures: Vec<&str> = ["amd64", "arm64"].into_iter().filter(there).collect();
+    if architectures.is_empty() {
+        return Ok("NOT BUILT: it takes a static program".to_owned());
     }
-
-    fn has(&self, name: &str) -> bool {
-        self.sums.iter().any(|(other, _)| other == name)
+    if !is_installed("buildah") {
+        ensure!(!is_ci(), "buildah is not installed");
+        return Ok("NOT BUILT: buildah is not installed".to_owned());
     }
-
-    fn add(&mut self, name: &str, content: &[u8]) -> anyhow::Result<PathBuf> {
-        ensure!(!self.has(name), "two files are named {name}");
-        let file = self.directory.join(name);
-        fs::write(&file, content)?;
-        self.sums.push((name.to_owned(), hash(content)));
-        Ok(file)
-    }
-
-    /// Adds an artefact, unless a file of this name exists.
-    fn add_first(
-        &mut self,
-        name: &str,
-        make: impl FnOnce() -> anyhow::Result<Vec<u8>>,
-    ) -> anyhow::Result<Option<PathBuf>> {
-        if self.has(name) {
-            return Ok(None);
-        }
-        self.add(name, &make()?).map(Some)
-    }
-
-    /// Writes the checksums, as `sha256sum --check` reads them; returns the directory.
-    fn end(mut self) -> anyhow::Result<PathBuf> {
-        self.sums.sort();
-        let lines = self
-            .sums
-            .iter()
-            .map(|(name, hash)| format!("{hash}  {name}\n"));
-        let lines: String = lines.collect();
-        println!("\n{}:\n{lines}", self.directory.display());
-        fs::write(self.directory.join("SHA256SUMS"), lines)?;
-        Ok(self.directory)
-    }
+    let store = empty(workspace.target().join("image-store"))?;
+    let buildah = || {
+        let mut command = workspace.program("buildah");
+        command
+            .args(["--storage-driver", "vfs", "--root"])
+            .arg(&store);
+        command.arg("--runroot").arg(store.join("run"));
+        command
+    };
+    // podman would interpret a version alone as the name of the image.
+    let name = format!("franka:{}", release.version);
+    let platforms = architectures.iter().map(|it| format!("linux/{it}"));
+    let platforms = platforms.collect::<Vec<_>>().join(",");
+    let mut build = buildah();
+    build.args(["build", "--quiet", "--isolation", "chroot"]);
+    build.args(["--platform", &platforms, "--manifest", &name]);
+    build.args(["--timestamp", &release.epoch]);
+    build.args(["--build-arg", &format!("VERSION={}", release.version)]);
+    let revision = release::git(workspace, &["rev-parse", "HEAD"])?;
+    build.arg(format!(
+        "--label=org.opencontainers.image.revision={revision}"
+    ));
+    build.args(["--file", "franka-cli/dist/Dockerfile"]);
+    workspace.run(build.arg(context))?;
+    let file = release
+        .artefacts
+        .join(format!("franka-{}.oci.tar", release.version));
+    let mut push = buildah();
+    push.args(["manifest", "push", "--quiet", "--all", &name]);
+    push.arg(format!("oci-archive:{}:{name}", file.display()));
+    workspace.run(&mut push)?;
+    fs::remove_dir_all(store)?;
+    Ok(format!("for {platforms}"))
 }
 
-/// SHA-256 in hexadecimal digits.
-fn hash(content: &[u8]) -> String {
-    format!("{:x}", Sha256::digest(content))
+/// An empty directory, in place of an earlier one.
+fn empty(directory: PathBuf) -> anyhow::Result<PathBuf> {
+    if directory.exists() {
+        fs::remove_dir_all(&directory)?;
+    }
+    fs::create_dir_all(&directory)?;
+    Ok(directory)
 }
 
 /// Cargo's directory with the sources of dependencies.
@@ -396,28 +426,40 @@ fn cargo_home() -> anyhow::Result<PathBuf> {
     Ok(PathBuf::from(home).join(".cargo"))
 }
 
+/// Texts of the workspace in the image.
+const PAPERS: [&str; 3] = ["LICENSE", "NOTICE", "README.md"];
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Skipped without buildah. Its programs cannot run; nothing runs in a build from nothing.
     #[test]
-    fn the_first_file_of_a_name_is_the_one() -> anyhow::Result<()> {
-        let name = format!("franka-xtask-{}-artefacts", std::process::id());
-        let directory = env::temp_dir().join(name);
-        fs::create_dir_all(&directory)?;
-        let mut artefacts = Artefacts {
-            directory: directory.clone(),
-            sums: Vec::new(),
+    fn an_image_has_a_program_per_architecture() {
+        let workspace = Workspace::find().expect("built by Cargo");
+        let name = format!("franka-xtask-{}-image", std::process::id());
+        let directory = empty(env::temp_dir().join(name)).expect("a directory");
+        let release = Release {
+            version: "0.1.0".to_owned(),
+            epoch: "1800000000".to_owned(),
+            maintainer: String::new(),
+            artefacts: directory.clone(),
         };
-        let first = artefacts.add_first("a.deb", || Ok(b"static".to_vec()))?;
-        assert_eq!(fs::read(first.expect("the first"))?, b"static");
-        let second = artefacts.add_first("a.deb", || unreachable!("it is not made"))?;
-        assert_eq!(second, None);
-        artefacts.add("a.deb", b"twice").unwrap_err();
-        artefacts.end()?;
-        let sums = fs::read_to_string(directory.join("SHA256SUMS"))?;
-        assert_eq!(sums, format!("{}  a.deb\n", hash(b"static")));
-        fs::remove_dir_all(directory)?;
-        Ok(())
+        let context = directory.join("context");
+        for architecture in ["amd64", "arm64"] {
+            let programs = context.join(architecture).join("usr/bin");
+            fs::create_dir_all(&programs).expect("a directory");
+            fs::write(programs.join("franka"), architecture).expect("a file");
+        }
+        let about = containers(&workspace, &release, &context).expect("an image");
+        if !about.starts_with("NOT BUILT") {
+            assert_eq!(about, "for linux/amd64,linux/arm64");
+            let mut list = workspace.program("tar");
+            let list = list.arg("-tf").arg(directory.join("franka-0.1.0.oci.tar"));
+            let files = String::from_utf8(list.output().expect("tar").stdout).expect("names");
+            // Per architecture a manifest, a description and a layer; one list of them.
+            assert_eq!(files.matches("sha256/").count(), 7 + 1, "{files}");
+        }
+        fs::remove_dir_all(directory).expect("it is there");
     }
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use std::env;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
@@ -18,22 +18,20 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
-use flate2::read::GzDecoder;
 
 use super::program::{Running, moves};
-use super::{Machine, Release, debian};
+use super::{Machine, Release};
 use crate::cross::is_installed;
 use crate::package::wheels;
 use xtask::python::{ANY, Uv};
 use xtask::workspace::Workspace;
 
-/// Tries archive and package of a program for this machine, from `artefacts`, and crates and wheel
-/// as packed now; returns a line about each. The directory stays after a failure.
+/// Tries archive and package of a program for this machine, and crates and wheel as packed now;
+/// returns a line about each. The directory stays after a failure.
 pub(super) fn run(
     workspace: &Workspace,
     release: &Release,
     machine: &Machine,
-    artefacts: &Path,
 ) -> anyhow::Result<Vec<String>> {
     let packages = crate::release::packages(workspace)?;
     let wheel = wheels::for_this_machine(workspace)?;
@@ -44,15 +42,16 @@ pub(super) fn run(
 
     let unpacked = outside.at("archive");
     let name = machine.name(release);
-    unpack(&artefacts.join(format!("{name}.tar.gz")), &unpacked)?;
+    let archive = release.artefacts.join(format!("{name}.tar.gz"));
+    unpack(workspace, &archive, &unpacked)?;
     let franka = unpacked.join(name).join("franka");
     let mut lines = vec![timed("the archive", || outside.simulates(&franka))?];
 
     lines.push(match is_installed("dpkg-deb") {
         true => timed("the package for Debian", || {
-            let package = debian::file_name(release, machine.for_debian()?);
+            let package = release.artefacts.join(release.package(machine));
             let mut unpack = Command::new("dpkg-deb");
-            unpack.arg("-x").arg(artefacts.join(package));
+            unpack.arg("-x").arg(package);
             workspace.run(unpack.arg(outside.at("debian")))?;
             outside.simulates(&outside.at("debian/usr/bin/franka"))
         })?,
@@ -61,7 +60,7 @@ pub(super) fn run(
 
     lines.push(timed("the crates", || {
         for package in &packages {
-            unpack(package, &outside.at("crates"))?;
+            unpack(workspace, package, &outside.at("crates"))?;
         }
         outside.serves(workspace, &franka, &packages, &release.version)
     })?);
@@ -209,9 +208,11 @@ fn timed(what: &str, attempt: impl FnOnce() -> anyhow::Result<String>) -> anyhow
     Ok(format!("{what}: {about}, in {seconds:.1} s"))
 }
 
-fn unpack(archive: &Path, directory: &Path) -> anyhow::Result<()> {
-    let file = File::open(archive).with_context(|| archive.display().to_string())?;
-    Ok(tar::Archive::new(GzDecoder::new(file)).unpack(directory)?)
+fn unpack(workspace: &Workspace, archive: &Path, directory: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(directory)?;
+    let mut tar = workspace.program("tar");
+    tar.arg("--directory").arg(directory).arg("-xzf");
+    workspace.run(tar.arg(archive))
 }
 
 /// The manifest of a program that finds these packages instead of a registry's packages.
@@ -261,18 +262,3 @@ const SOON: Duration = Duration::from_secs(60);
 const SERVICE: &str = include_str!("../../../../examples/24_job_queue.rs");
 const TESTS: &str = include_str!("../../../../examples/tests/template.rs");
 const SCRIPT: &str = include_str!("../../../../franka-py/examples/quickstart.py");
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn packages_stand_in_for_those_of_the_registry() {
-        let text = manifest(["franka-rt-0.1.0"].into_iter(), "0.1.0");
-        let manifest: toml_edit::DocumentMut = text.parse().unwrap();
-        let path = manifest["patch"]["crates-io"]["franka-rt"]["path"].as_str();
-        assert_eq!(path, Some("../crates/franka-rt-0.1.0"));
-        let version = manifest["dependencies"]["franka-async"]["version"].as_str();
-        assert_eq!(version, Some("0.1.0"));
-    }
-}

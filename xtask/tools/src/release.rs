@@ -1,0 +1,270 @@
+//! Requirements of a release that neither Cargo nor cargo-release checks: the descriptions of the
+//! published crates, the content of their packages, and the texts that name the version.
+//!
+//! `cargo release X.Y.Z` sets the version and the date in every file (`release.toml`).
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context as _, bail, ensure};
+use jiff::civil::Date;
+use semver::Version;
+use serde_json::Value;
+
+use crate::metadata;
+use xtask::realtime::succeeds;
+use xtask::step::Outcome;
+use xtask::workspace::Workspace;
+
+/// The largest permitted package, in bytes. A registry accepts 10 MB, but ours are far smaller; a
+/// larger one contains files that no user needs.
+const SIZE_MAX: u64 = 1_000_000;
+
+/// Files that every package must have.
+const FILES: [&str; 4] = ["Cargo.toml", "LICENSE", "NOTICE", "README.md"];
+
+/// Directories that belong to the workspace.
+const LEFT_OUT: [&str; 2] = ["tests/", "target/"];
+
+/// Titles in the change log, by Keep a Changelog 1.1.0.
+const KINDS: [&str; 6] = [
+    "Added",
+    "Changed",
+    "Deprecated",
+    "Removed",
+    "Fixed",
+    "Security",
+];
+
+/// Checks besides the form.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Depth {
+    /// Build each crate from its package; takes minutes.
+    pub(crate) verify: bool,
+    /// Check everything that must exist before a version is published.
+    pub(crate) last: bool,
+}
+
+/// Checks crates and texts; fails with all defects.
+pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outcome> {
+    let metadata = metadata::of(workspace)?;
+    let mut found: Vec<String> = published(&metadata).flat_map(description_faults).collect();
+    for package in pack(workspace, &metadata, depth.verify)? {
+        found.extend(package_faults(&package)?);
+    }
+    let read =
+        |name: &str| fs::read_to_string(workspace.root().join(name)).context(name.to_owned());
+    let (log, citation) = (read("CHANGELOG.md")?, read("CITATION.cff")?);
+    let version = version(&metadata);
+    if !citation.contains(&format!("\nversion: \"{version}\"\n")) {
+        found.push(format!("CITATION.cff: expected version {version}"));
+    }
+    found.extend(log_faults(&log));
+    if depth.last {
+        let set = |value: &Value| value.as_str().is_some_and(|text| !text.is_empty());
+        if !published(&metadata).all(|package| set(&package["repository"])) {
+            found.push("Cargo.toml: `repository` is not set".to_owned());
+        }
+        if !set(&metadata["metadata"]["maintainer"]) {
+            found.push("Cargo.toml: `maintainer` of the package for Debian is not set".to_owned());
+        }
+        let date = citation.lines().find_map(|line| {
+            let date = line.strip_prefix("date-released: \"")?;
+            date.strip_suffix('"')
+        });
+        let title = format!(
+            "[{version}] - {}",
+            date.unwrap_or("its date in CITATION.cff")
+        );
+        if !log.contains(&format!("\n## [Unreleased]\n\n## {title}\n")) {
+            found.push(format!(
+                "CHANGELOG.md: expected nothing unreleased, and then {title}"
+            ));
+        }
+    }
+    if !found.is_empty() {
+        bail!("what a release takes:\n{}", found.join("\n"));
+    }
+    compare_with_last_release(workspace)
+}
+
+/// Packs the published crates, and returns the paths of the packages.
+pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
+    pack(workspace, &metadata::of(workspace)?, false)
+}
+
+/// The version of the workspace.
+pub(crate) fn version(metadata: &Value) -> String {
+    let package = published(metadata).next();
+    let version = package.and_then(|package| package["version"].as_str());
+    version.unwrap_or_default().to_owned()
+}
+
+/// The packages that `cargo publish` publishes.
+fn published(metadata: &Value) -> impl Iterator<Item = &Value> {
+    let packages = metadata["packages"].as_array().into_iter().flatten();
+    packages.filter(|package| package["publish"].is_null())
+}
+
+/// Defects that a registry would refuse after it took other crates, or that readers would miss.
+fn description_faults(package: &Value) -> Vec<String> {
+    let texts = ["description", "license", "rust_version", "readme"].into_iter();
+    let missing = texts.filter(|name| package[name].as_str().is_none_or(str::is_empty));
+    let mut found: Vec<String> = missing.map(|name| format!("no {name}")).collect();
+    for name in ["keywords", "categories"] {
+        let words = package[name].as_array().into_iter().flatten();
+        let words: Vec<&str> = words.filter_map(Value::as_str).collect();
+        let allowed = |it: char| it.is_ascii_alphanumeric() || "_-+:".contains(it);
+        let is_good = |word: &&str| word.chars().all(allowed);
+        let short = name == "categories" || words.iter().all(|word| word.len() <= 20);
+        if !(1..=5).contains(&words.len()) || !words.iter().all(is_good) || !short {
+            found.push(format!("the {name} {words:?} would be refused"));
+        }
+    }
+    let name = package["name"].as_str().unwrap_or_default();
+    let found = found.into_iter();
+    found.map(|fault| format!("{name}: {fault}")).collect()
+}
+
+/// Packs the published crates as `cargo publish` does, with `verify` also builds each from its
+/// package, and returns the paths of the packages.
+fn pack(workspace: &Workspace, metadata: &Value, verify: bool) -> anyhow::Result<Vec<PathBuf>> {
+    let mut pack = workspace.cargo();
+    pack.args(["package", "--locked", "--allow-dirty", "--quiet"]);
+    pack.args((!verify).then_some("--no-verify"));
+    let mut packages = Vec::new();
+    for package in published(metadata) {
+        let name = package["name"].as_str().context("a package has a name")?;
+        pack.args(["--package", name]);
+        let file = format!("package/{name}-{}.crate", version(metadata));
+        packages.push(workspace.target().join(file));
+    }
+    workspace.run(&mut pack)?;
+    Ok(packages)
+}
+
+/// Missing files of a package, and files that should not be in it.
+fn package_faults(package: &PathBuf) -> anyhow::Result<Vec<String>> {
+    let name = package.file_stem().unwrap_or_default().to_string_lossy();
+    let size = fs::metadata(package).with_context(|| name.to_string())?;
+    let list = Command::new("tar").arg("-tzf").arg(package).output()?;
+    let files = String::from_utf8(list.stdout)?;
+    let prefix = format!("{name}/");
+    let files: Vec<&str> = files
+        .lines()
+        .filter_map(|it| it.strip_prefix(&prefix))
+        .collect();
+    println!("{name}: {} files, {} kB", files.len(), size.len() / 1000);
+    let missing = FILES.into_iter().filter(|name| !files.contains(name));
+    let mut found: Vec<String> = missing.map(|it| format!("{name}: no {it}")).collect();
+    let is_left_out = |it: &&&str| LEFT_OUT.iter().any(|folder| it.starts_with(folder));
+    let strange = files.iter().filter(is_left_out);
+    found.extend(strange.map(|it| format!("{name}: {it} should not be in it")));
+    if size.len() > SIZE_MAX {
+        found.push(format!("{name}: expected at most {SIZE_MAX} bytes"));
+    }
+    Ok(found)
+}
+
+/// Deviations of the change log from its form: `## [Unreleased]` first, then
+/// `## [X.Y.Z] - YYYY-MM-DD`.
+fn log_faults(log: &str) -> Vec<String> {
+    let titles = log.lines().filter_map(|line| line.strip_prefix("## "));
+    let is_title = |(index, title): (usize, &str)| match index {
+        0 => title == "[Unreleased]",
+        _ => title.strip_prefix('[').is_some_and(|title| {
+            let parts = title.split_once("] - ");
+            parts.is_some_and(|(version, date)| {
+                Version::parse(version).is_ok() && date.parse::<Date>().is_ok()
+            })
+        }),
+    };
+    let wrong = titles.enumerate().filter(|title| !is_title(*title));
+    let wrong = wrong.map(|(_, title)| title);
+    let kinds = log.lines().filter_map(|line| line.strip_prefix("### "));
+    let kinds = kinds.filter(|kind| !KINDS.contains(kind));
+    wrong
+        .chain(kinds)
+        .map(|title| format!("CHANGELOG.md: the title {title:?}"))
+        .collect()
+}
+
+/// Compares the public names with the last release, if any.
+fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let tags = git(workspace, &["tag", "--list", "v*", "--sort=-v:refname"])?;
+    let head = git(workspace, &["tag", "--points-at", "HEAD"])?;
+    let Some(last) = tags.lines().find(|tag| !head.lines().any(|it| it == *tag)) else {
+        println!("nothing was released yet that public names could be compared with");
+        return Ok(Outcome::Passed);
+    };
+    if !succeeds(&["cargo", "semver-checks", "--version"]) {
+        let missing = "cargo-semver-checks is not installed";
+        return Ok(Outcome::Partly(format!(
+            "{missing}: not compared with {last}"
+        )));
+    }
+    let mut compare = workspace.cargo();
+    compare.args(["semver-checks", "--baseline-rev", last]);
+    compare.args(["--package", "franka-async", "--package", "franka-sim"]);
+    workspace.run(&mut compare)?;
+    Ok(Outcome::Passed)
+}
+
+/// Output of git.
+pub(crate) fn git(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<String> {
+    let mut git = workspace.program("git");
+    let output = git.args(arguments).stderr(Stdio::inherit()).output();
+    let output = output.context("cannot run git")?;
+    ensure!(
+        output.status.success(),
+        "`git {}` failed: {}",
+        arguments.join(" "),
+        output.status
+    );
+    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn departures_of_the_change_log_from_its_form_are_faults() {
+        let log = "# Changelog\n\n## [Unreleased]\n\n### Added\n\n* a\n\n## [0.2.0] - 2026-12-24\n";
+        assert_eq!(log_faults(log), Vec::<String>::new());
+        for (from, to) in [
+            ("[Unreleased]", "Unreleased"),
+            ("[Unreleased]", "[0.3.0] - 2026-12-25"),
+            ("### Added", "### Improved"),
+            ("0.2.0", "two"),
+            ("2026-12-24", "24.12.2026"),
+            ("2026-12-24", "2026-13-24"),
+        ] {
+            let changed = log.replacen(from, to, 1);
+            assert!(!log_faults(&changed).is_empty(), "{from} -> {to}");
+        }
+    }
+
+    #[test]
+    fn a_manifest_has_all_that_a_reader_looks_for() {
+        let package = json!({"name": "face", "description": "A crate", "license": "Apache-2.0",
+            "rust_version": "1.89", "readme": "README.md", "keywords": ["robotics"],
+            "categories": ["science::robotics"]});
+        assert_eq!(description_faults(&package), Vec::<String>::new());
+        for (name, value) in [
+            ("description", json!("")),
+            ("readme", json!(null)),
+            ("keywords", json!(["a", "b", "c", "d", "e", "f"])),
+            ("keywords", json!(["two words"])),
+            ("keywords", json!(["a-word-of-21-letters-x"])),
+            ("categories", json!([])),
+        ] {
+            let mut changed = package.clone();
+            changed[name] = value;
+            assert_eq!(description_faults(&changed).len(), 1, "{changed}");
+        }
+    }
+}
