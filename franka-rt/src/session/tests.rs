@@ -1,5 +1,7 @@
 //! A session between a state and its answer, and before the next state.
 
+mod product;
+
 use super::condition::{elapsed, force_z};
 use super::*;
 use crate::triple_buffer::{Writer, triple_buffer};
