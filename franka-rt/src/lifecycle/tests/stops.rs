@@ -246,3 +246,34 @@ fn a_goal_that_comes_as_the_robot_is_told_to_stop_gets_a_motion_of_its_own() {
     assert_eq!(ended(&pair, 1), Some(Err(MotionError::Superseded)));
     assert_eq!(ended(&pair, 2), None);
 }
+
+/// The robot is silent for less than the link timeout when deadlines pass: nothing is known yet.
+#[test]
+fn deadlines_that_pass_in_a_short_silence_move_to_the_link_timeout() {
+    let silence = Duration::from_millis(10);
+    let short = || Some(MotionError::LinkLost { silence });
+    let (mut pair, _, _) = LifecycleAndDriver::moving();
+    assert!(pair.stop(10));
+    let later = BRAKE_TIMEOUT + Duration::from_secs(1);
+    let second = pair.lifecycle.stop(GoalId(11), &pair.state, NOW + later);
+    assert!(second);
+    let passed = NOW + BRAKE_TIMEOUT;
+    pair.lifecycle.on_time(passed, short());
+    let moved = passed + LINK_TIMEOUT - silence;
+    assert_eq!(pair.lifecycle.deadline(), Some(moved));
+    assert_eq!(pair.stop_requests(), 0);
+    pair.lifecycle.on_time(moved, None);
+    pair.settle();
+    assert_eq!(pair.stop_requests(), 1);
+
+    let (mut pair, motion, _) = LifecycleAndDriver::moving();
+    let violation = Violation::SecondMotionStarted { id: CommandId(1) };
+    pair.lifecycle.on_move_violation(motion, violation, NOW);
+    let passed = NOW + END_TIMEOUT + Duration::from_millis(1);
+    pair.lifecycle.on_time(passed, short());
+    let moved = passed + LINK_TIMEOUT - silence;
+    assert_eq!(pair.lifecycle.deadline(), Some(moved));
+    assert!(!pair.lifecycle.is_idle(), "the next motion waits");
+    pair.lifecycle.on_time(moved, None);
+    assert!(pair.lifecycle.is_idle());
+}
