@@ -2,6 +2,7 @@
 
 use franka_model::Model;
 
+use super::goals::Bearing;
 use super::{GoalStage, RunningSession, Standing};
 use crate::session::aim::Aim;
 use crate::session::chunk::ChunkReader;
@@ -28,9 +29,10 @@ impl RunningSession {
             _ => true,
         };
         if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
-            self.aim = chunk.target();
+            let target = chunk.target();
+            self.aim = Bearing::Followed(target);
             let aim = Aim {
-                target: self.aim,
+                target,
                 ..self.aim(model, now)
             };
             let before = self

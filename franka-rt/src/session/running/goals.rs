@@ -7,6 +7,23 @@ use super::{Drive, GoalStage, RunningSession, Standing, carry};
 use crate::session::aim::Aim;
 use crate::session::{Budget, Goal, OnArrival, Target};
 
+/// Aim of the reference.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Bearing {
+    /// This target.
+    Followed(Target),
+    /// A moving target that got no update for too long: the reference halts on its way.
+    Halted(Target),
+}
+
+impl Bearing {
+    pub(super) fn target(self) -> Target {
+        match self {
+            Self::Followed(target) | Self::Halted(target) => target,
+        }
+    }
+}
+
 impl RunningSession {
     /// Accepts a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
@@ -97,14 +114,13 @@ impl RunningSession {
     /// Ends the course, so that the next course is planned to `target`.
     pub(super) fn turn_to(&mut self, target: Target) {
         self.route.turn();
-        self.aim = target;
-        self.halted = false;
+        self.aim = Bearing::Followed(target);
     }
 
     /// Returns the present target of the reference, at its place at `now`.
     pub(super) fn target_at(&self, now: u64) -> Target {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
-        self.aim.after(since)
+        self.aim.target().after(since)
     }
 
     /// Returns the present aim of the reference at `now`. After a reaction, the arm does not
@@ -114,8 +130,12 @@ impl RunningSession {
             goal: self.goal.id,
             target: self.target_at(now),
             budget: self.goal.budget,
-            // A stop cannot be paused.
-            paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
+            paused: match self.aim {
+                // A stop cannot be paused.
+                Bearing::Followed(Target::Rest) => false,
+                Bearing::Followed(_) => self.goal.paused || self.waits,
+                Bearing::Halted(_) => true,
+            },
             leash: self.leash.now(),
         };
         if self.waits {

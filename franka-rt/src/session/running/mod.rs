@@ -45,6 +45,7 @@ use super::{
     Lapse, Reacted, SessionCommand, SessionEvent, SessionStep, Trace, end_effector_of, load_of,
     rigid,
 };
+use goals::Bearing;
 use react::Reacting;
 use stages::GoalStage;
 
@@ -75,9 +76,7 @@ pub(super) struct RunningSession {
     /// Time when the goal was first seen, `message_id` of the state.
     since: u64,
     /// Aim of the reference: the goal's target, a target moved closer by the lead, or rest.
-    aim: Target,
-    /// True if a moving target got no update for too long.
-    halted: bool,
+    aim: Bearing,
     route: ClearCourse,
     reference: Reference,
     drive: Drive,
@@ -198,8 +197,7 @@ impl RunningSession {
         let (pose, jacobian) = model.pose_and_jacobian(Frame::EndEffector, &measured, &ee);
         let mut this = Self {
             drive,
-            aim: goal.target,
-            halted: false,
+            aim: Bearing::Followed(goal.target),
             // The state shows that a tool is mounted, but not its shape: the Hand is assumed.
             route: ClearCourse::new(
                 Clearance::new(model, state.m_ee > 0.0, keep_out),
@@ -330,7 +328,7 @@ impl RunningSession {
         bindings.set(Guard::Lead, self.draw_nearer(now));
         self.halt_without_news(now);
         bindings.set(Guard::Reaction, self.has_reacted());
-        self.yields &= self.aim == Target::Rest;
+        self.yields &= self.aim.target() == Target::Rest;
         self.leash.step();
         let aim = self.aim(model, now);
         self.route.renew(model, &self.ee, &self.reference, &aim);

@@ -89,7 +89,7 @@ impl RunningSession {
 
     /// True if the arm has finished the brake of a reaction, but not yet its motion to `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
-        self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
+        self.has_reacted() && self.aim.target() == Target::Rest && *heading != Target::Rest
     }
 
     /// Returns the observations when the goal's condition was true, even if the goal was given up

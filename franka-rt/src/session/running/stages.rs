@@ -73,7 +73,7 @@ impl RunningSession {
                     && self.reference.dq.amax() > REFERENCE_REST
                     && !self.response.refuses()
                 {
-                    if self.aim != Target::Rest {
+                    if self.aim.target() != Target::Rest {
                         self.turn_to(Target::Rest);
                     }
                     return;

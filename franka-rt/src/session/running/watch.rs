@@ -5,6 +5,7 @@ use core::time::Duration;
 
 use franka_model::Model;
 
+use super::goals::Bearing;
 use super::{Drive, GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::Lead;
@@ -28,19 +29,22 @@ impl RunningSession {
             let place = self.goal.target.after(since).place();
             let drawn = lead.drawn(&place, &self.arm.q, &self.arm.object);
             let target = drawn.unwrap_or(self.goal.target);
-            if target != self.aim {
+            if target != self.aim.target() {
                 self.turn_to(target);
             }
         }
-        self.aim != self.goal.target
+        self.aim.target() != self.goal.target
     }
 
     /// Halts if the target no longer counts as moving: it got no update for too long, or was given
     /// up.
     pub(super) fn halt_without_news(&mut self, now: u64) {
         let silent = now.saturating_sub(self.heard) >= Target::MOVES_ON_MS;
-        if self.aim.moves() && !self.halted && (silent || self.is_given_up()) {
-            self.halted = true;
+        if let Bearing::Followed(target) = self.aim
+            && target.moves()
+            && (silent || self.is_given_up())
+        {
+            self.aim = Bearing::Halted(target);
             self.route.outdate();
         }
     }
