@@ -183,9 +183,9 @@ pub fn router(robot: Robot, options: Options) -> Router {
 /// # Cancel safety
 /// Dropping the future has no further effect.
 pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Router, Stopped> {
-    let newest = |robot: &mut franka_sim::Robot| (robot.config().kind, *robot.state());
-    let (kind, state) = running.with(newest).await?;
-    let watched = Source::Watched(Box::new(Watched::new(kind, state)));
+    let newest = |robot: &mut franka_sim::Robot| (robot.model().clone(), *robot.state());
+    let (model, state) = running.with(newest).await?;
+    let watched = Source::Watched(Box::new(Watched::new(model, state)));
     let admission = options.admission.clone();
     let hub = Hub::start(watched, options.simulated(running));
     Ok(serve(hub, admission))

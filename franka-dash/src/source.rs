@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use franka_async::Robot;
-use franka_async::model::{Model, RobotKind};
+use franka_async::model::Model;
 use franka_async::record::Bindings;
 use franka_async::state::RobotState;
 
@@ -27,14 +27,15 @@ pub(crate) enum Source {
 
 /// A simulated robot whose client is another program.
 pub(crate) struct Watched {
-    model: &'static Model,
+    /// Model that the simulated robot describes.
+    model: Model,
     newest: Mutex<RobotState>,
 }
 
 impl Watched {
-    pub(crate) fn new(kind: RobotKind, state: RobotState) -> Self {
+    pub(crate) fn new(model: Model, state: RobotState) -> Self {
         Self {
-            model: Model::of(kind),
+            model,
             newest: Mutex::new(state),
         }
     }
@@ -69,7 +70,7 @@ impl Source {
     pub(crate) fn model(&self) -> &Model {
         match self {
             Self::Robot(robot) => robot.model(),
-            Self::Watched(watched) => watched.model,
+            Self::Watched(watched) => &watched.model,
         }
     }
 

@@ -1,7 +1,6 @@
 //! Explanation of a recording or of the log of an error, with the reason for the end of a motion.
 
 use franka_async::explain::Explanation as Explained;
-use franka_async::model::{Model, RobotKind};
 use franka_async::recording::HostTime;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -11,7 +10,7 @@ use crate::arrays::array;
 use crate::errors::findings;
 use crate::log::ControlLog;
 use crate::names::Named;
-use crate::recording::RecordingFile;
+use crate::recording::{NO_KIND, RecordingFile};
 use crate::state::names;
 
 /// Explains why a motion ended, from a `RecordingFile` or a part of one, from a `ControlError`, or
@@ -22,17 +21,14 @@ use crate::state::names;
 pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explanation> {
     if let Ok(recording) = of.cast::<RecordingFile>() {
         let recording = recording.get();
-        let model = match recording.kind() {
-            Some(RobotKind::Fr3) => Model::fr3(),
-            Some(RobotKind::Fer) => Model::fer(),
-            _ => {
-                let text = "the recording has several robots or does not name its robot, expected \
-                    one: choose it with robot(name)";
-                return Err(PyValueError::new_err(text));
-            }
+        let explained = recording.view(py, |view| {
+            let model = view.model()?;
+            Some(Explained::of_recording(view, &model))
+        });
+        let Some(explained) = explained? else {
+            return Err(PyValueError::new_err(NO_KIND));
         };
-        let explained = recording.view(py, |view| Explained::of_recording(view, model));
-        return Ok(Explanation(Box::new(explained?)));
+        return Ok(Explanation(Box::new(explained)));
     }
     let log = match of.getattr_opt("log")? {
         Some(log) => log,
@@ -64,6 +60,13 @@ impl Explanation {
     #[getter]
     fn robot(&self) -> &'static str {
         self.0.robot.python_name()
+    }
+
+    /// Reason why the limits are constants, those of systems before 5.9; `None` if they are the
+    /// robot's own.
+    #[getter]
+    fn fallback(&self) -> Option<String> {
+        self.0.fallback.as_ref().map(ToString::to_string)
     }
 
     /// Number of cycles.

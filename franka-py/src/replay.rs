@@ -15,7 +15,7 @@ use crate::arm::Arm;
 use crate::errors::{Raise, made};
 use crate::names::Named;
 use crate::operation::Operation;
-use crate::recording::{RecordingFile, value};
+use crate::recording::{NO_KIND, RecordingFile, value};
 use crate::robot::Robot;
 use crate::told::Telling;
 
@@ -117,7 +117,7 @@ impl Motion {
         // The kind of robot must be known.
         recording.get().view(py, |_| ())?;
         let Some(kind) = recording.get().kind() else {
-            return refused("the recording does not name the kind of its robot".to_owned());
+            return refused(NO_KIND.to_owned());
         };
         let options = ReplayOptions::default().speed(speed);
         Ok(Self {

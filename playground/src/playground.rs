@@ -1,7 +1,7 @@
 //! One arm, its driver, and a person who sets targets and pushes.
 
 use franka_lockstep::Lockstep;
-use franka_model::{EndEffector, JointVector, Model, RobotKind, transform};
+use franka_model::{EndEffector, JointVector, RobotKind, transform};
 use franka_proto::{Request, RobotMode};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Bindings, GoalId, OnArrival, Target};
@@ -167,6 +167,7 @@ impl Playground {
             Phase::Starting(_) | Phase::Recovering => State::Starting,
             Phase::Stopped => State::Stopped,
         };
+        let model = self.lockstep.robot.model();
         let [x, y, z, ..] = state.O_F_ext_hat_K;
         View {
             seconds: self.seconds,
@@ -180,7 +181,7 @@ impl Playground {
             end_effector: self.lockstep.pose_at(&q),
             // The estimate is the force that the arm exerts.
             force: -Vector3::new(x, y, z),
-            speed: Model::fr3().fastest_point(&q, &dq, &end_effector),
+            speed: model.fastest_point(&q, &dq, &end_effector),
             guards: record.bindings,
         }
     }

@@ -3,6 +3,7 @@
 mod described;
 #[cfg(target_os = "linux")]
 mod library;
+mod recorded;
 
 use franka_async::{Realtime, Robot};
 use franka_sim::{Running, Sim};

@@ -32,7 +32,7 @@ pub fn hand(t: f64) -> f64 {
 /// The simulated arm's inertia, to compute the part of a push that accelerates it.
 #[derive(Debug)]
 pub struct ArmInertia {
-    model: &'static Model,
+    model: Model,
     load: Load,
     arm: Arm,
     ee: EndEffector,
@@ -44,7 +44,7 @@ impl ArmInertia {
         let config = lockstep.robot.config();
         let f_t_ee = transform::isometry_from_array(&lockstep.robot.state().F_T_EE);
         Self {
-            model: Model::of(config.kind),
+            model: lockstep.robot.model().clone(),
             load: config.tool.load,
             arm: config.chosen_arm(),
             ee: EndEffector {

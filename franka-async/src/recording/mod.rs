@@ -44,8 +44,8 @@ pub use franka_record::recorder::{
 };
 pub use franka_record::recording::{RecordedRobot, RecordingError, RobotRecording};
 pub use franka_record::{
-    Cycle, Episode, EpisodeError, GripperState, HostTime, Recording, Sample, Samples, control_log,
-    event,
+    Cycle, Episode, EpisodeError, GripperState, HostTime, ModelFallback, RecordedModel, Recording,
+    Sample, Samples, control_log, event,
 };
 
 use crate::gripper::Gripper;

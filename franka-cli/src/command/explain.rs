@@ -10,7 +10,7 @@ use franka_async::explain::Explanation;
 use franka_async::export::NewFile;
 use franka_async::model::Model;
 use franka_async::recording::control_log::{ControlLogError, ControlLogFile};
-use franka_async::recording::{HostTime, Recording, RecordingError};
+use franka_async::recording::{HostTime, RecordedModel, Recording, RecordingError};
 use franka_async::state::{Errors, RobotError};
 use serde_json::Value;
 
@@ -63,27 +63,33 @@ pub(crate) struct Recorded {
 
 /// Content of a file.
 pub(crate) enum Source {
-    /// A recording, with the name and the model of the robot.
-    Recording(Box<Recording>, String, &'static Model),
+    /// A recording.
+    Recording(Box<Opened>),
     /// A log of libfranka.
     Log(ControlLogFile),
+}
+
+/// An open recording, with one of its robots.
+pub(crate) struct Opened {
+    pub(super) recording: Recording,
+    /// Name of the robot.
+    pub(super) name: String,
+    /// Model of the robot.
+    pub(super) model: RecordedModel,
 }
 
 impl Recorded {
     /// Opens the file. The content of the file determines its kind.
     pub(super) fn open_any(&self) -> anyhow::Result<Source> {
         match Recording::open(&self.file) {
-            Ok(recording) => {
-                let (recording, name, model) = self.of_recording(recording)?;
-                Ok(Source::Recording(Box::new(recording), name, model))
-            }
+            Ok(recording) => Ok(Source::Recording(Box::new(self.of_recording(recording)?))),
             Err(RecordingError::NotMcap { .. }) => Ok(Source::Log(self.open_log()?)),
             Err(error) => Err(self.unreadable(&error).into()),
         }
     }
 
-    /// Opens the recording. Returns the recording, and the name and the model of the robot.
-    pub(super) fn open(&self) -> anyhow::Result<(Recording, String, &'static Model)> {
+    /// Opens the recording.
+    pub(super) fn open(&self) -> anyhow::Result<Opened> {
         let recording = Recording::open(&self.file);
         self.of_recording(recording.map_err(|error| self.unreadable(&error))?)
     }
@@ -96,10 +102,7 @@ impl Recorded {
         Failure::new(Ending::Host, message)
     }
 
-    fn of_recording(
-        &self,
-        recording: Recording,
-    ) -> anyhow::Result<(Recording, String, &'static Model)> {
+    fn of_recording(&self, recording: Recording) -> anyhow::Result<Opened> {
         if let Some(damage) = recording.damage() {
             say(&format!("{} ends early: {damage}", self.file.display()));
         }
@@ -121,14 +124,15 @@ impl Recorded {
             );
             Failure::usage(message).advice(format!("Choose one with --of: {names:?}"))
         })?;
-        let kind = robot.kind.with_context(|| {
-            format!(
-                "{} does not name the kind of its robot",
-                self.file.display()
-            )
-        })?;
         let name = robot.name.clone();
-        Ok((recording, name, Model::of(kind)))
+        let model = recording.robot(&name)?.model().with_context(|| {
+            format!("{} does not name the kind of its robot", self.file.display())
+        })?;
+        Ok(Opened {
+            recording,
+            name,
+            model,
+        })
     }
 
     fn open_log(&self) -> anyhow::Result<ControlLogFile> {
@@ -143,8 +147,8 @@ impl Recorded {
 
 impl Explain {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
-        let (recording, name, model) = match self.recorded.open_any()? {
-            Source::Recording(recording, name, model) => (recording, name, model),
+        let opened = match self.recorded.open_any()? {
+            Source::Recording(opened) => opened,
             Source::Log(file) => return self.explain_log(file),
         };
         if !self.errors.is_empty() || self.kind.is_some() {
@@ -152,8 +156,8 @@ impl Explain {
                 libfranka";
             return Err(Failure::usage(message).into());
         }
-        let robot = recording.robot(&name)?;
-        let explain = |until| Explanation::of_recording(&robot.to(until), model);
+        let robot = opened.recording.robot(&opened.name)?;
+        let explain = |until| Explanation::of_recording(&robot.to(until), &opened.model);
         let explain = |until| while_turning("reading every cycle", || explain(until));
         let newest = explain(HostTime::from_nanos(u64::MAX));
         if self.earlier > newest.earlier {

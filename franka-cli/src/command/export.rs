@@ -88,12 +88,17 @@ impl Export {
         let mut dataset: Option<(usize, u64)> = None;
         #[cfg_attr(not(feature = "export"), expect(unused_variables))]
         let rows = match self.recorded.open_any()? {
-            Source::Recording(recording, name, model) => {
-                let robot = recording.robot(&name)?;
+            Source::Recording(opened) => {
+                let robot = opened.recording.robot(&opened.name)?;
                 let rows = self.write_tables(|| robot.cycles(), &Columns::all(), stop)?;
                 #[cfg(feature = "export")]
                 if let Some(folder) = &self.lerobot {
-                    dataset = Some(self.add_to_dataset(folder, &robot, model.kind(), stop)?);
+                    dataset = Some(self.add_to_dataset(
+                        folder,
+                        &robot,
+                        opened.model.model.kind(),
+                        stop,
+                    )?);
                 }
                 rows
             }

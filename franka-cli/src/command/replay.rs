@@ -44,8 +44,8 @@ enum Source {
 
 impl Replay {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
-        let (recording, name, model) = self.recorded.open()?;
-        let robot = recording.robot(&name)?;
+        let opened = self.recorded.open()?;
+        let robot = opened.recording.robot(&opened.name)?;
         let samples = Samples::new(robot.cycles(), robot.gripper_states());
         let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
         let mut options = ReplayOptions::default().speed(self.speed);
@@ -56,7 +56,12 @@ impl Replay {
             options = options.targets(ReplayTargets::Poses);
         }
         let moving = self.how.begin(&self.which).await?;
-        let plan = ReplayPlan::new(model.kind(), &samples, options, moving.robot.model());
+        let plan = ReplayPlan::new(
+            opened.model.model.kind(),
+            &samples,
+            options,
+            moving.robot.model(),
+        );
         let outcome = match plan {
             Ok(plan) => self.replay(&moving, &plan).await,
             Err(error) => {

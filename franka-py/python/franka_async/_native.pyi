@@ -2391,6 +2391,10 @@ class RecordingFile:
     @property
     def robots(self) -> list[RecordedRobot]:
         """The robots of the file, each a `recording.RecordedRobot`."""
+    def model(self) -> Model:
+        """The model of the robot, with the limits of its attached description. Raises `ValueError` if
+        the file does not name the kind of robot.
+        """
     def attachments(self) -> list[str]:
         """Names of the attached files."""
     def attachment(self, name: str) -> bytes | None:
@@ -2492,6 +2496,11 @@ class Explanation:
     @property
     def robot(self) -> str:
         """The robot, `fr3` or `fer`."""
+    @property
+    def fallback(self) -> str | None:
+        """Reason why the limits are constants, those of systems before 5.9; `None` if they are the
+        robot's own.
+        """
     @property
     def cycles(self) -> int:
         """Number of cycles."""

@@ -19,10 +19,14 @@ use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 
 use crate::errors::{Raise, made};
 use crate::gripper;
+use crate::model::Model;
 use crate::names::Named;
 use crate::vacuum_gripper::VacuumGripperState;
 use cycles::Rows;
 pub(crate) use cycles::{Cycles, RecordedCycle, recording_columns};
+
+/// Text of the error for a recording without a kind of robot.
+pub(crate) const NO_KIND: &str = "the recording does not name the kind of its robot";
 
 type EachCycle = Box<dyn Iterator<Item = Result<Cycle, RecordingError>> + Send>;
 
@@ -121,6 +125,15 @@ impl RecordingFile {
             )
         });
         made.collect()
+    }
+
+    /// The model of the robot, with the limits of its attached description. Raises `ValueError` if
+    /// the file does not name the kind of robot.
+    fn model(&self, py: Python<'_>) -> PyResult<Model> {
+        match self.view(py, |view| view.model())? {
+            Some(recorded) => Ok(Model::of(&recorded.model)),
+            None => Err(PyValueError::new_err(NO_KIND)),
+        }
     }
 
     /// Names of the attached files.

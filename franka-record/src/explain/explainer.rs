@@ -292,6 +292,7 @@ impl Run {
         });
         Explanation {
             robot: model.kind(),
+            fallback: None,
             first: self.first.unwrap_or_default(),
             last: self.last,
             cycles: self.cycles,

@@ -59,7 +59,7 @@ use franka_rt::lifecycle::ControlError;
 
 use crate::control_log::ControlLogFile;
 use crate::recording::{RecordingError, RobotRecording};
-use crate::{Cycle, Event, HostTime};
+use crate::{Cycle, Event, HostTime, ModelFallback, RecordedModel};
 
 pub use explainer::Explainer;
 pub use margins::{Approach, Margins, Peak, Peaks};
@@ -75,6 +75,9 @@ pub use timeline::{Moment, MomentKind};
 pub struct Explanation {
     /// Kind of the robot.
     pub robot: RobotKind,
+    /// Reason why the limits are constants and not those of the robot's description; `None` if
+    /// they are the robot's own.
+    pub fallback: Option<ModelFallback>,
     /// Time of the first cycle.
     pub first: u64,
     /// Time of the last cycle.
@@ -190,10 +193,14 @@ impl Explanation {
         Self::of_readable(cycles, events.into_iter().map(Ok), model)
     }
 
-    /// Explains one robot of a recording, or a part of its time. It skips unreadable data and notes
-    /// this in the timeline.
-    pub fn of_recording(recording: &RobotRecording<'_>, model: &Model) -> Self {
-        Self::of_readable(recording.cycles(), recording.events(), model)
+    /// Explains one robot of a recording, or a part of its time, with its
+    /// [model](RobotRecording::model). Unreadable data is skipped and noted in the timeline.
+    pub fn of_recording(recording: &RobotRecording<'_>, model: &RecordedModel) -> Self {
+        let RecordedModel { model, fallback } = model;
+        Self {
+            fallback: fallback.clone(),
+            ..Self::of_readable(recording.cycles(), recording.events(), model)
+        }
     }
 
     fn of_readable(
@@ -253,11 +260,13 @@ impl Explanation {
         }
     }
 
-    /// Explains a log of libfranka. If the file names no errors, the explanation covers the table
-    /// and reports that the errors are missing.
+    /// Explains a log of libfranka. Without errors in the file, it explains the table, and reports
+    /// that the errors are missing. [`Model::fr3`] counts as a fallback, because a log has no
+    /// description.
     pub fn of_control_log(file: &ControlLogFile, model: &Model) -> Self {
         let case = file.case();
         let mut explanation = Self::of_case(&case, model);
+        explanation.fallback = (model == Model::fr3()).then_some(ModelFallback::Missing);
         explanation.earlier = file.earlier;
         let message = file.message.as_ref().map_or("", |message| &message.text);
         let cause = explanation.cause.get_or_insert_with(|| Cause {

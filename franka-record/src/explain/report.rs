@@ -82,6 +82,9 @@ impl fmt::Display for Explanation {
                 self.approach(f, what, approach, unit)?;
             }
         }
+        if let Some(fallback) = &self.fallback {
+            writeln!(f, "  ({CONSTANTS}: {fallback})")?;
+        }
         writeln!(f, "\nPeaks")?;
         for (what, peak, unit) in [
             ("external torque", &self.peaks.external_torque, "N·m"),
@@ -209,6 +212,9 @@ fn of(joint: Option<u8>) -> String {
 
 /// Text if no motion ended.
 pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
+
+/// Text about limits without a description of the robot.
+const CONSTANTS: &str = "limits are constants, those of systems before 5.9";
 
 /// Largest number of moments in the report; older moments are omitted.
 const SHOWN: usize = 40;

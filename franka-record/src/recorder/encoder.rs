@@ -6,7 +6,7 @@ use core::time::Duration;
 use super::frames::{Frames, timestamp};
 use super::options::Robot;
 use crate::schema::{Topic, foxglove, franka};
-use crate::{Cycle, Event, EventKind, GripperState, HostTime};
+use crate::{Cycle, Event, EventKind, GripperState, HostTime, RecordedModel};
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{Errors, RobotMode};
 
@@ -26,7 +26,7 @@ pub(super) struct Message {
 pub(super) struct Encoder {
     robot: usize,
     frames: Frames,
-    model: &'static Model,
+    model: Model,
     /// Message of a cycle. It is reused, with the memory of its fields.
     cycle: franka::Cycle,
     /// Values of the newest cycle; `None` before the first.
@@ -54,7 +54,7 @@ impl Encoder {
         Self {
             robot: index,
             frames: Frames::of(robot),
-            model: Model::of(robot.kind),
+            model: RecordedModel::of(robot.kind, robot.urdf.as_deref(), Some(robot.lengths)).model,
             cycle: franka::Cycle::default(),
             seen: None,
             attached: robot.robot_time,

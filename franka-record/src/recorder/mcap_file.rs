@@ -13,6 +13,7 @@ use super::error::RecordError;
 use super::options::Robot;
 use super::session::Session;
 use crate::HostTime;
+use crate::recorded_model;
 use crate::schema::{DESCRIPTORS, METADATA, ROBOT_METADATA, Topic};
 
 /// An MCAP file that grows in memory. The flushed part consists of whole chunks, so a reader needs
@@ -66,13 +67,13 @@ impl McapFile {
 
     /// Adds the channels and the description of the next robot.
     pub(super) fn add_robot(&mut self, robot: &Robot) -> Result<(), RecordError> {
-        let label = robot.label();
         let mut metadata = robot.metadata.clone();
         metadata.insert("name".to_owned(), robot.name.clone());
         metadata.insert("kind".to_owned(), format!("{:?}", robot.kind));
+        recorded_model::write_lengths(&robot.lengths, &mut metadata);
         self.describe(&format!("{ROBOT_METADATA}{}", robot.name), metadata)?;
         if let Some(urdf) = &robot.urdf {
-            let name = format!("{label}.urdf");
+            let name = recorded_model::description(&robot.name, robot.kind);
             let time = self.newest.max(self.began).as_nanos();
             self.attach(time, &name, "application/xml", urdf.as_bytes())?;
         }

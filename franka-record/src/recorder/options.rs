@@ -8,6 +8,7 @@ use franka_model::RobotKind;
 use franka_model::geometry::Lengths;
 
 use super::error::RecordError;
+use crate::recorded_model;
 
 /// Options of a recording.
 #[derive(Clone, Debug)]
@@ -200,7 +201,7 @@ pub struct Robot {
     pub name: String,
     /// The kind of robot.
     pub kind: RobotKind,
-    /// Lengths of the robot's links, for viewers. Default: the vendor's description.
+    /// Lengths of the robot's links that the driver uses. Default: the vendor's description.
     pub lengths: Lengths,
     /// URDF of the robot, if known. The recorder attaches it to the file.
     pub urdf: Option<String>,
@@ -248,18 +249,12 @@ impl Robot {
 
     /// Returns the robot's name for metadata and file names.
     pub(super) fn label(&self) -> &str {
-        match self.name.as_str() {
-            "" => self.arm(),
-            name => name,
-        }
+        recorded_model::label(&self.name, self.kind)
     }
 
     /// Returns the name in `franka_description` of the robot's kind of arm.
     pub(super) fn arm(&self) -> &'static str {
-        match self.kind {
-            RobotKind::Fer => "fer",
-            _ => "fr3",
-        }
+        recorded_model::arm(self.kind)
     }
 }
 

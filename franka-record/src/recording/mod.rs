@@ -42,13 +42,14 @@ use franka_model::RobotKind;
 use self::bytes::Bytes;
 use self::chunk::Chunk;
 pub use self::error::RecordingError;
-use self::index::{Channels, Index};
+use self::index::{Channels, Entry, Index};
 pub use self::messages::{Cycles, Events, GripperStates};
 pub(crate) use self::records::{Record, each_record};
 pub use self::recover::Recovery;
 pub use self::resample::Resampled;
 use self::wire::{AttachmentHeader, Fields, MAGIC, op};
 use crate::HostTime;
+use crate::recorded_model::{self, RecordedModel};
 use crate::schema::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
 
 /// An open recording.
@@ -283,7 +284,15 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::Read`] if the file cannot be read.
     pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, RecordingError> {
-        for entry in &self.index.attachments {
+        self.attachment_in(self.index.attachments.iter(), name)
+    }
+
+    fn attachment_in<'a>(
+        &self,
+        entries: impl Iterator<Item = &'a Entry>,
+        name: &str,
+    ) -> Result<Option<Vec<u8>>, RecordingError> {
+        for entry in entries {
             if let Some(record) = self.bytes.read(entry.offset, entry.length)?
                 && let Some((found, data)) = attachment(&record)
                 && found == name
@@ -292,6 +301,14 @@ impl Recording {
             }
         }
         Ok(None)
+    }
+
+    /// Returns the description of a robot. A file that the program attached under the same name
+    /// comes before it.
+    fn description(&self, name: &str) -> Option<String> {
+        let newest_first = self.index.attachments.iter().rev();
+        let data = self.attachment_in(newest_first, name).ok()??;
+        String::from_utf8(data).ok()
     }
 }
 
@@ -322,6 +339,18 @@ pub struct RobotRecording<'a> {
 }
 
 impl RobotRecording<'_> {
+    /// Returns the model of the robot, with the limits of its attached description; `None` if the
+    /// file does not name a known kind of robot.
+    pub fn model(&self) -> Option<RecordedModel> {
+        let mut robots = self.recording.robots.iter();
+        let robot = robots.find(|robot| robot.name == self.name)?;
+        let kind = robot.kind?;
+        let name = recorded_model::description(&robot.name, kind);
+        let urdf = self.recording.description(&name);
+        let lengths = recorded_model::read_lengths(&robot.metadata);
+        Some(RecordedModel::of(kind, urdf.as_deref(), lengths))
+    }
+
     /// Returns the part of the recording from `time` on.
     #[must_use]
     pub fn from(&self, time: HostTime) -> Self {

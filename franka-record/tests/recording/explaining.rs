@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_model::geometry::Lengths;
 use franka_model::{Model, RobotKind};
 use franka_proto::{RobotError, RobotMode};
 use franka_record::event::{Diagnosis, Ending, Goal, Outcome};
@@ -67,7 +68,8 @@ fn a_recording_is_explained_as_its_cycles_are() {
     let (bytes, expected) = stopped();
     let recording = Recording::from_bytes(bytes).unwrap();
     let robot = recording.robot("").unwrap();
-    let explanation = Explanation::of_recording(&robot, Model::fr3());
+    let model = robot.model().expect("a known kind");
+    let explanation = Explanation::of_recording(&robot, &model);
     assert_eq!((explanation.end, explanation.cycles), (1526, 2025));
     let cause = explanation.cause.as_ref().expect("a reflex");
     assert_eq!(cause.errors, RobotError::JointReflex.into());
@@ -91,7 +93,7 @@ fn a_recording_is_explained_as_its_cycles_are() {
     // A part without the stop has no cause.
     let mut cycles = robot.cycles().map(Result::unwrap);
     let end = cycles.find(|cycle| cycle.record.time == 1400).unwrap();
-    let before = Explanation::of_recording(&robot.to(end.time), Model::fr3());
+    let before = Explanation::of_recording(&robot.to(end.time), &model);
     assert_eq!((before.end, before.cause), (1400, None));
 }
 
@@ -102,10 +104,47 @@ fn what_cannot_be_read_of_a_recording_is_noted_and_the_rest_explained() {
     bytes[middle..middle + 2000].fill(0xff);
     let recording = Recording::from_bytes(bytes).unwrap();
     let robot = recording.robot("").unwrap();
-    let explanation = Explanation::of_recording(&robot, Model::fr3());
+    let model = robot.model().expect("a known kind");
+    let explanation = Explanation::of_recording(&robot, &model);
     assert!(explanation.cause.is_some());
     assert_eq!(explanation.end, 1526);
     assert!(explanation.lost.states >= 50, "{:?}", explanation.lost);
     let text = explanation.to_string();
     assert!(text.contains("cannot be read: the chunk at byte"), "{text}");
+}
+
+/// Only a Franka Research 3 has a description. Its lengths are known without one.
+#[test]
+fn a_recording_without_a_description_says_that_limits_are_constants() {
+    let refused = "the description of the robot is refused: ";
+    for (kind, urdf, expected) in [
+        (
+            RobotKind::Fr3,
+            None,
+            Some("the file has no description of the robot"),
+        ),
+        (RobotKind::Fr3, Some("<robot name=\"fr3\"/>"), Some(refused)),
+        (RobotKind::Fer, None, None),
+    ] {
+        let scratch = Scratch::new();
+        let path = scratch.path("run.mcap");
+        let recorder = Recorder::to_file(&path, quick()).unwrap();
+        let mut robot = Robot::new(kind);
+        robot.urdf = urdf.map(str::to_owned);
+        robot.lengths = Lengths::RECORDED_FR3;
+        let (mut arm, _handle) = Arm::attach(&recorder, robot);
+        arm.run(&recorder, 100);
+        recorder.finish().unwrap();
+        let recording = Recording::open(&path).unwrap();
+        let robot = recording.robot("").unwrap();
+        let model = robot.model().expect("a known kind");
+        let constants = Model::of(kind).clone();
+        assert_eq!(model.model, constants.with_lengths(Lengths::RECORDED_FR3));
+        let text = Explanation::of_recording(&robot, &model).to_string();
+        let line = text.lines().find(|line| line.contains("constants"));
+        match expected {
+            Some(reason) => assert!(line.is_some_and(|line| line.contains(reason)), "{text}"),
+            None => assert_eq!((line, model.fallback), (None, None)),
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use franka_bench::figures::HighPass;
 use franka_lockstep::{Link, Lockstep};
-use franka_model::{JointVector, Load, Model, RobotKind, Wrench};
+use franka_model::{JointVector, Load, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Target};
@@ -266,7 +266,7 @@ impl Programme {
     /// Moves to joint positions on either side of home, and back.
     fn joints(&mut self) -> Result<(), Ended> {
         let home = *self.lockstep.robot.q();
-        let limits = *Model::of(self.lockstep.robot.config().kind).joint_limits();
+        let limits = *self.lockstep.robot.model().joint_limits();
         for by in [0.1, -0.1, 0.4, -0.4] {
             let q = JointVector::from_fn(|i, _| {
                 // Neighbouring joints turn in opposite directions, so that the arm stays above the
