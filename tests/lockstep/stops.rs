@@ -140,3 +140,36 @@ fn no_motion_ends_in_a_reflex_because_hands_push_the_arm() {
         }
     }
 }
+
+/// The longest time from a cancel to its outcome while one hand pushes steadily, `[ms]`: the brake
+/// and a second of rest, a second of release, and the stop by the robot's own controller.
+const STEADY: u64 = 2500;
+
+/// Force of a hand that pushes harder than the force cap of a goal, `[N]`, along y or x. Joints
+/// then come fast to where the robot allows less speed.
+const STEADY_PUSHES: [[f64; 2]; 3] = [[0.0, 60.0], [0.0, -60.0], [60.0, 0.0]];
+
+#[test]
+fn a_cancelled_motion_ends_in_no_reflex_while_a_hand_pushes_the_arm_away() {
+    for kind in RobotKind::ALL {
+        for seed in 0..arms() + 1 {
+            for [x, y] in STEADY_PUSHES {
+                let mut lockstep = realistic(kind, seed);
+                let goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
+                let id = lockstep.submit(goal).expect("within reach");
+                lockstep.run(700);
+                let push = Touch::over_time(move |_| Wrench::new(x, y, 0.0, 0.0, 0.0, 0.0));
+                lockstep.robot.touch(push.lasting(10_000));
+                lockstep.run(100);
+                lockstep.cancel(id);
+                let began = lockstep.now();
+                let outcome = lockstep.until_resolved(id, 20_000);
+                let took = lockstep.now() - began;
+                let what = format!("{kind:?} {seed}, {x} {y} N: {outcome:?} after {took} ms");
+                println!("{what}");
+                assert!(matches!(outcome, Err(MotionError::Stopped)), "{what}");
+                assert!(took <= STEADY, "{what}");
+            }
+        }
+    }
+}

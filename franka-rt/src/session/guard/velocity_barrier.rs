@@ -1,16 +1,21 @@
 //! The velocity barrier: brakes a joint that comes near the robot's velocity limit, regardless of
 //! the cause.
 //!
-//! The generators keep the reference inside the limits. A hand or a stretched spring may accelerate
-//! the arm itself further, and then the robot stops with a reflex. From [`ONSET`] of the limit on,
-//! the torque of a joint is blended from the law's torque to full braking, reached at the limit:
+//! The generators keep the reference inside the limits. The arm itself may be faster, thrown by a
+//! hand or by a stretched spring, and then the robot stops with a reflex. The torque of a fast
+//! joint is blended from the law's torque to full braking, reached at the limit:
 //!
 //! ```text
-//! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| / limit - 0.85) / 0.15)
+//! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| - onset) / (0.15 limit))
 //! ```
 //!
-//! Even a law that drives the joint with its full torque is therefore balanced half way. `s` and
-//! its slope are continuous.
+//! The braking begins at [`ONSET`] of the limit. Near the end of its range a joint has a lower
+//! limit, the [velocity envelope](JointLimits::velocity_envelope), and the onset is as far below
+//! that. But it is above the reference, which may follow the envelope closely: only an arm that is
+//! pushed ahead of its reference is braked there.
+//!
+//! So even a law that drives the joint with its full torque is balanced half way. `s` and its slope
+//! are continuous.
 //!
 //! The rate of the torque bounds the torque that the barrier can hold: the robot accepts 1 N m per
 //! millisecond. While a torque `tau` on an inertia `I` is removed, it adds `tau^2 / (2 I 1000 N
@@ -19,22 +24,37 @@
 //! holds a little less.
 
 use franka_model::JointVector;
+use franka_model::limits::JointLimits;
 
-/// Share of the velocity limit from which on a joint is braked.
+/// Share of the velocity limit from which on a joint is braked, away from the ends of its range.
 pub const ONSET: f64 = 0.85;
 
-/// Brakes the joints that are too fast. Returns true if there were any. `dq` is the measured
-/// velocity and `limit` the robot's limit, `[rad/s]`; `most` is the torque of full braking, `[N
-/// m]`.
+/// Speed by which a joint may be faster than its reference near an end of its range, `[rad/s]`: it
+/// swings less than that.
+const FASTER: f64 = 0.1;
+
+/// Brakes the joints that are too fast. Returns true if there were any. `q` and `dq` are measured,
+/// `[rad]` and `[rad/s]`; `most` is the torque of full braking, `[N m]`.
 pub(crate) fn brake(
     tau: &JointVector,
-    dq: &JointVector,
-    limit: &JointVector,
+    (q, dq): (&JointVector, &JointVector),
+    dq_ref: &JointVector,
+    limits: &JointLimits,
     most: &JointVector,
 ) -> (JointVector, bool) {
     let mut binds = false;
+    if dq.amax() <= FASTER {
+        return (*tau, binds);
+    }
+    let (lower, upper) = limits.velocity_envelope(q, 0.0);
     let braked = JointVector::from_fn(|i, _| {
-        let beyond = (dq[i].abs() / limit[i] - ONSET) / (1.0 - ONSET);
+        let (fastest, width) = (limits.velocity[i], (1.0 - ONSET) * limits.velocity[i]);
+        let (here, reference) = match dq[i] > 0.0 {
+            true => (upper[i], dq_ref[i]),
+            false => (-lower[i], -dq_ref[i]),
+        };
+        let ahead = (reference.max(0.0) + FASTER).min(fastest - width);
+        let beyond = (dq[i].abs() - (here - width).max(ahead)) / width;
         if beyond <= 0.0 {
             return tau[i];
         }
@@ -56,11 +76,23 @@ mod tests {
     use franka_model::{CYCLE, Model};
     use proptest::prelude::*;
 
+    /// The same limits at all positions.
+    fn flat(limits: &JointLimits) -> JointLimits {
+        JointLimits {
+            envelope: None,
+            ..*limits
+        }
+    }
+
     fn of(tau: f64, dq: f64) -> (f64, bool) {
-        let limit = JointVector::repeat(2.0);
+        let limits = JointLimits {
+            velocity: JointVector::repeat(2.0),
+            ..flat(Model::fr3().joint_limits())
+        };
         let most = JointVector::repeat(50.0);
         let (tau, dq) = (JointVector::repeat(tau), JointVector::repeat(dq));
-        let (braked, binds) = brake(&tau, &dq, &limit, &most);
+        let still = JointVector::zeros();
+        let (braked, binds) = brake(&tau, (&still, &dq), &still, &limits, &most);
         (braked[3], binds)
     }
 
@@ -105,7 +137,8 @@ mod tests {
     /// cycle.
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
-        let limits = Model::fr3().joint_limits();
+        let limits = flat(Model::fr3().joint_limits());
+        let still = JointVector::zeros();
         let most = JointVector::from(Gains::TORQUE_LIMITS);
         let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
         let driving = JointVector::from([25.0, 25.0, 25.0, 25.0, 8.0, 8.0, 8.0]);
@@ -117,7 +150,7 @@ mod tests {
             let (mut dq, mut last) = (JointVector::zeros(), JointVector::zeros());
             let mut fastest = JointVector::zeros();
             for _ in 0..5000 {
-                let (tau, _) = brake(&(driving * side), &dq, &limits.velocity, &most);
+                let (tau, _) = brake(&(driving * side), (&still, &dq), &still, &limits, &most);
                 let filtered = low_pass(gains.torque_share, &tau, &last);
                 let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 for i in 0..7 {
@@ -133,5 +166,50 @@ mod tests {
                 assert!((ONSET..0.95).contains(&kept), "joint {i} goes on at {kept}");
             }
         }
+    }
+
+    /// A push of 10 N m turns a joint to the end of its range, where the robot allows less and less
+    /// speed. Its reference rests.
+    #[test]
+    fn a_joint_that_is_pushed_to_its_end_stays_inside_the_envelope() {
+        let limits = JointLimits::fr3_system_5_9();
+        let most = JointVector::from(Gains::TORQUE_LIMITS);
+        let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
+        let still = JointVector::zeros();
+        let share = BlendedGains::new(&Gains::cartesian(), None).torque_share;
+        for (i, side) in (0..7).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            let push = if i < 4 { 10.0 } else { 2.0 } * side;
+            let (mut q, mut dq) = (JointVector::zeros(), JointVector::zeros());
+            q[i] = 0.5 * (limits.lower[i] + limits.upper[i]);
+            let mut last = JointVector::zeros();
+            loop {
+                let (tau, _) = brake(&still, (&q, &dq), &still, limits, &most);
+                let filtered = low_pass(share, &tau, &last);
+                let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
+                dq[i] += (last[i] + push) / inertia[i] * CYCLE;
+                q[i] += dq[i] * CYCLE;
+                last = tau;
+                let (lower, upper) = limits.velocity_envelope(&q, 0.0);
+                let most = if side > 0.0 { upper[i] } else { -lower[i] };
+                // A push brings the joint slowly to where the envelope allows hardly any speed.
+                if most < 4.0 * FASTER {
+                    break;
+                }
+                let speed = dq[i] * side;
+                assert!(speed < most, "joint {}: {speed} of {most} rad/s", i + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn a_reference_that_follows_the_envelope_is_not_braked() {
+        let limits = JointLimits::fr3_system_5_9();
+        let (mut q, mut dq) = (JointVector::zeros(), JointVector::zeros());
+        (q[3], dq[3]) = (-0.2, 0.4);
+        assert!(dq[3] < limits.velocity_envelope(&q, 0.0).1[3]);
+        let (tau, most) = (JointVector::repeat(5.0), JointVector::repeat(50.0));
+        assert_eq!(brake(&tau, (&q, &dq), &dq, limits, &most), (tau, false));
+        let (braked, binds) = brake(&tau, (&q, &dq), &JointVector::zeros(), limits, &most);
+        assert!(binds && braked[3] < 0.0, "{braked}");
     }
 }
