@@ -278,6 +278,7 @@ impl<'py> IntoPyObject<'py> for Report {
             report.duration.as_secs_f64(),
             report.final_error.map(error).transpose()?,
             report.released_error.map(error).transpose()?,
+            report.line_deviation,
             report.compensation.map(|torques| array(py, &torques)),
             report.reacted.map(|seen| reacted(py, &seen)).transpose()?,
             report.lost_states,

@@ -260,6 +260,7 @@ def test_a_report_has_what_happened(robot: Robot) -> None:
     report = robot.move_by([0.0, 0.0, 0.02]).wait()
     assert report.duration > 0.2 and report.lost_states == 0 and 0.0 < report.success_rate_min <= 1.0
     assert report.final_error is not None and report.released_error is not None and report.reacted is None
+    assert report.line_deviation is not None and 0.0 < report.line_deviation < 0.01
     assert report.compensation is not None and report.compensation.shape == (7,)
     assert report.turnaround is not None and 0.0 < report.turnaround.p50 <= report.turnaround.max
     assert report.worst_cycle is not None and report.worst_cycle.time_ms > 0

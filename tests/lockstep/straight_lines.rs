@@ -150,17 +150,21 @@ fn random_reachable_poses_are_reached_or_refused() {
             let mut lockstep = Lockstep::ready_of(kind);
             let start = lockstep.arm_pose().translation.vector;
             let goal = lockstep.goal(Target::Pose(target), OnArrival::ReportAndFinish);
+            let mut own = None;
             let id = match lockstep.submit(goal) {
                 Ok(id) => {
                     reached += 1;
+                    let mut off = 0.0_f64;
                     let way = target.translation.vector - start;
                     while lockstep.client.outcome(id).is_none() {
                         lockstep.tick();
                         assert!(lockstep.now() < 60_000);
                         let p = lockstep.arm_pose().translation.vector - start;
                         let along = (p.dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
-                        astray = astray.max((p - way * along).norm());
+                        off = off.max((p - way * along).norm());
                     }
+                    astray = astray.max(off);
+                    own = Some(off);
                     id
                 }
                 Err(MotionError::Goal(GoalError::NoLine {
@@ -181,8 +185,14 @@ fn random_reachable_poses_are_reached_or_refused() {
                 Err(error) => panic!("{kind:?}, seed {seed}, case {case}: {error}"),
             };
             let outcome = lockstep.until_resolved(id, 60_000);
-            outcome.unwrap_or_else(|error| panic!("{kind:?}, seed {seed}, case {case}: {error}"));
+            let report = outcome
+                .unwrap_or_else(|error| panic!("{kind:?}, seed {seed}, case {case}: {error}"));
             assert_near(&lockstep, &target);
+            // A motion of joints has no line.
+            match (report.line_deviation, own) {
+                (Some(told), Some(own)) => assert!((told - own).abs() < 1e-3, "{told}, {own} m"),
+                (told, own) => assert_eq!((told, own), (None, None)),
+            }
         }
         println!(
             "{kind:?}: {reached} reached of {cases}; refused at the ends of ranges {ended}, near \

@@ -115,6 +115,10 @@ class MotionReport(Value):
     released_error: PoseError | None
     """The same distance after the arm was released; ``None`` without a target, and if the arm is still held."""
 
+    line_deviation: float | None
+    """Greatest distance of the measured end effector from the straight line to its target, m; ``None`` for a motion without a
+    line: to joint positions, through waypoints, of a control function, or one that has reacted."""
+
     compensation: NDArray[np.float64] | None
     """Compensation of friction and bias for each joint at the arrival, ``(7,)`` N m; ``None`` if another law computed the
     torques."""

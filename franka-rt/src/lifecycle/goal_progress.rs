@@ -96,6 +96,7 @@ pub(super) struct Settled {
     pub(super) settlement: Settlement,
     pub(super) duration_ms: u64,
     pub(super) compensation: Option<[f64; 7]>,
+    pub(super) line_deviation: Option<f64>,
     pub(super) reacted: Option<Reacted>,
     /// Counts of the motion up to then.
     pub(super) counted: Counted,
@@ -316,6 +317,7 @@ impl Settled {
         };
         Ok(MotionReport {
             compensation: self.compensation,
+            line_deviation: self.line_deviation,
             reacted: self.reacted,
             ..MotionReport::new(counted, self.duration_ms, final_error)
         })

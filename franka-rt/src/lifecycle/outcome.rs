@@ -38,6 +38,11 @@ pub struct MotionReport {
     /// which does not have the compensation, takes over after that. `None` without a target, if the
     /// arm stays held, and if the robot's controller ran the motion.
     pub released_error: Option<PoseError>,
+    /// Greatest distance of the measured end effector from the straight line to its target, `[m]`.
+    /// The line begins where the end effector was when the motion began. `None` for a motion
+    /// without a line: to joint positions, through waypoints, of a control function, or one that
+    /// has reacted to its condition.
+    pub line_deviation: Option<f64>,
     /// Torques that compensated the friction and bias of each joint at the arrival, `[N m]`, in
     /// addition to the springs. `None` if this driver's law did not run: under the robot's
     /// controller, and for a control function.
@@ -78,6 +83,7 @@ impl MotionReport {
             duration: Duration::from_millis(duration_ms),
             final_error,
             released_error: None,
+            line_deviation: None,
             compensation: None,
             reacted: None,
             lost_states: statistics.lost_states,

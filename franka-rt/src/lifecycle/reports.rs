@@ -114,6 +114,7 @@ impl Lifecycle {
                 settlement,
                 duration_ms,
                 compensation,
+                line_deviation,
                 reacted,
             } => {
                 let settled = Settled {
@@ -121,6 +122,7 @@ impl Lifecycle {
                     settlement,
                     duration_ms,
                     compensation,
+                    line_deviation,
                     reacted,
                     counted: Counted {
                         statistics,

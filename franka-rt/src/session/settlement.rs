@@ -27,6 +27,8 @@ pub enum SessionEvent {
         /// Torques that compensate friction and bias at the end, `[N m]`; `None` if the robot's
         /// controller turns setpoints into torques.
         compensation: Option<[f64; 7]>,
+        /// Greatest distance of the arm from the straight line of the goal, `[m]`, if it had one.
+        line_deviation: Option<f64>,
         /// The reaction that caused this end, if any.
         reacted: Option<Reacted>,
     },

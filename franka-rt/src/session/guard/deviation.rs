@@ -91,7 +91,7 @@ impl Displacement {
 }
 
 /// Returns the distance of a point from the line from the origin to `end`.
-fn beside(point: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
+pub(crate) fn beside(point: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
     let along = point.dot(end) / end.norm_squared().max(f64::MIN_POSITIVE);
     (point - end * along.clamp(0.0, 1.0)).norm()
 }

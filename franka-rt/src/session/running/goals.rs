@@ -105,6 +105,7 @@ impl RunningSession {
         self.is_refined = false;
         self.held_back = 0;
         self.route.chunk_end = None;
+        self.begin_line();
         self.turn_to(match self.goal.along_path {
             true => Target::Rest,
             false => self.goal.target,

@@ -8,6 +8,7 @@ mod carry;
 mod chunks;
 mod correction;
 mod goals;
+mod line;
 mod react;
 mod stages;
 mod watch;
@@ -46,6 +47,7 @@ use super::{
     rigid,
 };
 use goals::Bearing;
+use line::Line;
 use react::Reacting;
 use stages::GoalStage;
 
@@ -97,6 +99,8 @@ pub(super) struct RunningSession {
     /// Counter that grows by 1 in a cycle in which the course is held back, and falls by 1
     /// otherwise.
     held_back: u64,
+    /// The straight line of the goal, if it has one.
+    line: Option<Line>,
     /// Counter of the same kind for cycles in which the leash holds the course back.
     leashed: u64,
     /// True if the goal landed short of its target because the course was held back.
@@ -209,6 +213,7 @@ impl RunningSession {
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
+            line: None,
             leashed: 0,
             obstructed: false,
             arm: Measured {
@@ -401,6 +406,7 @@ impl RunningSession {
             object: pose * self.grasp.unwrap_or_default(),
             jacobian: dynamics.jacobian,
         };
+        self.watch_line();
         let Next { step, mut bindings } = self.next.take().unwrap_or_default();
         let anchored = self.reanchor(model, state);
         let step = match step {

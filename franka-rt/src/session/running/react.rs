@@ -70,6 +70,7 @@ impl RunningSession {
         };
         self.fade();
         self.set_out();
+        self.line = None;
         self.turn_to(Target::Rest);
         self.standing = Standing::Reacted(reacted);
         self.yields = true;

@@ -2,6 +2,7 @@
 
 use franka_model::{Frame, Model};
 
+use super::line::Line;
 use super::{Drive, RunningSession, Standing};
 use crate::session::arrival::{self, Landing, PoseError, Release, Verdict};
 use crate::session::guard::joint_bounds;
@@ -125,6 +126,7 @@ impl RunningSession {
                     reacted: self.reacted(),
                     duration_ms: (now - self.since).saturating_sub(held),
                     compensation,
+                    line_deviation: self.line.as_ref().map(Line::deviation),
                 });
             }
             GoalStage::Releasing(release) => {
