@@ -6,7 +6,7 @@ use franka_lockstep::Lockstep;
 use franka_model::{RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::{Engagement, MotionError};
-use franka_rt::session::{Backend, OnArrival, Settling, Target};
+use franka_rt::session::{Backend, Lapse, OnArrival, Settling, Target};
 use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch};
 use franka_tests::thorough;
@@ -169,6 +169,35 @@ fn a_cancelled_motion_ends_in_no_reflex_while_a_hand_pushes_the_arm_away() {
                 println!("{what}");
                 assert!(matches!(outcome, Err(MotionError::Stopped)), "{what}");
                 assert!(took <= STEADY, "{what}");
+            }
+        }
+    }
+}
+
+/// The longest time until a goal is resolved whose way hands undo again and again, `[ms]`: of a
+/// stall, after some progress, and of an arm that does not settle.
+const UNDONE: u64 = 30_000;
+
+#[test]
+fn a_goal_is_resolved_while_hands_push_the_arm_to_and_fro() {
+    for kind in RobotKind::ALL {
+        for seed in 0..arms() {
+            for push in [(30.0, 250), (30.0, 400)] {
+                let mut lockstep = realistic(kind, seed);
+                let goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
+                let id = lockstep.submit(goal).expect("within reach");
+                lockstep.run(700);
+                lockstep.robot.touch(hands(push));
+                let began = lockstep.now();
+                let outcome = lockstep.until_resolved(id, 60_000);
+                let took = lockstep.now() - began;
+                let what = format!("{kind:?} {seed}, {push:?}: {outcome:?} after {took} ms");
+                println!("{what}");
+                let short = matches!(
+                    outcome,
+                    Err(MotionError::TargetNotReached(_) | MotionError::Braked(Lapse::Displaced))
+                );
+                assert!(short && took <= UNDONE, "{what}");
             }
         }
     }

@@ -93,7 +93,8 @@ use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
 /// Time for which an obstacle, or the joints' bounds, may hold the reference back. A goal that
-/// should finish but has made no progress by then is braked, and ends where it is.
+/// should finish is then braked, and ends where it is. Pauses of up to a second count as part of
+/// this time, unless the arm comes nearer to its target than ever before.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// One session of target control. It is created outside the thread, moved into the thread, and

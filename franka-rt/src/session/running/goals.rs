@@ -2,6 +2,7 @@
 
 use franka_model::Model;
 
+use super::progress::Progress;
 use super::react::Reacting;
 use super::{Drive, GoalStage, RunningSession, Standing, carry};
 use crate::session::aim::Aim;
@@ -104,6 +105,7 @@ impl RunningSession {
         self.stage = GoalStage::UnderWay;
         self.is_refined = false;
         self.held_back = 0;
+        self.progress = Progress::default();
         self.route.chunk_end = None;
         self.begin_line();
         self.turn_to(match self.goal.along_path {

@@ -9,6 +9,7 @@ mod chunks;
 mod correction;
 mod goals;
 mod line;
+mod progress;
 mod react;
 mod stages;
 mod watch;
@@ -48,6 +49,7 @@ use super::{
 };
 use goals::Bearing;
 use line::Line;
+use progress::Progress;
 use react::Reacting;
 use stages::GoalStage;
 
@@ -99,6 +101,7 @@ pub(super) struct RunningSession {
     /// Counter that grows by 1 in a cycle in which the course is held back, and falls by 1
     /// otherwise.
     held_back: u64,
+    progress: Progress,
     /// The straight line of the goal, if it has one.
     line: Option<Line>,
     /// Counter of the same kind for cycles in which the leash holds the course back.
@@ -213,6 +216,7 @@ impl RunningSession {
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
+            progress: Progress::default(),
             line: None,
             leashed: 0,
             obstructed: false,
@@ -431,16 +435,7 @@ impl RunningSession {
         }
         let leashed = self.held.is_some();
         bindings.set(Guard::Leash, leashed || step.leashed);
-        self.held_back = if leashed || step.held || self.lags || self.route.hindrance().is_some() {
-            self.held_back + 1
-        } else {
-            self.held_back.saturating_sub(1)
-        };
-        self.leashed = if leashed {
-            self.leashed + 1
-        } else {
-            self.leashed.saturating_sub(1)
-        };
+        self.count_held(leashed, step.held, state.message_id);
         let met = self.reacted().is_some();
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {

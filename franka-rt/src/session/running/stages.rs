@@ -145,7 +145,8 @@ impl RunningSession {
 
     /// Begins the landing once the reference has arrived, or was held back for too long.
     fn end_way(&mut self, model: &Model) {
-        let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
+        let stalled =
+            u128::from(self.held_back) >= STALL_TIMEOUT.as_millis() || self.progress.is_stalled();
         let heading = self.heading();
         let pursued = heading != Target::Rest && !self.is_given_up();
         let done = self.route.is_done() || !pursued && self.response.refuses();

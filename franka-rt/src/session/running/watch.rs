@@ -3,13 +3,13 @@
 
 use core::time::Duration;
 
-use franka_model::Model;
+use franka_model::{JointVector, Model};
 
 use super::goals::Bearing;
 use super::{Drive, GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::Lead;
-use crate::session::{Lapse, OnArrival, OnTimeout, Target};
+use crate::session::{Lapse, OnArrival, OnTimeout, PoseError, Target};
 use crate::team::TeamStop;
 
 impl RunningSession {
@@ -116,6 +116,37 @@ impl RunningSession {
         exceeded
     }
 
+    /// Counts a cycle for which the leash or the `course` itself holds the course back, or neither.
+    pub(super) fn count_held(&mut self, leashed: bool, course: bool, now: u64) {
+        let count = |held: bool, before: u64| match held {
+            true => before + 1,
+            false => before.saturating_sub(1),
+        };
+        let held = leashed || course || self.lags || self.route.hindrance().is_some();
+        self.held_back = count(held, self.held_back);
+        self.leashed = count(leashed, self.leashed);
+        if held {
+            self.watch_progress(now);
+        }
+    }
+
+    /// Takes the distance of the measured arm from its target, in a cycle in which something holds
+    /// the goal back. A chunk has its remaining time instead, since its points may lead away from
+    /// its end.
+    fn watch_progress(&mut self, now: u64) {
+        let arm = &self.arm;
+        let distance = match (&self.route.course, self.heading()) {
+            (Course::Chunk(chunk), _) => chunk.remaining(now),
+            (_, Target::Pose(there)) => {
+                let off = PoseError::between(&arm.object, &there);
+                off.translation + LEVER * off.rotation
+            }
+            (_, Target::Joints(q)) => (JointVector::from(q) - arm.q).amax(),
+            _ => return,
+        };
+        self.progress.hold(distance, now);
+    }
+
     /// Gives up a goal if the arm was faster than the cap. Returns true if it was.
     pub(super) fn watch_speed(&mut self, model: &Model) -> bool {
         let arm = &self.arm;
@@ -219,3 +250,6 @@ impl RunningSession {
 
 /// Distance from the reference at which an arm that can move again does not leap, `[rad]`.
 const NEAR: f64 = 2e-3;
+
+/// Distance that counts as much as a turn by one radian, `[m]`.
+const LEVER: f64 = 0.1;
