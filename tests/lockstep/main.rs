@@ -17,6 +17,7 @@ mod frozen;
 mod goal_options;
 mod goals;
 mod guards;
+mod held_forces;
 mod held_pushes;
 mod holds;
 mod identify;
