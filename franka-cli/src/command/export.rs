@@ -86,7 +86,6 @@ impl Export {
     fn export(self, stop: &Stop) -> anyhow::Result<Ending> {
         #[cfg_attr(not(feature = "export"), expect(unused_mut))]
         let mut dataset: Option<(usize, u64)> = None;
-        #[cfg_attr(not(feature = "export"), expect(unused_variables))]
         let rows = match self.recorded.open_any()? {
             Source::Recording(opened) => {
                 let robot = opened.recording.robot(&opened.name)?;
