@@ -213,8 +213,8 @@ impl Arm {
 
     /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at
     /// their own rate. If goals come faster than the session accepts them, only the newest one
-    /// counts. This call checks the goal. Later refusals are only logged: of goals for another
-    /// [`Backend`], and of an offset before the previous goal was accepted.
+    /// counts. This call checks the goal. Later refusals are only logged. They concern goals for
+    /// another [`Backend`], and an offset before the previous goal was accepted.
     ///
     /// # Errors
     /// As for [`Self::set`].
