@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     // Without a directory, `mujoco-rs` asks pkg-config. The loader finds libraries of pkg-config
-    // by itself.
+    // automatically.
     let Some(directory) = env::var_os(DYNAMIC).map(PathBuf::from) else {
         return Ok(());
     };

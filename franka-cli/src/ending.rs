@@ -1,4 +1,4 @@
-//! How the program ends: exit codes, and errors that name the next step.
+//! The end of the program: exit codes, and errors that name the next step.
 
 use std::fmt;
 use std::io;
@@ -27,9 +27,9 @@ pub(crate) enum Ending {
     Host = 6,
     /// The robot needs a person, at the user stop or in Desk.
     Person = 7,
-    /// Ctrl-C ended the program. The code is that of shells.
+    /// Ctrl-C ended the program. Shells use the same code.
     Interrupted = 130,
-    /// SIGTERM ended the program. The code is that of shells.
+    /// SIGTERM ended the program. Shells use the same code.
     Terminated = 143,
 }
 

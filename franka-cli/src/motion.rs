@@ -174,7 +174,7 @@ impl Moving {
     }
 
     /// Brakes, and returns the result. `by` is the interruption; `None` if there was no
-    /// interruption, and the arm did not stop by itself.
+    /// interruption, and the arm continued to move.
     pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
         say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
@@ -277,7 +277,7 @@ pub(crate) fn recorded(status: &RecordStatus) -> String {
     )
 }
 
-/// Why a motion, or a series of motions, failed.
+/// Reason why a motion, or a series of motions, failed.
 pub(crate) enum Cause {
     Motion(MotionError),
     Other(String),

@@ -54,7 +54,7 @@ impl<'a, T> Versioned<'a, T> {
 }
 
 /// Version of the commands' JSON output. It increases when a field is removed or changes its
-/// meaning, but not for new fields. `franka doctor` has a version of its own.
+/// meaning, but not for new fields. `franka doctor` has a separate version.
 const SCHEMA: u32 = 1;
 
 /// Prints a line on standard output. Colours are removed if they are disabled.

@@ -12,7 +12,7 @@ use crate::output::json_line;
 /// Prints why a command failed, if `json` is true also as JSON. Returns how the program ends.
 pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     let ending = Ending::of(error);
-    // The reader has closed the pipe, so nobody would see an error text.
+    // The reader has closed the pipe, so an error text would not be seen.
     if is_broken_pipe(error) {
         return Ending::Done;
     }

@@ -55,7 +55,7 @@ pub(crate) struct Settings {
     pub(crate) tuning: Tuning,
 }
 
-/// How a motion ended before its button was released.
+/// The end of a motion before its button was released.
 #[derive(Debug)]
 pub(crate) enum Ended {
     /// The motion reached its target, or a viewer requested its end.

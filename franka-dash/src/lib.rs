@@ -138,8 +138,8 @@ pub enum BindError {
 }
 
 /// Listens for viewers: on a loopback address, or on any address with a token. Connections have
-/// `TCP_NODELAY`. A back end with a listener of its own should also set this option; without it, a
-/// frame waits up to 40 ms behind every message that the page does not answer.
+/// `TCP_NODELAY`. A back end with its own listener should also set this option; without it, a frame
+/// waits up to 40 ms behind every message that the page does not answer.
 ///
 /// # Errors
 /// [`BindError`] if a token is missing, or if the system refuses the address.

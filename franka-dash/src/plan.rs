@@ -98,7 +98,7 @@ pub(crate) fn plan(
     })
 }
 
-/// Like [`plan`], but computed in a task of its own, which delays nothing else.
+/// Like [`plan`], but computed in a separate task, which delays nothing else.
 pub(crate) async fn in_background(
     robot: &Robot,
     motion: Motion,

@@ -116,8 +116,8 @@ fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     }
 }
 
-/// Returns the jump of a Cartesian command: of its translation or its rotation, whichever is larger
-/// relative to the limits.
+/// Returns the jump of a Cartesian command. This is the jump of the translation or of the rotation:
+/// the larger one relative to the limits.
 fn cartesian_leap(
     evidence: &Evidence<'_>,
     sample: &Sample<'_>,

@@ -424,7 +424,7 @@ fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     )
 }
 
-/// Typical magnitude of the larger numbers of a pose: of a position, `[m]`, or of an element of a
+/// Typical magnitude of the larger numbers of a pose. They are positions, `[m]`, and elements of a
 /// rotation.
 const POSE: f64 = 0.5;
 

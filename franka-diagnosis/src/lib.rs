@@ -129,7 +129,7 @@ impl Diagnose for Reflex {
     }
 }
 
-/// Why the robot ended a motion, derived from the motion's last cycles.
+/// Reason why the robot ended a motion, derived from the motion's last cycles.
 ///
 /// `Display` gives a few lines: the exceeded limit, the causes, other errors, and the advice.
 #[derive(Clone, Debug, PartialEq)]

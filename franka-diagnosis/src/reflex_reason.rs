@@ -13,7 +13,7 @@ use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::{command_steps, contact, lost_cycles, measured, posture};
 
-/// Category of an error: what it is about.
+/// Category of an error, by its subject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Category {
     /// Missing commands.

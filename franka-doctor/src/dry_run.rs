@@ -127,8 +127,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Returns ten states at intervals of one millisecond, from number 5 on, each delayed as
-    /// `delay` says.
+    /// Returns ten states at intervals of one millisecond, from number 5 on, each with the delay
+    /// that `delay` returns.
     fn sent(delay: impl Fn(u64) -> u64) -> Vec<(u64, Duration)> {
         (5..15).map(|id| (id, US(id * 1000 + delay(id)))).collect()
     }

@@ -1,4 +1,4 @@
-//! Result of a check, and what it means for a purpose.
+//! Result of a check, and its meaning for a purpose.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ pub enum Purpose {
     Move,
 }
 
-/// What a value means for the purpose. [`Verdict::Unknown`] is neither good nor bad.
+/// Meaning of a value for the purpose. [`Verdict::Unknown`] is neither good nor bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -111,7 +111,7 @@ pub struct Finding {
     pub id: &'static str,
     /// Group to which the finding belongs.
     pub group: Group,
-    /// What the value means for the purpose.
+    /// Meaning of the value for the purpose.
     pub verdict: Verdict,
     /// The value; for [`Verdict::Unknown`], the missing part.
     pub read: String,

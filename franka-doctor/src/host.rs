@@ -121,7 +121,7 @@ pub enum Unread {
     Absent(String),
     /// Reading the value needs privileges.
     Denied(String),
-    /// Another error: what was read, and the reason.
+    /// Another error, with the thing that was read and the reason.
     Failed(String, String),
 }
 

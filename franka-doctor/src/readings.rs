@@ -19,7 +19,7 @@ pub struct Readings<'a> {
 }
 
 impl<'a> Readings<'a> {
-    /// Creates the readings of `host`, which is to control the robot at this address.
+    /// Creates the readings of `host`, a host that will control the robot at this address.
     pub fn new(host: &'a dyn Host, robot: Option<Ipv4Addr>) -> Self {
         Self {
             host,

@@ -66,7 +66,7 @@ pub struct Guarded {
     pub lockstep: Lockstep,
     /// Guards that have intervened so far.
     pub bound: HashSet<Guard>,
-    /// How each chunk has ended so far.
+    /// The end of each chunk so far.
     pub fates: Vec<Fate>,
     /// Number of times that the robot has stopped the arm, because a hard push can drive the arm to
     /// a limit. The arm then starts again from the ready pose.

@@ -11,8 +11,8 @@
 //!    inside;
 //! 3. stop if nothing changed. After [`GUESSES`] passes, change one bound at a time.
 //!
-//! Steps 1 and 2 alone (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as a
-//! Semismooth Newton Method, 2003) take two or three passes and may, rarely, cycle. Changing one
+//! The first two steps alone (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as
+//! a Semismooth Newton Method, 2003) take two or three passes and may, rarely, cycle. Changing one
 //! bound at a time (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section
 //! 16.5) descends with every iterate inside the box, so it terminates.
 //!

@@ -55,8 +55,8 @@ impl EndEffector {
 
 impl Load {
     /// Creates a load from mass `[kg]`, centre of mass in the flange frame `[m]` and inertia about
-    /// the centre of mass `[kg·m²]`: `m_total`, `F_x_Ctotal` and `I_total` of a state, or the
-    /// values of one of its loads.
+    /// the centre of mass `[kg·m²]`. In a state these are `m_total`, `F_x_Ctotal` and `I_total`, or
+    /// the values of one of its loads.
     pub fn from_arrays(mass: f64, com: &[f64; 3], inertia: &[f64; 9]) -> Self {
         Self {
             mass,

@@ -35,7 +35,7 @@ pub enum PlanError {
         /// Axis, from 1; 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
-    /// Distance or velocity and the limits differ by so many orders of magnitude that `f64` cannot
+    /// Distance or velocity and the limits differ by too many orders of magnitude: `f64` cannot
     /// represent the powers in the solution. The bound is 100 decades, in units of `A^3/J^2` or
     /// `A^2/J`.
     #[error(

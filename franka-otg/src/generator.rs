@@ -45,7 +45,7 @@ pub struct Generator<const N: usize> {
     state: State<N>,
 }
 
-/// What the plan leads to.
+/// The end of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Heading<const N: usize> {
     /// The target state.

@@ -17,7 +17,7 @@
 //!   profile ([`Plateau`]).
 //!
 //! The velocity of the target must be reachable as well. This is the same problem one derivative
-//! lower. If the target accelerates, it has a blocked interval of its own (`velocity_change`).
+//! lower. If the target accelerates, it has a separate blocked interval (`velocity_change`).
 //!
 //! The usual solution searches for all profiles that fit. It solves quartic and sixth-order
 //! equations in eleven families per direction, half of which fail by rounding where two families

@@ -12,9 +12,9 @@
 //! An axis cannot reach a target exactly at its stop point later without overshooting. The result
 //! is then the stop and a wait at the target.
 //!
-//! A lower acceleration limit would slow down the axis more gently. But for durations beyond the
-//! gentlest stop that ends at the target, this method has no solution: the axis would be early, or
-//! overshoot.
+//! A lower acceleration limit would slow down the axis more gently. However, this method has no
+//! solution for durations beyond the gentlest stop that ends at the target. The axis would be
+//! early, or overshoot.
 
 use crate::brake::Pieces;
 use crate::least_time::{LeastTime, least_time};

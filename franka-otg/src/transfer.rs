@@ -54,8 +54,8 @@ pub(crate) fn change_of_ramp(a: f64) -> f64 {
 
 /// Computes the least-time stop from velocity `v` and acceleration `a`, `|a| <= 1`.
 ///
-/// Returns the sign of the first jerk and three durations: of this jerk, of the hold and of the
-/// opposite jerk.
+/// Returns the sign of the first jerk, and the durations of this jerk, the hold and the opposite
+/// jerk.
 pub(crate) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };

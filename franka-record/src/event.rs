@@ -56,7 +56,7 @@ pub enum EventKind {
     },
     /// A request to the robot or its gripper was answered.
     Request(Request),
-    /// A diagnosis: why a motion ended, and what to change.
+    /// A diagnosis: the reason why a motion ended, and the recommended changes.
     Diagnosis(Diagnosis),
     /// An episode begins.
     EpisodeStart {
@@ -107,7 +107,7 @@ pub enum Target {
     Pose(Isometry3<f64>),
 }
 
-/// How a goal ended.
+/// The end of a goal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Number of the goal; 0 if it has none.
@@ -190,7 +190,7 @@ pub struct Request {
     pub error: Option<String>,
 }
 
-/// Why a motion ended, and what to change.
+/// The reason why a motion ended, and the recommended changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
     /// Number of the goal; 0 if it has none.

@@ -120,7 +120,7 @@ impl Guide {
                 arm.at_rest().await?;
                 arm.disengage().await
             };
-            // If a person continues to push, the arm does not come to rest.
+            // If a person continues to push, the arm does not stop.
             tokio::select! {
                 held = timeout(PATIENCE, held) => match held {
                     Ok(held) => Ok(held.map(drop)?),
@@ -145,7 +145,7 @@ impl Guide {
 /// Reason why guiding failed.
 enum Guiding {
     Failed(MotionError),
-    /// The arm did not come to rest at the end, because a person still moved it.
+    /// The arm did not stop at the end, because a person still moved it.
     NotAtRest(Option<Interruption>),
     Host(std::io::Error),
 }

@@ -1,4 +1,4 @@
-//! The program `franka`, with a configuration of its own.
+//! The program `franka`, with a separate configuration.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};

@@ -149,8 +149,8 @@ pub struct Solutions {
     count: usize,
 }
 
-/// Capacity of a list: four times the largest number of solutions for a given joint 7 or 4. None of
-/// two million problems with a given swivel angle had more than 12 solutions within the limits.
+/// Capacity of a list: four times the largest number of solutions for a given joint angle. Not one
+/// of two million problems with a given swivel angle had more than 12 solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {

@@ -8,12 +8,12 @@
 //! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
 //! ```
 //!
-//! The solver seeks the roots of `g` on those arcs of joint 7 on which the distance of shoulder and
-//! wrist is possible in the range of joint 4. Samples are dense where the half plane of the elbow
-//! turns quickly (the wrist passes near axis 1). The solver brackets changes of sign. Where samples
-//! approach zero without a change of sign, it computes the extremum to find two close roots. At the
-//! ends of an arc `g` behaves like a square root; cosine spacing of the samples compensates for
-//! this.
+//! The solver seeks the roots of `g` on arcs of joint 7. On these arcs, joint 4 can produce the
+//! distance of shoulder and wrist within its range. Samples are dense where the half plane of the
+//! elbow turns quickly (the wrist passes near axis 1). The solver brackets changes of sign. Where
+//! samples approach zero without a change of sign, it computes the extremum to find two close
+//! roots. At the ends of an arc `g` behaves like a square root; cosine spacing of the samples
+//! compensates for this.
 
 use core::f64::consts::PI;
 

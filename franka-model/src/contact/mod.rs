@@ -84,9 +84,9 @@ impl TorqueError {
     /// changes with velocity and posture.
     ///
     /// The floor is close to the residual torques of simulated arms with stiction and elasticity.
-    /// Their joints swung at up to 0.25 rad/s. The root mean square of the residuals was 0.13 N·m
-    /// (joint 7) to 0.55 N·m (joint 2). With two thirds of this floor, one reported body in
-    /// thirteen was wrong.
+    /// Their joints swung at up to 0.25 rad/s. The root mean square of the residuals was least on
+    /// joint 7, 0.13 N·m. It was largest on joint 2, 0.55 N·m. With two thirds of this floor, one
+    /// reported body in thirteen was wrong.
     pub const IN_MOTION: Self = Self {
         floor: crate::joint_vector([0.35, 0.4, 0.3, 0.4, 0.3, 0.15, 0.14]),
         share: 0.05,
@@ -145,7 +145,7 @@ pub enum Unknown {
     Base {
         /// The more probable of links 1 and 2.
         body: Body,
-        /// Probability that the contact is on link 1 or 2, 0 to 1.
+        /// Probability that the contact is on either of these links, 0 to 1.
         probability: f64,
     },
     /// Several bodies explain the torques about equally well.

@@ -1,4 +1,4 @@
-//! How close the searches come to the bounds on their passes.
+//! Distance of the searches from the bounds on their passes.
 
 use super::allowed::beside_one_that_takes;
 use super::random::stop_point;

@@ -1,4 +1,4 @@
-//! What the protocols of the Franka Hand and of the vacuum gripper share: the 10-byte header,
+//! Common parts of the protocols of the Franka Hand and of the vacuum gripper: the 10-byte header,
 //! 16-bit statuses, and one reply to each command when its action has ended.
 
 mod failure;

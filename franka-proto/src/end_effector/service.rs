@@ -15,8 +15,8 @@ use crate::protocol::{DecodeError, ReplyError, RequestError};
 use crate::protocol::{FieldDevice, Progress, Protocol, sealed};
 use crate::wire;
 
-/// An end effector's protocol: what differs between the Hand and the vacuum gripper. This trait is
-/// sealed.
+/// An end effector's protocol, with the differences between the Hand and the vacuum gripper. This
+/// trait is sealed.
 pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The commands. The number of a command is its position in [`Self::COMMANDS`].
     type Command: ServiceCommand;

@@ -1,4 +1,4 @@
-//! What all services have in common: the trait between sessions and protocols, the errors, and the
+//! Common parts of all services: the trait between sessions and protocols, the errors, and the
 //! handshake.
 
 mod error;

@@ -55,7 +55,7 @@ pub enum Reply<'a> {
 }
 
 impl<'a> Reply<'a> {
-    /// The status; `None` for `Connect`. A refused `Connect` has a text of its own:
+    /// The status; `None` for `Connect`. A refused `Connect` has a separate text:
     /// [`IncompatibleVersion`](crate::IncompatibleVersion).
     #[must_use]
     pub fn status(&self) -> Option<Status> {

@@ -188,7 +188,7 @@ class ReplayError(MotionError):
 
 
 class TeamError(MotionError):
-    """A joint motion of several arms ended before its goal. The text, ``kind`` and ``party`` are those of the arm that
+    """A joint motion of several arms ended before its goal. The text, ``kind`` and ``party`` come from the arm that
     caused the end.
     """
 
@@ -196,7 +196,7 @@ class TeamError(MotionError):
     """Number of the arm that caused the end, in the order of the team."""
 
     outcomes: list[MotionReport | MotionError]
-    """How the motion of each arm ended: a ``MotionReport`` if the arm arrived."""
+    """End of the motion of each arm: a ``MotionReport`` if the arm arrived."""
 
 
 class ActiveError(MotionError):

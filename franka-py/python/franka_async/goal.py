@@ -162,7 +162,7 @@ class Gains:
     """
 
     law: Literal["hybrid", "operational_space"] = _COMPLIANT["law"]
-    """How the law turns springs into torques: summed in joint space, or coupled by the inertia at the end effector."""
+    """Way in which the law turns springs into torques: summed in joint space, or coupled by the inertia at the end effector."""
 
     cartesian_stiffness: Sequence[float] = _COMPLIANT["cartesian_stiffness"]
     """Stiffness at the end effector, 6 numbers: along x y z, N/m, and about x y z, N m/rad."""
@@ -177,7 +177,7 @@ class Gains:
     """Damping of each joint, N m s/rad, 7 numbers."""
 
     feedforward: float = _COMPLIANT["feedforward"]
-    """Weight of the reference velocity in the dampers, 0 to 1. At weight 1 the dampers oppose only the velocity error."""
+    """Weight of the reference velocity in the dampers, 0 to 1. With full weight, the dampers oppose only the velocity error."""
 
     feedforward_cutoff: float = _COMPLIANT["feedforward_cutoff"]
     """Cutoff frequency of the low-pass on the reference velocity, Hz; 1000 switches it off."""

@@ -237,7 +237,7 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
 class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
     """Many simulated robots in one process. One call steps all of them, while the interpreter is free for other threads.
 
-    The arguments are those of ``FrankaEnv``, and ``threads``. ``reward`` and ``terminate`` get all robots together, ``(n,
+    The arguments are the arguments of ``FrankaEnv``, and ``threads``. ``reward`` and ``terminate`` get all robots together, ``(n,
     69)``. After an episode has ended, the next step begins another episode and ignores the action
     (``AutoresetMode.NEXT_STEP``). Robot i behaves as a ``FrankaEnv`` that is reset with ``seed + i``.
     """

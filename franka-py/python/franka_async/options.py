@@ -46,7 +46,7 @@ class TuneOptions(TypedDict, total=False):
     """Largest deviation of the arm from its path. A larger deviation ends the motion."""
 
     posture: ArrayLike | None
-    """Preferred joint positions, 7 numbers, rad. The arm approaches them as far as the pose of its end effector allows."""
+    """Preferred joint positions, 7 numbers, rad. The arm approaches them to the extent that its end effector allows."""
 
 
 class SessionOptions(TuneOptions, total=False):

@@ -21,5 +21,5 @@ from ._native import plan_trajectory as plan
 __all__ = ["AxisLimits", "Synchronisation", "Trajectory", "plan"]
 
 Synchronisation: TypeAlias = Literal["straight", "time"]
-"""How to synchronise the axes: ``straight`` moves on a straight line if possible; with ``time`` all axes only arrive
+"""Synchronisation of the axes: ``straight`` moves on a straight line if possible; with ``time`` all axes only arrive
 together."""

@@ -108,7 +108,7 @@ class RecordedEvent:
     """Number of the goal to which the event belongs, as in the column ``goal``."""
 
     ending: str | None
-    """How the goal of an ``outcome`` ended: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
+    """End of the goal of an ``outcome``: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ class Network:
     """Probability that a datagram arrives twice, 0 to 1."""
 
     stalls: bool = False
-    """True if states are held up as in the network interface of a Franka Emika Robot: for 2 to 7 ms, seven times a second."""
+    """True if states are delayed as in the network interface of a Franka Emika Robot: for 2 to 7 ms, seven times a second."""
 
     cuts: Sequence[tuple[float, float]] = ()
     """Periods in which nothing arrives: pairs (from, to) of seconds since the robot's start. For example, a ``state().time``

@@ -69,7 +69,7 @@ class Backoff:
 
 @dataclass(frozen=True, kw_only=True)
 class Policy:
-    """What the supervisor of a robot does when the connection or the robot fails.
+    """Reaction of a robot's supervisor when the connection or the robot fails.
 
     The default reconnects for as long as necessary, never recovers from a reflex, and refuses motions meanwhile. No policy
     resumes a motion: motions and sessions end with the failure.

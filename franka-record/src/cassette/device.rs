@@ -7,7 +7,7 @@ use franka_proto::wire::service::ConnectRequest;
 use franka_proto::{Protocol as _, Version, gripper, vacuum};
 use zerocopy::FromBytes as _;
 
-/// A device of the robot with a TCP service of its own.
+/// A device of the robot with a separate TCP service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Device {
     /// The arm.

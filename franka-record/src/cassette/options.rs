@@ -45,7 +45,7 @@ pub enum Pace {
     /// Like [`Self::Recorded`], but a state that followed a command is sent as soon as this command
     /// arrives. The client is never too late, and may be faster than the recorded client.
     Answered,
-    /// As fast as the caller calls [`super::Player::poll`], without repeated states. For tests that
-    /// have a clock of their own.
+    /// As fast as the caller calls [`super::Player::poll`], without repeated states. Use this for
+    /// tests that have their own clock.
     Lockstep,
 }

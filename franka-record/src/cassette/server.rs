@@ -63,7 +63,7 @@ pub enum PlayError {
          next is {awaited}"
     )]
     Unfinished {
-        /// How long the server waited.
+        /// Time for which the server waited.
         patience: Duration,
         /// Number of connections that were played to their end.
         played: usize,

@@ -262,7 +262,7 @@ fn x(span: f64, before: f64) -> f64 {
     LEFT + CURVES * (1.0 - before / span)
 }
 
-/// Returns the next larger number of the series 1, 2, 5, 10, 20, 50, ...
+/// Returns the next larger number of the series 1, 2, 5, 10, ...
 fn rounded(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.5, 10.0].map(|step| step * power);

@@ -286,7 +286,7 @@ impl Explanation {
     /// Returns an SVG image of the last second before the end. It shows contact torques, velocities
     /// and torques relative to their limits, the events, and the place of the contact on the arm.
     ///
-    /// The image has no background, and its colours can be told apart on white and on black.
+    /// The image has no background, and its colours are easy to distinguish on white and on black.
     pub fn figure(&self) -> String {
         figure::draw(self)
     }

@@ -44,8 +44,8 @@ pub struct Bristle {
     /// Stiffness of the bristles, `[N·m/rad]`. No measurement is published. With 1000 to 4000, the
     /// drift at the start of a session is 0.13 to 0.23 mm, as franka-rs measured on two FERs.
     pub stiffness: JointVector,
-    /// Damping of the bristles, `[N·m·s/rad]`. With the chosen values, a stuck joint comes to rest
-    /// within milliseconds.
+    /// Damping of the bristles, `[N·m·s/rad]`. With the chosen values, a stuck joint stops within
+    /// milliseconds.
     pub damping: JointVector,
 }
 

@@ -8,8 +8,8 @@ use super::finger_motion::{FingerMotion, Progress};
 use crate::plant::FingerDrive;
 
 /// Two fingers that move at the commanded speed and stop at an object. Either they have built-in
-/// kinematics and an object of a given width. Or they belong to a plant (physics) with fingers and
-/// objects of its own: see [`Robot::couple`](crate::Robot::couple).
+/// kinematics and an object of a given width. Or they belong to a plant (physics) with its own
+/// fingers and objects: see [`Robot::couple`](crate::Robot::couple).
 ///
 /// libfranka documents the known behaviour of real hands. This simulator chooses the rest and marks
 /// each choice; none has been measured.

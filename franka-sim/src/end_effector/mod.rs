@@ -1,4 +1,4 @@
-//! End effectors with a server of their own, as values: bytes go in, bytes come out, and each
+//! End effectors that have a separate server, as values: bytes go in, bytes come out, and each
 //! [`EndEffector::tick`] is one millisecond.
 //!
 //! ```text

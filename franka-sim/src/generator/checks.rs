@@ -62,8 +62,8 @@ impl Broken {
 ///
 /// Some kinds of robot publish the history in single precision. A client may limit its commands
 /// relative to the published state; at 3 rad its jerk is up to 240 rad/s³ off from the exact
-/// history. A client with a generator of its own is exact relative to the exact history. Robots
-/// refuse neither client, so a bound counts as violated only if both histories violate it.
+/// history. A client with its own generator is exact relative to the exact history. Robots refuse
+/// neither client, so a bound counts as violated only if both histories violate it.
 fn judge<S: Copy>(
     exact: &S,
     published: impl Fn(S) -> S,

@@ -48,8 +48,8 @@ impl Conditions {
     /// A cable between the robot and a good network card.
     ///
     /// Delay and jitter are half of the round trip of pings of 1200 bytes to three FERs: 0.114 ms
-    /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is gigabit Ethernet, at which
-    /// a protocol 5 state (2497 bytes on the wire) requires 0.02 ms. Control loops have seen
+    /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is gigabit Ethernet. A state
+    /// of protocol 5 (2497 bytes on the wire) then requires 0.02 ms. Control loops have seen
     /// intervals as short as this between their calls (franka_ros, issue 322: 0.023 ms).
     pub const fn cable() -> Self {
         Self {
@@ -154,9 +154,9 @@ impl Stalls {
     /// longest silence between two states was 4.8 to 6.9 ms, which bounds the other parameters. Of
     /// `n` stalls, the longest lasts 2 ms + `excess` (ln `n` + 0.577) on average. The silence is
     /// half a millisecond longer, because the last state was sent before the stall. For a silence
-    /// in the middle of this range, the excess is 0.57 ms if a measurement took 30 s, and 0.69 ms
-    /// if it took 10 s. The value used is between these two. It also reproduces the loss that
-    /// clients measure.
+    /// in the middle of this range, the excess is 0.57 ms if a measurement took 30 s. It is 0.69 ms
+    /// if a measurement took 10 s. The value used is between these two. It also reproduces the loss
+    /// that clients measure.
     ///
     /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms (Rayleigh
     /// 0.70). The share of stalls on the grid and their spread around it are fitted to this

@@ -221,7 +221,7 @@ impl Robot {
     /// Returns gravity compensation with a light damper, and springs in the locked directions.
     fn guiding_law(&self, guidance: &Guidance) -> Law {
         let guiding = &self.settings.guiding;
-        // The axes are those of the end effector, not of the stiffness frame.
+        // The axes belong to the end effector, not to the stiffness frame.
         let frames = EndEffector {
             ee_t_k: Matrix4::identity(),
             ..self.settings.frames

@@ -125,7 +125,7 @@ impl Running {
         self.robot.pace().await
     }
 
-    /// Completes when the simulation has ended by itself. Only a panic causes this, in the
+    /// Completes when the simulation has ended without a request. Only a panic causes this, in the
     /// simulator or in a function passed to [`with`](Self::with) or [`Sim::every_millisecond`].
     ///
     /// # Cancel safety

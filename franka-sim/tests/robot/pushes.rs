@@ -1,4 +1,4 @@
-//! What the robot estimates of a push on the flange, and how far an impedance yields, on every
+//! The robot's estimate of a push on the flange, and the displacement of an impedance, on every
 //! plant.
 
 use franka_model::{Frame, Twist, rotation, transform};

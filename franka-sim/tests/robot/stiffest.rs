@@ -59,9 +59,9 @@ fn the_stiffest_cartesian_impedance_does_not_ring() {
     });
 }
 
-/// The client applies its gains once per millisecond, to a state that is one cycle old. The gains
-/// are those of libfranka 0.21, `joint_impedance_control.cpp`, and four times this stiffness with
-/// twice this damping.
+/// The client applies its gains once per millisecond, to a state that is one cycle old. They come
+/// from libfranka 0.21, `joint_impedance_control.cpp`. The second case has four times this
+/// stiffness and twice this damping.
 #[test]
 fn a_clients_stiff_impedance_does_not_ring() {
     for factor in [1.0, 2.0] {

@@ -35,8 +35,8 @@ use binary::Binary;
 /// Each test holds this lock, because two cores support only a few robots.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Lock that a test holds across every await. This is intended: each test blocks a runtime of its
-/// own.
+/// Lock that a test holds across every await. This is intended: each test blocks a separate
+/// runtime.
 struct Alone {
     _guard: MutexGuard<'static, ()>,
 }

@@ -137,7 +137,7 @@ impl Look {
     }
 
     /// Returns each set of lengths with the median distance between reported poses and the model's
-    /// poses, `[m]`. The first set is that of `model`.
+    /// poses, `[m]`. The first set belongs to `model`.
     pub(super) fn geometry(&self, model: &Model) -> [(Lengths, f64); SETS] {
         let lengths = sets(model).map(|model| *model.lengths());
         std::array::from_fn(|i| {

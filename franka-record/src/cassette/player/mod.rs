@@ -29,9 +29,9 @@ pub enum Output {
 pub struct Mismatch {
     /// The device of the connection.
     pub device: Device,
-    /// What the client did.
+    /// The client's actual step.
     pub got: String,
-    /// What the recorded client did.
+    /// The recorded client's step.
     pub expected: String,
 }
 

@@ -171,8 +171,8 @@ impl DriveTrain {
         }
     }
 
-    /// The step of joint `i` under the motor torque `motor`, as far as it is known before the
-    /// plant's step.
+    /// The step of joint `i` under the motor torque `motor`, to the extent known before the plant's
+    /// step.
     fn joint(&self, i: usize, motor: f64, q: f64, dq: f64, dt: f64) -> JointStep {
         let rotor = self.felt_inertia[i];
         let tangent = |contact: &Option<Contact>, v: f64, inertia: f64| {

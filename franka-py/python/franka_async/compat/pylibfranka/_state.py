@@ -35,7 +35,7 @@ class ControllerMode(_Number):
 
 
 class RealtimeConfig(_Number):
-    """What to do on a computer without real-time scheduling: refuse to control the robot or not."""
+    """Policy for a computer without real-time scheduling: refuse to control the robot or not."""
 
     kEnforce = 0
     kIgnore = 1
