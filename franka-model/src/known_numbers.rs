@@ -85,7 +85,7 @@ fn a_frame_that_is_not_quite_orthonormal_is_used_as_given() {
     assert_near(&[column], &[0.999], 1e-15);
 }
 
-/// `(gravity, Coriolis at unit velocities, diagonal of the mass matrix)`.
+/// Gravity torques, Coriolis torques at unit velocities, and diagonal of the mass matrix.
 type Torques = [[f64; 7]; 3];
 
 #[track_caller]

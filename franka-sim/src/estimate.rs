@@ -15,13 +15,13 @@ use crate::signal::{halves, stack};
 /// `robot_state.h`). If a hand pushes the arm upwards, the force along z is negative.
 #[derive(Debug, Clone)]
 pub(crate) struct Estimate {
-    /// `tau_ext_hat_filtered`, `[N·m]`.
+    /// Estimated external torques, `tau_ext_hat_filtered`, `[N·m]`.
     pub(crate) torque: JointVector,
     /// `O_F_ext_hat_K`, its torque about the origin of the base, `[N, N·m]`.
     pub(crate) wrench_base: Wrench,
     /// The same wrench with its torque about the origin of the stiffness frame.
     wrench_at_stiffness: Wrench,
-    /// `K_F_ext_hat_K`, `[N, N·m]`.
+    /// Wrench in the axes of the stiffness frame, `K_F_ext_hat_K`, `[N, N·m]`.
     pub(crate) wrench_stiffness: Wrench,
     pub(crate) joint_contact: [bool; 7],
     pub(crate) cartesian_contact: [bool; 6],

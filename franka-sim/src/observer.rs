@@ -24,7 +24,7 @@ pub(crate) struct Instant {
     pub(crate) dq: JointVector,
     /// Mass matrix with the declared load, `[kg·m²]`.
     pub(crate) mass: MassMatrix,
-    /// `C dq + g`, `[N·m]`.
+    /// Torques `C dq + g`, `[N·m]`.
     pub(crate) bias: JointVector,
 }
 

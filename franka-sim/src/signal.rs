@@ -152,11 +152,11 @@ impl CartesianSignal {
 /// The elbow: the angle of joint 3.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ElbowSignal {
-    /// `[rad]`
+    /// Angle of joint 3, `[rad]`.
     pub(crate) angle: f64,
-    /// `[rad/s]`
+    /// Velocity, `[rad/s]`.
     pub(crate) velocity: f64,
-    /// `[rad/s²]`
+    /// Acceleration, `[rad/s²]`.
     pub(crate) acceleration: f64,
     /// True if the client commands the elbow; otherwise the robot chooses it.
     pub(crate) commanded: bool,

@@ -217,7 +217,7 @@ fn pause(readings: &Readings<'_>) -> Result<Judged, Unread> {
     ))
 }
 
-/// `linux/ethtool.h`.
+/// Flag of large receive offload, from `linux/ethtool.h`.
 const ETH_FLAG_LRO: u32 = 1 << 15;
 
 fn errors(readings: &Readings<'_>) -> Result<Judged, Unread> {

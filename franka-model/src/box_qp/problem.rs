@@ -5,15 +5,15 @@ use crate::{Jacobian, JointVector, Twist};
 /// The parts of the function to minimise; see [`box_qp`](crate::box_qp).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
-    /// `A`.
+    /// Matrix `A`: the Jacobian of the task.
     pub(crate) rows: &'a Jacobian,
-    /// `t`.
+    /// Vector `t`: the task.
     pub(crate) task: &'a Twist,
-    /// `x0`.
+    /// Vector `x0`: the preferred solution.
     pub(crate) posture: &'a JointVector,
-    /// `d`, positive.
+    /// Damping `d`, positive.
     pub(crate) damping: f64,
-    /// `AᵀA + d`.
+    /// Matrix `AᵀA + d` of the normal equations.
     pub(crate) normal: [[f64; 7]; 7],
 }
 
@@ -47,7 +47,7 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// `Aᵀt + d x0`.
+    /// Returns `Aᵀt + d x0`, the right-hand side of the normal equations.
     #[inline(always)]
     pub(super) fn linear(&self) -> [f64; 7] {
         let columns = &self.rows.data.0;

@@ -85,7 +85,7 @@ pub enum UrdfError {
     /// Two joints or two links have the same name.
     #[error("two elements <{element}> have the name '{name}', expected one")]
     Duplicate {
-        /// `joint` or `link`.
+        /// Kind of the two: `joint` or `link`.
         element: &'static str,
         /// The duplicate name.
         name: String,
@@ -112,9 +112,9 @@ pub enum UrdfError {
     LimitsCrossed {
         /// Name of the joint.
         joint: String,
-        /// `lower`, `[rad]`.
+        /// Lower limit in the text, `[rad]`.
         lower: f64,
-        /// `upper`, `[rad]`.
+        /// Upper limit in the text, `[rad]`.
         upper: f64,
     },
     /// The margins at both ends of a joint's range leave no room to move.
@@ -125,9 +125,9 @@ pub enum UrdfError {
     RangeTooNarrow {
         /// Name of the joint.
         joint: String,
-        /// `lower`, `[rad]`.
+        /// Lower limit in the text, `[rad]`.
         lower: f64,
-        /// `upper`, `[rad]`.
+        /// Upper limit in the text, `[rad]`.
         upper: f64,
         /// Smallest accepted range, `[rad]`.
         least: f64,
@@ -150,7 +150,7 @@ pub enum UrdfError {
     UnknownLink {
         /// Name of the joint.
         joint: String,
-        /// `parent` or `child`.
+        /// Role of the link: `parent` or `child`.
         role: &'static str,
         /// Name of the link.
         got: String,

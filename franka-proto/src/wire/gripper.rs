@@ -5,7 +5,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use super::F64;
 
-/// `Grasp::Request`.
+/// Payload of a grasp request, `Grasp::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Grasp {
@@ -19,7 +19,7 @@ pub struct Grasp {
     pub force: F64,
 }
 
-/// `Grasp::GraspEpsilon`.
+/// Tolerances of a grasp, `Grasp::GraspEpsilon`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct GraspEpsilon {
@@ -29,7 +29,7 @@ pub struct GraspEpsilon {
     pub outer: F64,
 }
 
-/// `Move::Request`.
+/// Payload of a request to move the fingers, `Move::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Move {

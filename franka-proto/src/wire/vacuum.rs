@@ -3,7 +3,7 @@
 use zerocopy::byteorder::little_endian::{I32, I64, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
-/// `Vacuum::Request`.
+/// Payload of a request to pick up an object, `Vacuum::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Vacuum {
@@ -15,7 +15,7 @@ pub struct Vacuum {
     pub timeout: I64,
 }
 
-/// `DropOff::Request`.
+/// Payload of a request to drop the object, `DropOff::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct DropOff {

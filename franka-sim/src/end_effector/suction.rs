@@ -19,7 +19,7 @@ use super::{Mechanism, towards};
 #[derive(Debug, Clone)]
 pub struct Suction {
     object: bool,
-    /// `[mbar]`.
+    /// Current vacuum, `[mbar]`.
     vacuum: f64,
     part_detached: bool,
     activity: Activity,

@@ -23,13 +23,13 @@ pub(crate) struct Law {
 /// A spring and damper towards a moving point in joint space.
 #[derive(Debug, Clone)]
 pub(crate) struct Spring {
-    /// `[N·m/rad]`
+    /// Stiffness, `[N·m/rad]`.
     pub(crate) stiffness: MassMatrix,
-    /// `[N·m·s/rad]`
+    /// Damping, `[N·m·s/rad]`.
     pub(crate) damping: MassMatrix,
-    /// `[rad]`
+    /// Position of the point, `[rad]`.
     pub(crate) q: JointVector,
-    /// `[rad/s]`
+    /// Velocity of the point, `[rad/s]`.
     pub(crate) dq: JointVector,
 }
 

@@ -8,7 +8,7 @@ use crate::noise::Random;
 /// A line that carries one datagram at a time.
 #[derive(Debug, Clone)]
 pub(super) struct Line {
-    /// `[bit/s]`
+    /// Rate of the line, `[bit/s]`.
     rate: f64,
     /// Time at which the line is free again.
     free: Duration,

@@ -19,13 +19,13 @@ use crate::signal::JointSignal;
 /// Sensor readings over the last millisecond.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measurement {
-    /// `q`, `[rad]`.
+    /// Measured joint positions `q`, `[rad]`.
     pub(super) q: JointVector,
-    /// `dq`, `[rad/s]`.
+    /// Measured joint velocities `dq`, `[rad/s]`.
     pub(super) dq: JointVector,
-    /// `tau_J`, `[N·m]`.
+    /// Measured joint torques `tau_J`, `[N·m]`.
     pub(super) torque: JointVector,
-    /// `dtau_J`, `[N·m/s]`.
+    /// Derivatives of the measured torques, `dtau_J`, `[N·m/s]`.
     pub(super) torque_rate: JointVector,
     /// Mean joint acceleration, `[rad/s²]`.
     pub(super) ddq: JointVector,

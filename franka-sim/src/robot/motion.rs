@@ -133,7 +133,7 @@ impl ActiveMotion {
         self.paused
     }
 
-    /// `control_command_success_rate`.
+    /// Returns `control_command_success_rate`.
     pub(super) fn success_rate(&self, first: FirstCycles) -> f64 {
         self.success_rate.rate(first)
     }

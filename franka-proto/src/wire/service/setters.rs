@@ -27,7 +27,7 @@ pub struct SetCollisionBehavior {
     pub upper_force_thresholds_nominal: [F64; 6],
 }
 
-/// `SetJointImpedance::Request`.
+/// Payload of `SetJointImpedance::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetJointImpedance {
@@ -35,7 +35,7 @@ pub struct SetJointImpedance {
     pub K_theta: [F64; 7],
 }
 
-/// `SetCartesianImpedance::Request`.
+/// Payload of `SetCartesianImpedance::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetCartesianImpedance {
@@ -43,7 +43,7 @@ pub struct SetCartesianImpedance {
     pub K_x: [F64; 6],
 }
 
-/// `SetGuidingMode::Request`.
+/// Payload of `SetGuidingMode::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetGuidingMode {
@@ -53,7 +53,7 @@ pub struct SetGuidingMode {
     pub nullspace: u8,
 }
 
-/// `SetEEToK::Request` and `SetNEToEE::Request`: a pose.
+/// Payload of `SetEEToK::Request` and `SetNEToEE::Request`: a pose.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetFrame {
@@ -61,7 +61,7 @@ pub struct SetFrame {
     pub transform: [F64; 16],
 }
 
-/// `SetLoad::Request`.
+/// Payload of `SetLoad::Request`.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetLoad {

@@ -5,24 +5,24 @@ use crate::arm::Friction;
 /// Friction parameters of one side, and the deflection of its bristles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Contact {
-    /// `[N·m]`
+    /// Breakaway torque, `[N·m]`.
     static_torque: f64,
-    /// `[N·m]`
+    /// Torque while sliding fast, `[N·m]`.
     kinetic_torque: f64,
-    /// `[rad/s]`
+    /// Speed at which friction falls from static to kinetic, `[rad/s]`.
     stribeck_speed: f64,
-    /// `[N·m·s/rad]`
+    /// Viscous friction, `[N·m·s/rad]`.
     viscous: f64,
     bristle: Option<Bristle>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Bristle {
-    /// `[N·m/rad]`
+    /// Stiffness of the bristles, `[N·m/rad]`.
     stiffness: f64,
-    /// `[N·m·s/rad]`
+    /// Damping of the bristles, `[N·m·s/rad]`.
     damping: f64,
-    /// `[rad]`
+    /// Current deflection of the bristles, `[rad]`.
     deflection: f64,
 }
 
@@ -30,9 +30,9 @@ struct Bristle {
 /// torque rises by `slope · a`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tangent {
-    /// `[N·m]`
+    /// Friction torque, `[N·m]`.
     pub(super) torque: f64,
-    /// `[N·m·s/rad]`
+    /// Increase of the torque with the velocity, `[N·m·s/rad]`.
     pub(super) slope: f64,
 }
 

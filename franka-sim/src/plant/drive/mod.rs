@@ -222,11 +222,11 @@ impl DriveTrain {
 /// One step of one joint. The torque between gear and link is `torque − sensed_inertia · q̈`.
 #[derive(Debug, Clone, Copy, Default)]
 struct JointStep {
-    /// `[N·m]`
+    /// Torque between gear and link without acceleration, `[N·m]`.
     torque: f64,
     /// Inertia on the link, `[kg·m²]`.
     inertia: f64,
-    /// `[kg·m²]`
+    /// Decrease of this torque per acceleration of the joint, `[kg·m²]`.
     sensed_inertia: f64,
     /// Damping on the link, `[N·m·s/rad]`.
     damping: f64,
