@@ -13,16 +13,20 @@ pub struct Friction {
     ///
     /// Sources: breakaway ramps of one Panda (franka_emulator, 2021) and of another (ETH PdZ
     /// thesis, 2023-24). The values are 0.83 to 1.6 on joints 1 to 5, and 0.4 to 0.9 on joints 6
-    /// and 7.
+    /// and 7. In motion,
+    /// joints 3 and 5 of a recorded Franka Research 3 (aiofranka) have less friction than these, and
+    /// joint 1 has more.
     pub static_torque: JointVector,
-    /// Friction torque of a joint that slides fast, `[N·m]`. Source: ETH PdZ, a ratio of static to
-    /// kinetic friction of 1 to 1.5.
+    /// Friction torque of a joint that slides fast, `[N·m]`. Sources: ETH PdZ, a ratio of static to
+    /// kinetic friction of 1 to 1.5; NNFM, a ratio of 2 on joint 7 of a Panda or Research 3.
     pub kinetic_torque: JointVector,
-    /// Speed at which friction has covered 63 % of its decrease from static to kinetic, `[rad/s]`.
-    /// The decrease is Gaussian. Without a bristle, friction reaches 76 % of its kinetic value at
-    /// this speed. Source: ETH PdZ, joint 7, 0.049.
+    /// Speed at which friction has fallen from static to kinetic by 63 %, `[rad/s]`. The fall is
+    /// Gaussian. Without a bristle: the speed at which friction has reached 76 %. Sources: ETH PdZ,
+    /// joint 7, 0.049; NNFM, joint 7, 0.40 N·m at 0.005 rad/s, 0.31 at 0.035, 0.25 at 0.11 and 0.20
+    /// at 0.45, which is 0.05 to 0.15.
     pub stribeck_speed: JointVector,
-    /// Viscous friction, `[N·m·s/rad]`. Sources: ETH PdZ, 0 to 1.2; Gaz et al., 0 to 0.17.
+    /// Viscous friction, `[N·m·s/rad]`. Sources: ETH PdZ, 0 to 1.2; Gaz et al., 0 to 0.17; a
+    /// recorded Franka Research 3, up to 1.1 on joint 1.
     pub viscous: JointVector,
     /// Elasticity before a joint slides; `None` for smooth friction.
     pub bristle: Option<Bristle>,
@@ -41,8 +45,10 @@ pub struct Friction {
 /// vibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristle {
-    /// Stiffness of the bristles, `[N·m/rad]`. No measurement is published. With 1000 to 4000, the
-    /// drift at the start of a session is 0.13 to 0.23 mm, as franka-rs measured on two FERs.
+    /// Stiffness of the bristles, `[N·m/rad]`. Sources: slow reversals in two logs, 800 to 20 000;
+    /// joint 7 is the stiffest. With
+    /// 1000 to 4000, the drift at the start of a session is 0.13 to 0.23 mm, as franka-rs measured
+    /// on two FERs.
     pub stiffness: JointVector,
     /// Damping of the bristles, `[N·m·s/rad]`. With the chosen values, a stuck joint stops within
     /// milliseconds.

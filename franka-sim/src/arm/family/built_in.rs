@@ -49,24 +49,30 @@ impl Family {
     pub fn realistic() -> Self {
         Self {
             static_friction: uniform(
-                [0.8075, 0.9775, 0.8075, 1.105, 0.8925, 0.51, 0.425],
-                [1.0925, 1.3225, 1.0925, 1.495, 1.2075, 0.69, 0.575],
+                [0.8, 0.85, 0.7, 1.0, 0.65, 0.45, 0.38],
+                [1.265, 1.3225, 1.0925, 1.495, 1.2075, 0.69, 0.575],
             ),
             static_friction_scale: uniform(0.8, 1.2),
-            kinetic_ratio: uniform(0.7, 0.95),
-            stribeck_speed: uniform(
-                [0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.05],
-                [0.08, 0.08, 0.08, 0.08, 0.08, 0.08, 0.05],
+            kinetic_ratio: uniform(
+                [0.8, 0.65, 0.6, 0.65, 0.6, 0.55, 0.45],
+                [1.0, 0.95, 0.95, 0.95, 0.95, 0.95, 0.9],
             ),
-            bristle_stiffness: uniform(1000.0, 4000.0),
+            stribeck_speed: uniform(
+                [0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.03],
+                [0.1, 0.1, 0.1, 0.1, 0.12, 0.12, 0.15],
+            ),
+            bristle_stiffness: uniform(
+                800.0,
+                [6000.0, 6000.0, 6000.0, 6000.0, 6000.0, 6000.0, 20_000.0],
+            ),
             bristle_damping: constant(5.0),
             viscous_friction: uniform(
-                [0.1, 0.08, 0.08, 0.1, 0.09, 0.05, 0.04],
-                [1.0, 0.8, 0.8, 1.0, 0.9, 0.5, 0.4],
+                [0.1, 0.05, 0.05, 0.1, 0.0, 0.0, 0.0],
+                [1.3, 0.8, 1.0, 1.0, 0.9, 0.5, 0.4],
             ),
             link_share: uniform(0.3, 0.7),
             rotor_inertia: constant([0.606, 0.606, 0.462, 0.462, 0.2055, 0.2055, 0.2055]),
-            torque_loop_gain: constant(2.0),
+            torque_loop_gain: uniform(1.5, 4.0),
             torque_lag: uniform(0.002, 0.005),
             command_delay: uniform(1.0, 2.0),
             elasticity: Some(Elastic {

@@ -46,8 +46,8 @@ fn samples_fill_their_distributions_and_stay_within() {
         low >= from && low < from + margin && high <= to && high > to - margin
     };
     let ratio = |arm: &Arm| arm.friction.kinetic_torque[2] / arm.friction.static_torque[2];
-    assert!(spans(range(&ratio), 0.7, 0.95));
-    assert!(spans(range(&|arm| arm.friction.viscous[6]), 0.04, 0.4));
+    assert!(spans(range(&ratio), 0.6, 0.95));
+    assert!(spans(range(&|arm| arm.friction.viscous[6]), 0.0, 0.4));
     assert!(spans(range(&|arm| arm.friction.link_share[0]), 0.3, 0.7));
     assert!(spans(range(&|arm| arm.drive.torque_lag), 0.002, 0.005));
     assert!(spans(range(&|arm| arm.body.mass_error[4]), -0.03, 0.03));
@@ -56,10 +56,10 @@ fn samples_fill_their_distributions_and_stay_within() {
     // The product of two factors reaches its ends rarely.
     let (low, high) = range(&|arm| arm.friction.static_torque[3]);
     assert!(
-        low > 0.68 * 1.3 - 1e-9 && high < 1.38 * 1.3 + 1e-9,
+        low > 0.8 - 1e-9 && high < 1.2 * 1.495 + 1e-9,
         "{low} {high}"
     );
-    assert!(low < 0.73 * 1.3 && high > 1.33 * 1.3, "{low} {high}");
+    assert!(low < 0.86 && high > 1.73, "{low} {high}");
 
     let share = |delay: u32| {
         arms.iter()
@@ -88,7 +88,7 @@ fn a_central_arm_is_the_middle_and_only_an_fer_stalls() {
     assert_eq!(arm.drive.command_delay, 1);
     assert_eq!(arm.sensors.torque_offset, JointVector::zeros());
     assert_eq!(arm.body.kinematic_error, [Isometry3::identity(); 7]);
-    assert!((arm.friction.static_torque[0] - 0.95).abs() < 1e-12);
+    assert!((arm.friction.static_torque[0] - 1.0325).abs() < 1e-12);
     assert_eq!(arm.stalls, Some(Stalls::FER));
     assert_eq!(Arm::realistic(RobotKind::Fr3).stalls, None);
     assert_eq!(Arm::nominal(KIND).stalls, None);

@@ -38,18 +38,44 @@ const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 /// except two. Joint 4 under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
 const OFF_MAX: f64 = 0.06;
 
-/// An arm with springs that the client computes in every cycle.
-struct Sprung {
+/// Period of the log, `[s]`.
+pub(super) const PERIOD: f64 = 0.02;
+
+/// An arm under springs that a client computes in every cycle.
+pub(super) struct Sprung {
     pair: Pair,
     torque: JointVector,
 }
 
+/// One sample of the log, every [`PERIOD`].
+#[derive(Clone, Copy)]
+pub(super) struct Row {
+    pub(super) q: JointVector,
+    pub(super) dq: JointVector,
+    /// Commanded by the client, `[N·m]`.
+    pub(super) torque: JointVector,
+}
+
+impl Row {
+    /// The mean of these rows.
+    pub(super) fn mean(rows: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> JointVector| -> JointVector {
+            rows.iter().map(of).sum::<JointVector>() / rows.len() as f64
+        };
+        Self {
+            q: mean(|row| row.q),
+            dq: mean(|row| row.dq),
+            torque: mean(|row| row.torque),
+        }
+    }
+}
+
 impl Sprung {
-    fn new() -> Self {
+    pub(super) fn new(arm: Arm) -> Self {
         let mut pair = Pair::new(Config {
             q: HOME.into(),
             tool: Tool::hand(),
-            arm: Some(Arm::realistic(RobotKind::Fr3)),
+            arm: Some(arm),
             ..Config::default()
         });
         pair.start_torques();
@@ -59,7 +85,7 @@ impl Sprung {
         }
     }
 
-    /// Holds `target` for 20 ms, the period of the log.
+    /// Holds `target` for the [`PERIOD`] of the log.
     fn towards(&mut self, target: &JointVector, spring: f64, damper: f64) {
         for _ in 0..20 {
             let dq = JointVector::from(self.pair.state.dq);
@@ -70,30 +96,50 @@ impl Sprung {
         }
     }
 
-    /// Performs one run. Returns, for each joint, the range of its motion divided by the range of
-    /// its target.
-    fn ratios(&mut self, spring: f64, damper: f64) -> JointVector {
+    fn row(&self) -> Row {
+        Row {
+            q: self.pair.q(),
+            dq: JointVector::from(self.pair.state.dq),
+            torque: JointVector::from(self.pair.state.tau_J_d),
+        }
+    }
+
+    /// Performs one run. The last row is the end of the run.
+    fn run(&mut self, spring: f64, damper: f64) -> Vec<Row> {
         for _ in 0..150 {
             self.towards(&HOME.into(), 80.0, 4.0);
         }
         let from = self.pair.q();
-        let [mut least, mut most] = [from; 2];
+        let mut rows = Vec::new();
         for k in 0..200 {
+            rows.push(self.row());
             let sine = 0.15 * (PI * f64::from((k - 1).max(0)) / 50.0).sin();
             self.towards(&from.add_scalar(sine), spring, damper);
-            least = least.inf(&self.pair.q());
-            most = most.sup(&self.pair.q());
         }
-        (most - least) / 0.3
+        rows.push(self.row());
+        rows
     }
+
+    /// The four runs.
+    pub(super) fn runs(&mut self) -> [Vec<Row>; 4] {
+        RECORDED.map(|(spring, damper, _)| self.run(spring, damper))
+    }
+}
+
+/// The range of motion of each joint over the range of its target.
+fn ratios(rows: &[Row]) -> JointVector {
+    let first = rows[0].q;
+    let (least, most) = rows.iter().fold((first, first), |(least, most), row| {
+        (least.inf(&row.q), most.sup(&row.q))
+    });
+    (most - least) / 0.3
 }
 
 #[test]
 fn joints_swing_under_soft_springs_as_those_of_a_real_arm() {
-    let mut arm = Sprung::new();
-    for (spring, damper, recorded) in RECORDED {
-        let ratios = arm.ratios(spring, damper);
-        let off = ratios.component_div(&JointVector::from(recorded));
+    let runs = Sprung::new(Arm::realistic(RobotKind::Fr3)).runs();
+    for ((spring, _, recorded), rows) in RECORDED.iter().zip(&runs) {
+        let off = ratios(rows).component_div(&JointVector::from(*recorded));
         let off = off.add_scalar(-1.0);
         assert!(off.amax() < OFF_MAX, "{spring} N m/rad: {off:.3}");
     }

@@ -4,6 +4,7 @@
 //! values computed from all its states.
 
 mod four_gains;
+mod friction;
 mod rows;
 
 use franka_model::{
