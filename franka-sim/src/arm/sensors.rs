@@ -8,7 +8,7 @@ use franka_model::{JointVector, joint_vector};
 pub struct Sensors {
     /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this value, and the torque
     /// of the torque loop is lower by it. Sources: `tau_J` at rest minus the gravity torques of the
-    /// model, in published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
+    /// model, in published states of two FERs and two FR3s; MTI TU Berlin, five Pandas.
     pub torque_offset: JointVector,
     /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
     /// (joints 1 to 4) and 0.006 (5 to 7).
