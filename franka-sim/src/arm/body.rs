@@ -23,6 +23,7 @@ pub struct Body {
     /// Pose of each joint's true frame in the frame that `state_geometry` gives for this joint.
     /// `O_T_EE` does not show this error. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2
     /// to 1 mm.
+    /// The rotation about a joint's own axis is an error of its zero position.
     pub kinematic_error: [Isometry3<f64>; 7],
     /// Undeclared mass on the flange besides tool and payload, `[kg]`, at the centre of mass of the
     /// tool. Source: the small sag at the start of a session rules out 0.2 kg on two FERs.

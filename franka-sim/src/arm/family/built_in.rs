@@ -96,7 +96,7 @@ impl Family {
             position_noise: constant(2e-06),
             mass_error: uniform(-0.03, 0.03),
             com_error: uniform(-0.005, 0.005),
-            axis_error: normal(0.0, 0.002),
+            axis_error: normal(0.0, 0.004),
             length_error: normal(0.0, 0.0005),
             state_length_excess: constant(0.0002),
             state_axis_error: constant(0.0),
