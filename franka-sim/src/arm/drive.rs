@@ -9,8 +9,9 @@ pub struct Drive {
     /// FR3 model, "given by Franka".
     pub rotor_inertia: JointVector,
     /// Gain of the inner loop that makes the torque between gear and link follow the command. The
-    /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Source: a gain of 2 turns the
-    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`.
+    /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Sources: a gain of 2 turns the
+    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`; a fit to a recorded Franka
+    /// Research 3 is between 1.3 (joint 4) and more than 4 (wrist).
     pub torque_loop_gain: f64,
     /// Time constant of the first-order lag with which the torque follows a command of the torque
     /// interface, `[s]`. No source is known. A force bandwidth of 10 Hz and the gains that run on
@@ -23,6 +24,8 @@ pub struct Drive {
     pub elasticity: Option<Elasticity>,
     /// Torque ripple of the gears.
     pub ripple: Ripple,
+    /// Torque on the links that depends on the joint's angle.
+    pub pose_torque: PoseTorque,
 }
 
 /// Springs and dampers between rotors and links.
@@ -41,11 +44,25 @@ pub struct Elasticity {
 /// A torque that depends on the motor's angle: `amplitude · sin(order · angle)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ripple {
-    /// Amplitude, `[N·m]`. Source: the log of Gaz et al., 0.1 to 0.25 (joints 1 to 4), 0.02 (5 and
-    /// 6).
+    /// Amplitude, `[N·m]`. Sources: the log of Gaz et al. and a recorded Franka Research 3, for joints
+    /// 1 to 7: 0.1 to 0.2, 0.17 to
+    /// 0.22, 0.03 to 0.09, 0.16 to 0.2, 0.015 to 0.02 (5 and 6), 0.003.
     pub amplitude: JointVector,
-    /// Periods per turn of the joint. Source: the same log, 241 to 243 and 160.
+    /// Periods per turn of the joint. Source: the same logs, 239.5 to 243 and 160.
     pub order: JointVector,
+}
+
+/// A torque on the link of each joint that the robot's model lacks, such as that of cables:
+/// `sine · sin(angle) + cosine · cos(angle)`, to be subtracted.
+///
+/// Source: the log of Gaz et al., in which such a term lowers the unexplained torque of joint 4
+/// from 0.23 to 0.14 N·m. That is an amplitude of 0.26 N·m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseTorque {
+    /// `[N·m]`
+    pub sine: JointVector,
+    /// `[N·m]`
+    pub cosine: JointVector,
 }
 
 /// Rotor inertia of a Franka Research 3 under its torque loop, `[kg·m²]`.
@@ -73,6 +90,7 @@ impl Drive {
             command_delay: 1,
             elasticity: None,
             ripple: Ripple::NONE,
+            pose_torque: PoseTorque::NONE,
         }
     }
 
@@ -91,6 +109,19 @@ impl Drive {
         };
         let spring = (elasticity.damping + elasticity.stiffness * dt) * dt;
         felt.zip_map(&spring, |felt, spring| spring * felt / (felt + spring))
+    }
+}
+
+impl PoseTorque {
+    /// No such torque.
+    pub const NONE: Self = Self {
+        sine: joint_vector([0.0; 7]),
+        cosine: joint_vector([0.0; 7]),
+    };
+
+    /// Torques at these angles, `[N·m]`.
+    pub(crate) fn at(&self, q: &JointVector) -> JointVector {
+        self.sine.component_mul(&q.map(f64::sin)) + self.cosine.component_mul(&q.map(f64::cos))
     }
 }
 

@@ -10,7 +10,8 @@ mod distribution;
 pub use distribution::{Distribution, Values};
 
 use super::{
-    Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors, StateGeometry, SystemLimits,
+    Arm, Body, Bristle, Drive, Elasticity, Friction, PoseTorque, Ripple, Sensors, StateGeometry,
+    SystemLimits,
 };
 use crate::network::Stalls;
 use crate::noise::Random;
@@ -77,6 +78,8 @@ pub struct Family {
     pub ripple_amplitude: Distribution,
     /// Periods of the torque ripple per turn of the joint.
     pub ripple_order: Distribution,
+    /// Each of the two coefficients of [`PoseTorque`], `[N·m]`.
+    pub pose_torque: Distribution,
     /// Zero error of the torque sensors, `[N·m]`.
     pub torque_offset: Distribution,
     /// Step of the torque sensors, `[N·m]`.
@@ -220,6 +223,7 @@ impl Family {
             ("rotor_inertia", &self.rotor_inertia, Positive),
             ("ripple_amplitude", &self.ripple_amplitude, NotNegative),
             ("ripple_order", &self.ripple_order, NotNegative),
+            ("pose_torque", &self.pose_torque, Any),
             ("torque_offset", &self.torque_offset, Any),
             ("torque_quantum", &self.torque_quantum, NotNegative),
             (
@@ -286,7 +290,7 @@ impl Family {
             }),
             link_share: draw.joints(&self.link_share),
         };
-        let drive = Drive {
+        let mut drive = Drive {
             rotor_inertia: draw.joints(&self.rotor_inertia),
             torque_loop_gain: draw.once(&self.torque_loop_gain),
             torque_lag: draw.once(&self.torque_lag),
@@ -299,6 +303,7 @@ impl Family {
                 amplitude: draw.joints(&self.ripple_amplitude),
                 order: draw.joints(&self.ripple_order),
             },
+            pose_torque: PoseTorque::NONE,
         };
         let mut sensors = Sensors {
             torque_offset: draw.joints(&self.torque_offset),
@@ -335,6 +340,10 @@ impl Family {
         let body = Body {
             state_geometry: self.state_geometry(kind, &mut draw),
             ..body
+        };
+        drive.pose_torque = PoseTorque {
+            sine: draw.joints(&self.pose_torque),
+            cosine: draw.joints(&self.pose_torque),
         };
         Arm {
             friction,

@@ -7,7 +7,7 @@
 //! | module | content |
 //! |---|---|
 //! | `friction` | [`Friction`] of the joints |
-//! | `drive` | [`Drive`]: rotors, torque loop, elasticity, ripple |
+//! | `drive` | [`Drive`]: rotors, torque loop, elasticity, ripple, torque by pose |
 //! | `sensors` | [`Sensors`]: offset, noise and quanta |
 //! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
 //! | `limits` | [`SystemLimits`]: joint limits by the robot's system |
@@ -25,7 +25,7 @@ mod sensors;
 mod state_geometry;
 
 pub use body::{Body, EndStops};
-pub use drive::{Drive, Elasticity, Ripple};
+pub use drive::{Drive, Elasticity, PoseTorque, Ripple};
 pub use family::{Distribution, Elastic, Family, FamilyError, Values};
 pub use friction::{Bristle, Friction};
 pub use limits::SystemLimits;

@@ -75,6 +75,7 @@ fn samples_fill_their_distributions_and_stay_within() {
         (squares / arms.len() as f64).sqrt()
     };
     assert!((rms(&|arm| arm.sensors.torque_offset[1]) - 0.3).abs() < 0.02);
+    assert!((rms(&|arm| arm.drive.pose_torque.cosine[1]) - 0.15).abs() < 0.01);
     let turn = |arm: &Arm| arm.body.kinematic_error[5].rotation.scaled_axis().x;
     assert!((rms(&turn) - 0.004).abs() < 2e-4);
     let tilt = |arm: &Arm| arm.body.gravity_earth.x / 9.81;
@@ -87,6 +88,7 @@ fn a_central_arm_is_the_middle_and_only_an_fer_stalls() {
     assert!((arm.drive.torque_lag - 0.0035).abs() < 1e-12);
     assert_eq!(arm.drive.command_delay, 1);
     assert_eq!(arm.sensors.torque_offset, JointVector::zeros());
+    assert_eq!(arm.drive.pose_torque, PoseTorque::NONE);
     assert_eq!(arm.body.kinematic_error, [Isometry3::identity(); 7]);
     assert!((arm.friction.static_torque[0] - 1.0325).abs() < 1e-12);
     assert_eq!(arm.stalls, Some(Stalls::FER));

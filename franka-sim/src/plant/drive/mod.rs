@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  command ── − offset ──> torque loop, rotor ──> spring, damper ──┬──> link (the plant)
-//!                          ripple, friction       T: tau_J reads   └ friction
+//!                          ripple, friction       T: tau_J reads   └ friction, torque by pose
 //! ```
 //!
 //! The plant solves `(M + inertia + dt·damping + slope) q̈ = torque + external − bias − stops` with
@@ -141,11 +141,12 @@ impl DriveTrain {
     ) {
         let motor = command - self.torque_offset - self.ripple();
         let before = *plant.dq();
+        let by_pose = self.drive.pose_torque.at(plant.q());
         let mut link = LinkTorque::ZERO;
         let mut drives = [JointStep::default(); 7];
         for i in 0..7 {
             drives[i] = self.joint(i, motor[i], plant.q()[i], before[i], dt);
-            link.torque[i] = drives[i].torque - drives[i].link_friction.torque;
+            link.torque[i] = drives[i].torque - drives[i].link_friction.torque - by_pose[i];
             link.inertia[i] = drives[i].inertia;
             link.damping[i] = drives[i].damping;
         }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::DriveTrain;
 use crate::Tool;
-use crate::arm::{Arm, EndStops, Friction, Ripple, Sensors};
+use crate::arm::{Arm, EndStops, Friction, PoseTorque, Ripple, Sensors};
 use crate::plant::{External, Plant, RigidArm};
 
 /// The robots' step, `[s]`.
@@ -277,5 +277,26 @@ fn an_offset_of_the_sensor_lowers_the_torque_on_the_link() {
             rest.step(&gravity.add_scalar(0.2));
         }
         assert!(rest.plant.dq().amax() < 1e-9, "{name}: {}", rest.plant.dq());
+    }
+}
+
+#[test]
+fn a_torque_by_pose_pulls_the_link_and_shows_in_the_sensed_torque() {
+    let mut arm = steady(Friction::NONE);
+    arm.drive.pose_torque = PoseTorque {
+        sine: JointVector::repeat(0.2),
+        cosine: JointVector::repeat(-0.3),
+    };
+    let pull = READY.map(|angle| 0.2 * angle.sin() - 0.3 * angle.cos());
+    for (name, mut bench) in Bench::each(&arm) {
+        let before = *bench.train.torque();
+        for _ in 0..400 {
+            let model = Model::physically_consistent(KIND);
+            let gravity = model.gravity(bench.plant.q(), &Load::NONE, &GRAVITY_EARTH);
+            bench.step(&(gravity + pull));
+        }
+        let (dq, sensed) = (bench.plant.dq(), bench.train.torque() - before);
+        assert!(dq.amax() < 2e-3, "{name}: {dq}");
+        assert!((sensed - pull).amax() < 0.01, "{name}: {sensed}");
     }
 }
