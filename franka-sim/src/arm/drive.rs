@@ -45,8 +45,7 @@ pub struct Elasticity {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ripple {
     /// Amplitude, `[N·m]`. Sources: the log of Gaz et al. and a recorded Franka Research 3, for joints
-    /// 1 to 7: 0.1 to 0.2, 0.17 to
-    /// 0.22, 0.03 to 0.09, 0.16 to 0.2, 0.015 to 0.02 (5 and 6), 0.003.
+    /// 1 to 7: 0.1 to 0.2, 0.17 to 0.22, 0.03 to 0.09, 0.16 to 0.2, 0.015 to 0.02 (5 and 6), 0.003.
     pub amplitude: JointVector,
     /// Periods per turn of the joint. Source: the same logs, 239.5 to 243 and 160.
     pub order: JointVector,
