@@ -163,7 +163,7 @@ fn an_arm_that_was_held_back_comes_home_without_a_kick() {
             lockstep.until_resolved(goal, 5000).expect("it arrives");
         }
         for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
-            let from = lockstep.arm_pose().translation.vector;
+            let from = lockstep.robot.true_pose().translation.vector;
             let last = PUSH as f64 * 1e-3;
             let path = move |t: f64| from + way * hand(t.min(last)) / 3.0;
             let push = lockstep.robot.touch(Touch::carry(path, STIFFNESS));
@@ -202,7 +202,7 @@ fn slow_push(arm: Arm, way: Vector3<f64>, distance: f64, gains: Gains) -> [f64; 
         goal.expect("within reach");
         lockstep.run(2000);
     }
-    let from = lockstep.arm_pose().translation.vector;
+    let from = lockstep.robot.true_pose().translation.vector;
     let path = move |t: f64| from + way * (0.02 * t).min(distance);
     let push = lockstep.robot.touch(Touch::carry(path, STIFFNESS));
     let (mut most, mut last) = (0.0_f64, 0.0);
@@ -261,7 +261,7 @@ fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
                 goal.expect("within reach");
                 lockstep.run(2000);
             }
-            let from = lockstep.arm_pose().translation.vector;
+            let from = lockstep.robot.true_pose().translation.vector;
             let stop = from + Vector3::y() * (0.05 - short);
             let target = Translation3::new(0.0, 0.05, 0.0) * home;
             let goal = lockstep.within(engaged, target.into(), OnArrival::Hold);
@@ -271,7 +271,7 @@ fn an_arm_that_was_stopped_on_its_way_comes_home_without_a_kick() {
             let mut felt = 0.0_f64;
             for cycle in 0..5000 {
                 lockstep.tick();
-                let at = lockstep.arm_pose().translation.vector;
+                let at = lockstep.robot.true_pose().translation.vector;
                 if block.is_none() && at.y >= stop.y {
                     block = Some(lockstep.robot.touch(Touch::carry(move |_| at, STIFFNESS)));
                 }

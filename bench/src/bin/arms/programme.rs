@@ -300,7 +300,7 @@ impl Programme {
 
     /// Lets a hand guide the arm 10 cm to the side and back and then release it, and moves home.
     fn guide(&mut self) -> Result<(), Ended> {
-        let from = self.lockstep.arm_pose().translation.vector;
+        let from = self.lockstep.robot.true_pose().translation.vector;
         // The springs have released the arm by then.
         let turned = |t: f64| ((t - 0.4) / 2.0).clamp(0.0, 1.0) * core::f64::consts::TAU;
         let path = move |t: f64| from + Vector3::y() * (0.05 * (1.0 - turned(t).cos()));
@@ -405,7 +405,7 @@ impl Programme {
             for _ in 0..1500 {
                 self.tick()?;
             }
-            let from = self.lockstep.arm_pose().translation.vector;
+            let from = self.lockstep.robot.true_pose().translation.vector;
             let push = self
                 .lockstep
                 .robot
