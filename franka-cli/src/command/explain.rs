@@ -126,7 +126,10 @@ impl Recorded {
         })?;
         let name = robot.name.clone();
         let model = recording.robot(&name)?.model().with_context(|| {
-            format!("{} does not name the kind of its robot", self.file.display())
+            format!(
+                "{} does not name the kind of its robot",
+                self.file.display()
+            )
         })?;
         Ok(Opened {
             recording,
