@@ -7,6 +7,7 @@ use franka_model::READY;
 use franka_proto::{CommandId, MotionGeneratorMode, MoveStatus, RobotMode, RobotState, Violation};
 
 use super::ending::STILL_SHOWN;
+use super::goal_progress::Verdict;
 use super::*;
 use crate::control::{Failure, Modes};
 use crate::driver::{Driver, Event};
@@ -269,4 +270,73 @@ fn two_paths_that_wait_for_the_same_end_do_not_change_places() {
         pair.driver.record().q_ref[0] > READY[0] + 0.001,
         "it follows its own path"
     );
+}
+
+#[test]
+fn robot_that_runs_a_motion_and_answers_no_move_is_blamed_for_that() {
+    let mut pair = LifecycleAndDriver::new();
+    let limits = Model::fr3().joint_limits();
+    let goal = Goal::new(GoalId(1), Target::Rest, OnArrival::Hold, limits);
+    let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
+    assert_eq!(begun, Ok(()));
+    pair.settle();
+    let Some(Request::Move(request)) = pair.sent.last() else {
+        panic!("{:?}", pair.sent)
+    };
+    let modes = Modes::of(request);
+    pair.state.motion_generator_mode = modes.generator;
+    pair.state.controller_mode = modes.controller;
+    assert!(pair.cycle(RobotMode::Move));
+    pair.lifecycle.on_time(NOW + START_TIMEOUT, None);
+    pair.settle();
+    assert_eq!(pair.sent.last(), Some(&Request::StopMove));
+    pair.lifecycle
+        .on_move_reply(MotionId(1), MoveStatus::Preempted, NOW);
+    pair.state.motion_generator_mode = MotionGeneratorMode::Idle;
+    pair.cycle(RobotMode::Idle);
+    let what = "the robot never answered the Move command";
+    let blamed = Err(MotionError::Protocol { what });
+    assert_eq!(pair.resolved, [(GoalId(1), blamed)]);
+}
+
+/// The arm has settled and is being released when the next goal comes.
+#[test]
+fn goal_that_has_settled_is_not_superseded() {
+    let (mut pair, _, goal) = LifecycleAndDriver::moving();
+    let has_settled = |pair: &LifecycleAndDriver| {
+        let goals = pair.lifecycle.goals();
+        matches!(goals.map(|it| &it.verdict), Some(Verdict::Settled(_)))
+    };
+    let settles = (0..5000).any(|_| {
+        let record = pair.driver.record();
+        (pair.state.q, pair.state.dq) = (record.q_ref, record.dq_ref);
+        pair.cycle(RobotMode::Move);
+        has_settled(&pair)
+    });
+    assert!(settles && pair.resolved.is_empty());
+    let limits = Model::fr3().joint_limits();
+    let next = Goal::new(GoalId(2), Target::Rest, OnArrival::Hold, limits);
+    let begun = pair.lifecycle.begin(NewMotion::to(next), &pair.state, NOW);
+    assert_eq!(begun, Ok(()));
+    pair.settle();
+    assert!(
+        matches!(&pair.resolved[..], [(id, Ok(_))] if *id == goal),
+        "{:?}",
+        pair.resolved
+    );
+}
+
+#[test]
+fn cancelled_goal_leaves_the_goal_that_waits_as_it_is() {
+    let (mut pair, motion, goal) = LifecycleAndDriver::moving();
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Preempted, NOW);
+    let mut q: [f64; 7] = READY.into();
+    q[0] += 0.1;
+    let (target, limits) = (Target::Joints(q), Model::fr3().joint_limits());
+    let next = Goal::new(GoalId(2), target, OnArrival::ReportAndFinish, limits);
+    let begun = pair.lifecycle.begin(NewMotion::to(next), &pair.state, NOW);
+    assert_eq!(begun, Ok(()));
+    pair.lifecycle.cancel(goal, NOW);
+    assert_eq!(pair.lifecycle.heading(), Some((GoalId(2), target)));
 }

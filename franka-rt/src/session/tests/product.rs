@@ -90,7 +90,7 @@ const REST: f64 = 1e-3;
 /// A session whose arm is always at its reference.
 struct Bench {
     session: TargetSession,
-    goals: SlotWriter<Goal>,
+    goals: Writer<Goal>,
     chunks: ChunkWriter,
     deadman: Option<Deadman>,
     coordinator: Coordinator,
@@ -185,7 +185,7 @@ impl Bench {
 
     fn write(&mut self, goal: Goal) {
         self.current = goal;
-        self.goals.write(&goal);
+        self.goals.write(goal);
     }
 
     fn take(&mut self, step: Step) {
