@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_no_place_says_what_is_wrong() {
+    fn invalid_endpoint_is_refused_with_the_reason() {
         for (text, says) in [
             ("", "`` has no host: expected a host name or an IP address"),
             (

@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn of_the_targets_that_wait_the_newest_is_taken() {
+    fn newest_waiting_target_is_taken() {
         let target = |x: f64| Target::Joints([x; 7]);
         let mut targets: Targets =
             Box::pin(futures::stream::iter((0..5).map(f64::from)).map(target));

@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_without_a_pose_has_the_lengths_of_before_if_it_describes_the_same() {
+    fn robot_without_pose_keeps_lengths_of_same_description() {
         let model = Model::fr3();
         let [described, recorded] = Lengths::KNOWN;
         let none = RobotState {

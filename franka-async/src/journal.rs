@@ -336,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_reader_loses_remarks_and_counts_them_but_no_connection_and_a_gone_one_is_forgotten() {
+    fn journal_drops_remarks_but_no_connection_for_full_reader() {
         let journal = Journal::default();
         journal.write(|| panic!("nobody reads this"));
         let read = |track| {

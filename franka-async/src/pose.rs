@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_pose_is_refused() {
+    fn invalid_pose_is_refused() {
         let (there, upright) = ([0.1, 0.2, 0.3], [0.0, 0.0, 0.0, 1.0]);
         assert!(from_xyzw(there, upright).is_some());
         assert_eq!(from_xyzw(there, [0.0; 4]), None);

@@ -92,7 +92,7 @@ mod tests {
     /// In both protocols, 2 kg of payload and 1 kg of end effector weigh 3 kg together, for any
     /// direction of gravity in the state.
     #[test]
-    fn what_a_state_carries_weighs_in_its_terms() {
+    fn gravity_of_a_state_includes_payload_and_end_effector() {
         let state = RobotState {
             q: READY.into(),
             m_ee: 1.0,

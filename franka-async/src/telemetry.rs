@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_goes_on_is_warned_of_ever_more_rarely_until_it_pauses() {
+    fn lasting_warning_repeats_ever_more_rarely_until_a_pause() {
         let begin = crate::world::now();
         let mut backoff = Backoff::default();
         let mut due = |second: u64| backoff.take(begin + Duration::from_secs(second));

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_can_act_on_an_error_decides_how_it_ends() {
+    fn ending_follows_from_who_can_act_on_the_error() {
         let of = |error: anyhow::Error| Ending::of(&error);
         let silent: ConnectError = ConnectError::Timeout {
             address: ([172, 16, 0, 2], 1337).into(),

@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_force_is_that_on_the_arm_and_the_place_is_that_of_the_push() {
+    fn contact_matches_the_force_and_place_of_the_push() {
         for push in [[0.0, 40.0, 0.0], [0.0, -40.0, 0.0]] {
             let push = Vector3::from(push);
             let mut robot = Robot::new(Config {

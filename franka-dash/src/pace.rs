@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn no_point_of_the_guard_capsules_is_further_from_an_axis_than_the_reach() {
+    fn reach_covers_every_point_of_the_guard_capsules() {
         let model = Model::fr3();
         let reach = reach(model.lengths(), 0.1034);
         for q in postures(model) {

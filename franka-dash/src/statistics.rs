@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_told_is_what_has_come_since() {
+    fn spread_covers_only_counts_since_the_last_report() {
         let buckets = |counts: &[(u64, u64)]| -> Buckets {
             let each = counts.iter();
             each.map(|(us, count)| (Duration::from_micros(*us), *count))

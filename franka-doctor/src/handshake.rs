@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_version_in_the_field_is_understood_or_names_the_system_to_install() {
+    fn handshake_names_version_or_the_system_to_install() {
         for (number, system) in [
             (3, "4.2.1"),
             (4, "4.2.1"),

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn the_median_and_losses_decide_and_a_short_measurement_is_never_good() {
+    fn ping_is_judged_by_median_and_losses_if_long_enough() {
         use Verdict::{Failure, Good, Info, Warning};
         for (round_trips, expected) in [
             // The vendor's example.

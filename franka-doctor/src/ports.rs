@@ -95,7 +95,7 @@ mod tests {
     use crate::finding::Verdict;
 
     #[test]
-    fn refused_and_silent_ports_have_their_reasons_and_end_effectors_may_be_missing() {
+    fn closed_port_has_a_reason_and_end_effector_is_optional() {
         let find = |port: &Port, kind: io::ErrorKind| port.finding(Err(kind.into()), Purpose::Move);
         let [robot, hand, _] = &PORTS;
         let refused = find(robot, io::ErrorKind::ConnectionRefused);

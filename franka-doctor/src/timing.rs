@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_latency_decides_and_a_short_measurement_is_never_good() {
+    fn timing_is_judged_by_worst_latency_if_long_enough() {
         for (count, worst, woken, echoed) in [
             (10_000, 99, Verdict::Good, Verdict::Good),
             (9_999, 99, Verdict::Info, Verdict::Info),

@@ -102,7 +102,7 @@ fn self_signed() -> Arc<ServerConfig> {
 }
 
 #[test]
-fn a_desk_with_its_own_certificate_says_why_a_connection_is_refused() {
+fn self_signed_desk_says_why_a_connection_is_refused() {
     let address = serve(cold, Some(self_signed()));
     let state = ask_desk(address);
     let finding = web(&state, Purpose::Move);
@@ -129,7 +129,7 @@ fn a_desk_without_tls_is_asked_plainly() {
 }
 
 #[test]
-fn what_is_no_desk_is_unknown() {
+fn web_finding_is_unknown_without_a_desk() {
     let (free, address) = listener();
     drop(free);
     let refused = web(&ask_desk(address), Purpose::Move);

@@ -79,7 +79,7 @@ fn reports_are_those_in_golden() {
 }
 
 #[test]
-fn what_each_host_is_known_for_is_found() {
+fn report_finds_the_known_facts_of_each_host() {
     use Verdict::{Failure, Good, Info, Unknown, Warning};
     for (host, id, expected) in [
         ("ubuntu_pro_realtime", "kernel.rt", Good),
@@ -254,7 +254,7 @@ fn unknown_findings_say_what_is_missing_and_have_no_fix() {
 }
 
 #[test]
-fn every_finding_has_its_wish_its_reason_and_its_source_and_an_id_of_its_own() {
+fn findings_have_wish_reason_source_and_unique_id() {
     let report = report("usb_card", Purpose::Move);
     let book = include_str!("../../docs/src/doctor.md");
     for (index, finding) in report.findings.iter().enumerate() {
@@ -278,7 +278,7 @@ fn every_finding_has_its_wish_its_reason_and_its_source_and_an_id_of_its_own() {
 }
 
 #[test]
-fn json_has_what_was_read_without_names_and_serial_numbers_unless_asked() {
+fn json_hides_names_and_serial_numbers_unless_asked() {
     let doctor = Doctor::new(Purpose::Move).robot(ROBOT);
     for (host, hidden) in [
         ("raspberry_pi5", "serial=10000000abcdef01"),

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_deviating_arm_has_its_origins_one_after_the_other_and_a_jacobian_to_match() {
+    fn jacobian_of_deviating_arm_matches_its_chained_origins() {
         let mut random = Random::new(6);
         let arm = AsBuilt::exactly(Model::fr3()).with_deviations(&deviations());
         let ee = EndEffector::default();

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn the_swivel_is_zero_with_the_elbow_on_top_and_the_turn_from_there_elsewhere() {
+    fn swivel_is_zero_at_the_top_and_the_turn_from_there() {
         assert_eq!(swivel(&Lengths::DESCRIBED, &READY), Some(0.0));
         let mut random = Random::new(11);
         for _ in 0..1000 {
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn the_swivel_is_undefined_above_the_shoulder_and_with_a_stretched_elbow() {
+    fn swivel_is_undefined_overhead_and_at_stretched_elbow() {
         assert_eq!(swivel(&Lengths::DESCRIBED, &JointVector::zeros()), None);
         let mut q = READY;
         q[3] = FLIP_ANGLE;

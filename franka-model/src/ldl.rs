@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_positive_definite_has_no_factorisation() {
+    fn matrix_not_positive_definite_has_no_factorisation() {
         assert!(Ldl::of(&[[1.0, 0.0], [2.0, 1.0]]).is_none());
         assert!(Ldl::of(&[[0.0, 0.0], [0.0, 1.0]]).is_none());
         assert!(Ldl::of(&[[1.0, 0.0], [0.0, f64::NAN]]).is_none());

@@ -86,7 +86,7 @@ mod tests {
     use crate::{Model, READY, RobotKind};
 
     #[test]
-    fn in_the_middle_the_margin_is_one_at_a_limit_zero_and_beyond_negative() {
+    fn margin_is_one_mid_range_zero_at_limit_negative_beyond() {
         let rest = JointVector::zeros();
         for kind in RobotKind::ALL {
             let limits = JointLimits::of(kind);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tightest_joint_is_the_one_nearest_to_a_limit_for_its_range() {
+    fn tightest_joint_is_nearest_to_a_limit_for_its_range() {
         let limits = Model::fr3().joint_limits();
         let mut q = READY;
         q[3] = limits.upper[3] - 0.01;

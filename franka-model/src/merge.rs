@@ -41,7 +41,7 @@ mod tests {
         RigidBody::new(1.5, [0.02, 0.05, 0.13], [4e-3, 0.0, 0.0, 5e-3, 0.0, 6e-3]);
 
     #[test]
-    fn without_its_own_lever_the_inertias_and_the_loads_lever_remain() {
+    fn merge_without_own_lever_keeps_inertias_and_load_lever() {
         let rule = Merge::WithoutOwnLever((LINK.mass, LINK.com.into()));
         let joined = rule.join(&LINK, &LOAD);
         let levered = Symmetric3::of_point(LOAD.mass, &(LOAD.com - joined.com));

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn along_a_direction_that_is_lost_the_effective_mass_is_infinite() {
+    fn effective_mass_is_infinite_along_a_lost_direction() {
         // Joint 1 turns its frame about z and does not move its origin.
         let still = EndEffector::default();
         let space = Model::fr3()

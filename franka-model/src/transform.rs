@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_rotation_is_the_orthogonal_factor_of_the_singular_value_decomposition() {
+    fn nearest_rotation_is_the_orthogonal_factor_of_the_svd() {
         let mut random = Random::new(2);
         for _ in 0..1000 {
             let noise = Matrix3::from_fn(|_, _| random.uniform(-0.3, 0.3));
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_pose_is_refused() {
+    fn invalid_pose_is_refused() {
         let good = pose(&mut Random::new(3));
         assert!(isometry(&matrix(&good)).is_some());
         assert!(isometry(&matrix(&good).transpose()).is_none());

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
+    fn early_axis_at_a_moving_target_has_blocked_durations() {
         // The axis has the target's velocity, slightly short of the target. To arrive later, it
         // must first move back.
         let task = Task {

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_come_out_in_order_and_a_full_queue_returns_what_it_cannot_take() {
+    fn queue_keeps_order_and_returns_values_when_full() {
         let (mut sender, mut receiver) = queue(3);
         for value in 0..3 {
             sender.push(value).unwrap();

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_handler_of_the_process_does_not_run_on_a_thread_with_blocked_signals() {
+    fn signal_handler_skips_threads_with_blocked_signals() {
         // SAFETY: the handler only adds to an atomic, which is async-signal-safe; nothing else in
         // this process uses the signal.
         unsafe { libc::signal(libc::SIGUSR2, handle as *const () as libc::sighandler_t) };

@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_published_has_the_precision_of_the_state() {
+    fn published_signal_has_the_precision_of_the_state() {
         let signal = JointSignal::resting(JointVector::repeat(0.1)).published(Precision::Single);
         assert_eq!(signal.q[0], f64::from(0.1_f32));
         let signal = JointSignal::resting(JointVector::repeat(0.1));

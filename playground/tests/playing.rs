@@ -97,7 +97,7 @@ fn a_hard_push_stops_the_arm_which_says_why_and_recovers() {
 }
 
 #[test]
-fn an_arm_that_something_holds_stops_or_waits_and_goes_on_when_let_go() {
+fn held_arm_stops_or_waits_and_goes_on_when_released() {
     for_each_arm(|mut playground| {
         playground.block(true);
         let target = moved(&playground.view().target, [0.0, 0.15, 0.0]);

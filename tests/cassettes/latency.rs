@@ -18,7 +18,7 @@ const CYCLE: Duration = Duration::from_millis(1);
 /// `cargo nextest run -p franka-tests --test cassettes latency --run-ignored all --no-capture`
 #[test]
 #[ignore = "a measurement"]
-fn of_a_state_and_its_answer() {
+fn round_trip_of_state_and_answer_is_measured() {
     let direct = round_trips(|robot| (robot, None));
     let path = std::env::temp_dir().join(format!("franka-latency-{}.mcap", std::process::id()));
     let tapped = round_trips(|robot| {

@@ -150,7 +150,7 @@ async fn another_request_is_named_beside_the_recorded_one() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_tap_ends_connections_when_the_robot_dies_and_the_file_is_whole() {
+async fn tap_ends_connections_with_the_robot_and_keeps_its_file() {
     let sim = simulated(Version::V10).await;
     let (tap, addresses, path) = tap(&sim);
     let robot = connect(addresses).await;

@@ -67,7 +67,7 @@ fn scenario_15_a_panic_in_a_control_function_stops_the_robot() {
 }
 
 #[test]
-fn a_control_function_that_gives_up_stops_the_robot_and_its_code_is_the_error() {
+fn control_function_giving_up_stops_robot_with_its_code() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let mut cycle = 0;
@@ -89,7 +89,7 @@ fn a_control_function_that_gives_up_stops_the_robot_and_its_code_is_the_error() 
 
 /// The outcome is the panic, the cause of the other events.
 #[test]
-fn scenario_15_a_panic_is_reported_even_if_the_robot_does_not_stop() {
+fn scenario_15_panic_is_reported_even_without_a_stop() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = torques(version, |_, _| -> Torques { panic!("no more ideas") });

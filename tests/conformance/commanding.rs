@@ -46,7 +46,7 @@ const NO_CONTROLLER: &str =
 const PARTIAL: &str = "libfranka robot: Trying to send partial robot command!";
 
 #[test]
-fn scenario_4_torques_are_refused_under_the_robots_own_controller() {
+fn scenario_4_robots_own_controller_refuses_torques() {
     for_each_version(|version| {
         for controller in [
             MoveControllerMode::JointImpedance,
@@ -169,7 +169,7 @@ fn scenario_6_torques_alone() {
 /// Protocol 5 has no such motion: it cannot be requested, and torques run together with a generator
 /// at rest.
 #[test]
-fn scenario_6_torques_alone_are_beside_a_standing_generator_in_protocol_5() {
+fn scenario_6_lone_torques_run_with_a_still_generator() {
     let version = Version::V5;
     let alone = MoveRequest::new(
         MoveControllerMode::ExternalController,

@@ -120,7 +120,7 @@ fn scenario_18_every_answer_to_every_command_of_the_hand() {
 }
 
 #[test]
-fn scenario_18_every_answer_to_every_command_of_the_vacuum_gripper() {
+fn scenario_18_vacuum_gripper_answers_are_all_handled() {
     assert_eq!(vacuum::Command::SERVICE, "libfranka vacuum gripper");
     Connection::check(
         vacuum::Version::V1,

@@ -118,7 +118,7 @@ fn scenario_9_a_motion_that_is_finished_at_speed() {
 }
 
 #[test]
-fn scenario_10_a_motion_with_torques_has_finished_when_its_modes_are_no_longer_shown() {
+fn scenario_10_torque_motion_ends_when_modes_are_gone() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = moving(version, true, 2);
@@ -221,7 +221,7 @@ fn scenario_11_a_stop_that_is_refused() {
 }
 
 #[test]
-fn scenario_12_a_reflex_ends_the_motion_with_its_reason_and_the_log() {
+fn scenario_12_reflex_ends_motion_with_reason_and_log() {
     for_each_version(|version| {
         for said_first in [false, true] {
             for (lost, rate) in [

@@ -59,7 +59,7 @@ fn scenario_2_a_second_without_a_state_loses_the_link() {
 /// an ended motion; libfranka names the connection once more. `tests/live/ending.rs` closes real
 /// sockets in every phase of a motion.
 #[test]
-fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
+fn scenario_2_closed_connection_ends_motion_and_torques() {
     let closed = "libfranka: server closed connection";
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
@@ -90,7 +90,7 @@ fn scenario_2_a_closed_connection_ends_the_motion_and_refuses_torques() {
 /// States may continue after the end of the stream. A control function, which can no longer be
 /// stopped, gets none of them.
 #[test]
-fn scenario_2_a_control_function_gets_no_states_after_the_connection_closed() {
+fn scenario_2_control_function_gets_no_states_once_closed() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let callback = Callback::torques(version, |_, _| TORQUES);
@@ -105,7 +105,7 @@ fn scenario_2_a_control_function_gets_no_states_after_the_connection_closed() {
 }
 
 #[test]
-fn scenario_7_a_command_echoes_the_id_of_the_state_that_it_answers() {
+fn scenario_7_command_echoes_the_id_of_its_state() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let callback = Callback::motion(version, |_, _| JointVelocities([0.0; 7]));

@@ -72,7 +72,7 @@ fn to_ready(pair: &mut Pair) -> Goal {
 /// another caller. libfranka 0.21 has the text `Attempted to start multiple motions!` for callers
 /// that bypass its lock; here that is not possible.
 #[test]
-fn scenario_3_a_motion_runs_when_the_modes_are_there_already_and_no_second_starts() {
+fn scenario_3_motion_runs_in_present_modes_and_only_once() {
     for_each_version(|version| {
         for request in requests(version) {
             let mut pair = Pair::connected(version);
@@ -95,7 +95,7 @@ fn scenario_3_a_motion_runs_when_the_modes_are_there_already_and_no_second_start
 
 /// The robot's reply may come before or after its states show the modes.
 #[test]
-fn scenario_3_the_first_state_with_the_modes_is_answered_whatever_came_before() {
+fn scenario_3_first_state_with_the_modes_is_answered() {
     for_each_version(|version| {
         for states_first in [false, true] {
             let mut pair = Pair::connected(version);
@@ -161,7 +161,7 @@ fn scenario_8_a_refusal_after_the_start_was_reported() {
 }
 
 #[test]
-fn scenario_13_a_motion_starts_on_the_connection_of_one_that_a_reflex_ended() {
+fn scenario_13_motion_starts_after_one_ended_by_a_reflex() {
     for_each_version(|version| {
         let mut pair = Pair::connected(version);
         let (program, request) = standing(version, 100);

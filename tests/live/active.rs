@@ -64,7 +64,7 @@ async fn a_thread_holds_the_arm_by_torques_and_hands_it_back() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_the_motion_does_not_take_is_refused_and_it_goes_on() {
+async fn unfit_command_is_refused_and_the_motion_goes_on() {
     let _alone = alone();
     for (robot, _sim) in each().await {
         let control = robot.active_joint_velocities(MoveControllerMode::JointImpedance);
@@ -192,7 +192,7 @@ async fn a_stop_a_reflex_and_a_shutdown_reach_the_thread() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
+async fn panicking_thread_stops_robot_but_not_the_connection() {
     let _alone = alone();
     for (robot, _sim) in each().await {
         let control = robot.active_torques().await.unwrap();
@@ -216,7 +216,7 @@ async fn a_panic_of_the_thread_has_the_robot_stop_and_the_connection_goes_on() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_goes_on() {
+async fn hanging_thread_is_reported_and_returns_the_connection() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let control = robot.active_torques().await.unwrap();

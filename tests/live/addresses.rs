@@ -113,7 +113,7 @@ async fn a_simulator_for_both_families_serves_both() {
 }
 
 #[tokio::test]
-async fn what_names_no_robot_is_refused_before_anything_is_sent() {
+async fn invalid_address_is_refused_before_anything_is_sent() {
     let _alone = alone();
     let connect = async |endpoint: &str| {
         let builder = Robot::builder(endpoint).realtime(Realtime::Ignore);

@@ -161,7 +161,7 @@ async fn garbage_in_the_handshake_is_an_error_at_once() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
+async fn silent_closing_and_stateless_servers_are_told_apart() {
     let _alone = alone();
     let silent = server(|stream| async move {
         tokio::time::sleep(SOON).await;
@@ -214,7 +214,7 @@ async fn a_second_client_is_refused_and_the_first_is_not_disturbed() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn without_a_real_time_kernel_enforcing_fails_before_anything_is_sent() {
+async fn enforce_without_realtime_kernel_fails_before_sending() {
     let _alone = alone();
     if franka_rt::sched::kernel_is_realtime() {
         return;

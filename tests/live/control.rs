@@ -174,7 +174,7 @@ impl Drop for Bad {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn captured_values_that_panic_where_they_are_freed_end_nothing_else() {
+async fn panicking_drop_of_captured_values_ends_nothing_else() {
     let _alone = alone();
     listen();
     for (robot, _sim) in each().await {
@@ -229,7 +229,7 @@ async fn captured_values_that_panic_where_they_are_freed_end_nothing_else() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_program_has_the_arm_for_itself_until_it_is_stopped_or_dropped() {
+async fn program_has_the_arm_alone_until_stopped_or_dropped() {
     let _alone = alone();
     for (robot, _sim) in each().await {
         let turning =
@@ -316,7 +316,7 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
 
 /// The book's page for programs of libfranka states this of a simulated arm that is not ideal.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_motion_begins_where_the_robot_was_told_to_be_and_not_where_it_is_measured() {
+async fn motion_begins_at_the_desired_not_measured_position() {
     let _alone = alone();
     for sim in [Sim::fr3(), Sim::fer()] {
         let (robot, _sim) = at_the_clients_pace(sim).await;
@@ -480,7 +480,7 @@ async fn a_function_that_does_not_return_is_named_and_not_the_link() {
 }
 
 #[test]
-fn a_function_that_never_returns_keeps_neither_the_connection_nor_the_program() {
+fn stuck_function_blocks_neither_shutdown_nor_exit() {
     let _alone = alone();
     let (forever, held) = std::sync::mpsc::channel::<()>();
     let runtime = tokio::runtime::Runtime::new().unwrap();

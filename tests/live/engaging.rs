@@ -172,7 +172,7 @@ async fn a_session_ends_with_its_last_handle_or_by_a_stop() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn silence_of_a_stream_and_of_a_deadman_hold_the_arm_under_their_names() {
+async fn lapse_of_stream_or_deadman_is_named_in_the_outcome() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let start = robot.pose();

@@ -10,7 +10,7 @@ use franka_sim::Network;
 use crate::{SOON, alone, connect, long_way, simulated, under_way, until};
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_robot_that_falls_silent_is_lost_and_serves_again_once_it_is_back() {
+async fn silent_robot_is_lost_and_serves_again_once_back() {
     let _alone = alone();
     let (robot, sim) = simulated().await;
     let moving = tokio::spawn(long_way(&robot).into_future());
@@ -118,7 +118,7 @@ async fn the_last_handle_dropped_in_mid_motion_brakes_and_closes() {
 
 /// A frozen computer, as the network shows it: the connection is open, and nothing is sent.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_recovery_of_a_silent_robot_is_given_up_before_the_brakes_time() {
+async fn recovery_of_a_silent_robot_ends_with_a_lost_link() {
     let _alone = alone();
     let (robot, sim) = simulated().await;
     let (release, held) = std::sync::mpsc::channel::<()>();

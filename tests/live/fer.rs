@@ -81,7 +81,7 @@ async fn a_watch_is_followed_and_a_motion_stopped() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_only_protocol_5_has_is_there_and_what_it_lacks_is_refused_here() {
+async fn commands_of_one_protocol_are_refused_on_the_other() {
     let _alone = alone();
     let (robot, _sim) = fer().await;
     robot.set_filters(Filters::uniform(100.0)).await.unwrap();

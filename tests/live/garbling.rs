@@ -52,7 +52,7 @@ async fn replies_that_come_twice_count_once() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn replies_may_come_byte_by_byte_under_any_command_number_and_padded() {
+async fn replies_may_be_split_padded_and_of_any_command_number() {
     let _alone = alone();
     let peer = Peer::start(Manners {
         reply: |mut reply| {
@@ -102,7 +102,7 @@ async fn a_reply_without_its_status_fails_its_request_and_no_other() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn half_a_message_leaves_requests_without_an_answer_and_is_no_hang() {
+async fn half_a_message_leaves_requests_unanswered_not_hanging() {
     let _alone = alone();
     let peer = Peer::start(Manners::default());
     let robot = peer.connect().await;

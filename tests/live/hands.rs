@@ -269,7 +269,7 @@ async fn garbage_costs_a_client_its_connection_and_nobody_else() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn nobody_listening_is_a_refused_connection() {
+async fn connect_without_a_listener_is_refused() {
     let port = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let address = port.local_addr().unwrap();
     drop(port);

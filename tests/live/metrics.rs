@@ -135,7 +135,7 @@ fn sample(samples: &Samples, name: &str, robot: &str, labels: &str) -> f64 {
 }
 
 #[tokio::test]
-async fn the_text_has_the_counts_of_the_handle_and_the_mode_of_the_state() {
+async fn metrics_show_counts_of_the_handle_and_mode_of_the_state() {
     let _alone = alone();
     let (robot, sim) = simulated().await;
     let label = robot.address().to_string();
@@ -207,7 +207,7 @@ async fn the_text_has_the_counts_of_the_handle_and_the_mode_of_the_state() {
 }
 
 #[tokio::test]
-async fn robots_of_one_text_share_their_families_and_a_reflex_is_named() {
+async fn metrics_of_robots_share_families_and_name_a_reflex() {
     let _alone = alone();
     let (left, _left) = simulated().await;
     let (right, _right) = at_the_clients_pace(Sim::fer().ideal().tool(Tool::hand())).await;

@@ -109,7 +109,7 @@ async fn replies_that_nobody_waits_for_change_nothing() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_status_that_does_not_exist_is_named_and_the_connection_lives() {
+async fn unknown_status_is_named_and_the_connection_lives() {
     let _alone = alone();
     let peer = Peer::start(Manners {
         request: |command| match command {
@@ -213,7 +213,7 @@ async fn a_robot_that_does_not_begin_is_told_to_stop_and_given_up() {
 
 /// As one may that rounds the numbers that it is given.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_load_that_no_state_shows_is_waited_for_and_no_longer_than_some_states() {
+async fn set_load_waits_a_limited_time_for_the_load_to_show() {
     let _alone = alone();
     let peer = Peer::start(Manners {
         request: |command| match command {
@@ -302,7 +302,7 @@ async fn no_pose_is_followed_after_the_robot_has_gone() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn an_arm_on_its_way_is_braked_when_the_robot_closes_the_connection() {
+async fn moving_arm_is_braked_when_robot_closes_connection() {
     let _alone = alone();
     let peer = Peer::start(Manners::default());
     let robot = peer.connect().await;

@@ -27,7 +27,7 @@ async fn behind(network: Network, sim: Sim) -> (Robot, Running) {
 
 /// States that are a tenth of a second old still have the frames and the load of before.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn what_was_set_is_in_the_state_when_its_setter_resolves() {
+async fn setter_resolves_once_the_state_shows_its_value() {
     let _alone = alone();
     for sim in [Sim::fr3(), Sim::fer()] {
         let (robot, _sim) = behind(mishaps::delay(Duration::from_millis(100)), sim).await;

@@ -118,7 +118,7 @@ async fn a_speed_that_no_motion_can_have_is_refused_as_a_speed() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn nothing_moves_before_the_first_poll_and_its_handle_brakes() {
+async fn motion_waits_for_its_first_poll_and_handle_brakes_it() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let motion = crate::long_way(&robot);
@@ -135,7 +135,7 @@ async fn nothing_moves_before_the_first_poll_and_its_handle_brakes() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn what_is_cancelled_before_the_first_poll_never_begins() {
+async fn cancel_before_first_poll_never_begins() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let motion = robot.move_to(Pose::translation(0.0, 0.0, 0.02) * robot.pose());

@@ -161,7 +161,7 @@ fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
 }
 
 #[test]
-fn path_that_is_planned_gives_way_to_a_newer_goal_of_its_session() {
+fn path_in_planning_gives_way_to_newer_goal_of_session() {
     let _alone = alone();
     runtime().block_on(async {
         let scene = Scene::new().await;

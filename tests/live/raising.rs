@@ -55,7 +55,7 @@ fn threads() -> BTreeMap<u32, Scheduled> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn nothing_but_the_control_threads_is_raised_or_pinned() {
+async fn raising_and_pinning_affect_only_control_threads() {
     let _alone = alone();
     let before = threads();
     let usual = before.values().next().expect("this one").processors.clone();
@@ -128,7 +128,7 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
 /// With `Enforce`, a host that refuses a setting gets no connection, and the calling thread is
 /// unchanged.
 #[tokio::test]
-async fn what_is_enforced_and_refused_connects_nothing_and_raises_nobody() {
+async fn refused_enforced_setting_connects_and_raises_nothing() {
     let _alone = alone();
     let sim = Sim::fr3()
         .ideal()

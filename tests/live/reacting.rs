@@ -64,7 +64,7 @@ async fn a_guarded_move_ends_at_the_table_or_where_it_goes_on_to() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_stream_of_an_engaged_arm_ends_at_its_reaction_and_the_arm_is_held() {
+async fn reaction_ends_a_stream_and_holds_the_engaged_arm() {
     let _alone = alone();
     let (robot, _sim) = at_the_clients_pace(Sim::fer()).await;
     let arm = robot.engage(Engage::default()).await.expect("it is free");

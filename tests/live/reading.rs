@@ -134,7 +134,7 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
 
 /// While no subscriber waits for states, the newest published one may be fifty states old.
 #[tokio::test(flavor = "multi_thread")]
-async fn a_watch_begins_with_the_newest_state_and_changes_to_newer_ones() {
+async fn watch_begins_with_newest_state_and_moves_to_newer_ones() {
     let _alone = alone();
     let (robot, _sim) = patient().await;
     for pause in (100..150).step_by(7) {
@@ -174,7 +174,7 @@ async fn reading_ends_when_the_closure_says_so() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn reading_ends_with_an_error_when_the_robot_falls_silent_or_the_connection_ends() {
+async fn reading_fails_on_silence_or_end_of_the_connection() {
     let forever = |robot: &Robot| {
         let robot = robot.clone();
         tokio::spawn(async move { robot.read::<()>(|_| ControlFlow::Continue(())).await })

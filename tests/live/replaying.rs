@@ -79,7 +79,7 @@ async fn a_replay_moves_to_the_begin_and_says_how_far_off_it_was() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_replay_that_is_dropped_or_superseded_brakes_and_does_not_go_on() {
+async fn dropped_or_superseded_replay_brakes_for_good() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let samples = recorded(&robot).await;
@@ -120,7 +120,7 @@ async fn a_replay_that_is_dropped_or_superseded_brakes_and_does_not_go_on() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_replay_ends_where_the_arm_is_not_where_it_was_or_the_session_is_stopped() {
+async fn replay_ends_if_arm_is_elsewhere_or_session_is_stopped() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let mut samples = recorded(&robot).await;

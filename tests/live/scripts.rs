@@ -87,7 +87,7 @@ fn a_plain_thread_hears_of_events_until_the_connection_ends() {
 
 /// A deadman, a hand, a control function, a team: each from a plain thread.
 #[test]
-fn what_is_beside_motions_is_there_for_a_plain_thread() {
+fn plain_threads_can_use_deadman_hand_and_control() {
     let _alone = alone();
     let (robot, _sim) = realistic();
     let (deadman, monitor) = Deadman::new(Duration::from_millis(300));

@@ -11,7 +11,7 @@ use crate::{alone, by_the_clock};
 
 /// An answer may be on its way when the next cycle is due: it is waited for as well.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn no_command_is_lost_behind_a_cable_where_commands_are_waited_for() {
+async fn command_behind_a_cable_is_never_lost_if_waited_for() {
     let _alone = alone();
     let cable = Network::new(1, Conditions::cable(), Conditions::cable());
     let (robot, _sim) = by_the_clock(Sim::fer().ideal().network(cable)).await;

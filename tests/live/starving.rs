@@ -121,7 +121,7 @@ fn assert_every_state_was_answered(report: &MotionReport) {
 }
 
 #[test]
-fn blocking_every_worker_for_two_seconds_loses_no_cycle_of_a_motion() {
+fn blocked_workers_lose_no_cycle_of_a_motion() {
     let _alone = alone();
     let report = Setting::patient().moves_beside(|setting| {
         let release = setting.block_workers();
@@ -133,7 +133,7 @@ fn blocking_every_worker_for_two_seconds_loses_no_cycle_of_a_motion() {
 
 /// The ring holds the whole motion, so that only a reader that needs a worker could lose cycles.
 #[test]
-fn blocking_every_worker_loses_no_cycle_of_a_reader_on_a_thread_of_its_own() {
+fn blocked_workers_lose_no_cycle_of_a_reader_thread() {
     let _alone = alone();
     let setting = Setting::patient();
     let mut reader = setting.robot.cycles(65_536).expect("there is room");
@@ -191,7 +191,7 @@ fn a_full_load_on_every_processor_loses_no_cycle_of_a_motion() {
 /// While the workers are blocked no target is passed on, and the control thread detects that
 /// without them.
 #[test]
-fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
+fn session_brakes_in_time_if_workers_block_its_stream() {
     /// Duration on the robot's clock, which runs faster than the wall clock.
     const SILENCE: Duration = Duration::from_secs(5);
     const NEVER: u64 = 0;

@@ -96,7 +96,7 @@ async fn dawdle(robot: &Robot, time: Arc<AtomicU64>) -> MotionReport {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
+async fn slow_function_is_reported_outside_the_control_thread() {
     let _alone = alone();
     listen();
     let begun = Instant::now();
@@ -169,7 +169,7 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_motion_that_ends_for_want_of_packets_names_causes_from_outside_the_control_thread() {
+async fn motion_ended_by_lost_packets_names_causes_off_thread() {
     let _alone = alone();
     listen();
     // After some 200 commands no more get through.
@@ -228,7 +228,7 @@ async fn an_event_on_the_control_thread_would_be_seen() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn how_a_detached_motion_ends_is_told_even_if_it_does_not_begin() {
+async fn detached_motion_tells_its_end_even_if_it_never_begins() {
     let _alone = alone();
     listen();
     let (robot, _sim) = crate::simulated().await;
@@ -247,7 +247,7 @@ async fn how_a_detached_motion_ends_is_told_even_if_it_does_not_begin() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn connecting_a_motion_and_a_recovery_have_a_line_each_in_their_spans() {
+async fn connect_motion_and_recovery_log_a_line_in_their_spans() {
     let _alone = alone();
     listen();
     let (robot, sim) = ahead_of_the_client(Sim::fr3().ideal().tool(Tool::hand())).await;

@@ -99,7 +99,7 @@ async fn goals_and_streams_begin_together_and_end_by_themselves() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn an_arm_whose_other_does_not_come_stays_where_it_is_and_moves_again() {
+async fn arm_without_its_partner_stays_put_and_moves_again() {
     let _alone = alone();
     let ([left, right], _sims) = two().await;
     let begun = left.state().q;

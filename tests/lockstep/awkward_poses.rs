@@ -21,7 +21,7 @@ use rand::{Rng, SeedableRng};
 const MOST_TURNS: u32 = 15;
 
 #[test]
-fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
+fn pose_through_stretched_elbow_or_wrist_is_smooth() {
     let start = Lockstep::ready().arm_pose();
     let turned = |x, z, angle| {
         let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), angle);

@@ -82,7 +82,7 @@ fn a_motion_cancelled_in_any_millisecond_ends_at_rest() {
 }
 
 #[test]
-fn a_session_goal_cancelled_in_any_millisecond_leaves_the_arm_held() {
+fn session_goal_cancelled_at_any_time_leaves_arm_held() {
     for_each_robot(|ready| {
         for joints in [false, true] {
             let mut lockstep = ready();

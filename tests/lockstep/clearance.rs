@@ -227,7 +227,7 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
 }
 
 #[test]
-fn a_stream_waits_before_a_region_for_a_target_that_it_can_reach() {
+fn stream_waits_before_a_region_for_a_reachable_target() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, margin) = above_a_table(ready);
         let start = lockstep.arm_pose();

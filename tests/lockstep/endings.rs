@@ -92,7 +92,7 @@ fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
 }
 
 #[test]
-fn a_reflex_ends_the_motion_with_its_name_and_recovery_allows_the_next() {
+fn reflex_ends_the_motion_by_name_until_recovery() {
     for_each_robot(|ready| {
         let (mut lockstep, goal) = moving(ready);
         lockstep.robot.trip(RobotError::CartesianReflex);
@@ -247,7 +247,7 @@ fn downward(newtons: f64) -> Wrench {
 }
 
 #[test]
-fn an_arm_kept_from_its_target_is_reported_and_released_without_a_torque_step() {
+fn blocked_arm_is_reported_and_released_without_reflex() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.arm_pose();
@@ -353,7 +353,7 @@ fn bad_goals_are_named_and_change_nothing() {
 /// The state of the motion is unknown, so the control function gets no more states, and the robot
 /// receives a stop.
 #[test]
-fn a_control_function_gets_no_more_states_after_an_unreadable_reply() {
+fn unreadable_reply_ends_the_states_of_a_control_function() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let version = lockstep.client.version();

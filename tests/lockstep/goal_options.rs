@@ -59,7 +59,7 @@ fn arrive(
 }
 
 #[test]
-fn an_arm_that_sticks_comes_to_its_target_on_the_shortest_leash_and_on_the_longest() {
+fn sticking_arm_reaches_its_target_on_any_leash() {
     for_each_arm(|arm| {
         for leash in [Leash::LEAST, Leash::default(), Leash::MOST] {
             let mut lockstep = arm();
@@ -70,7 +70,7 @@ fn an_arm_that_sticks_comes_to_its_target_on_the_shortest_leash_and_on_the_longe
 }
 
 #[test]
-fn a_push_that_a_long_leash_bears_takes_the_arm_along_on_a_short_one() {
+fn push_borne_on_a_long_leash_moves_the_arm_on_short_one() {
     for_each_arm(|arm| {
         // The arm's greatest way aside, and its greatest distance from the reference, `[m]`.
         let pushed = |translation: f64| {
@@ -185,7 +185,7 @@ fn the_torques_stay_within_their_limits() {
 }
 
 #[test]
-fn a_motion_that_begins_paused_is_held_where_it_begins_until_it_is_resumed() {
+fn motion_begun_paused_stays_until_it_is_resumed() {
     for_each_arm(|arm| {
         for kind in ["pose", "joints", "path", "path of a session"] {
             let mut lockstep = arm();
@@ -241,7 +241,7 @@ fn a_motion_that_begins_paused_is_held_where_it_begins_until_it_is_resumed() {
 }
 
 #[test]
-fn a_torque_limit_below_the_friction_of_a_joint_is_named_as_what_kept_the_arm() {
+fn torque_limit_below_friction_is_named_as_the_hindrance() {
     for_each_arm(|arm| {
         for by_joints in [false, true] {
             let mut lockstep = arm();

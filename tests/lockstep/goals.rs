@@ -47,7 +47,7 @@ fn a_pose_is_reached_and_the_arm_rests_there() {
 
 /// No plan delays a command: it is made after the command, for the next one.
 #[test]
-fn a_new_target_moves_the_reference_in_the_cycle_after_the_one_that_reads_it() {
+fn new_target_moves_the_reference_one_cycle_after_reading() {
     for_each_robot(|ready| {
         let turned = |by: f64| {
             let mut q = READY;
@@ -319,7 +319,7 @@ fn near_the_ends_of_5_9() -> Vec<(usize, [f64; 7])> {
 }
 
 #[test]
-fn targets_at_99_percent_arrive_where_5_9_is_served_and_nowhere_else() {
+fn targets_at_99_percent_of_range_need_system_5_9() {
     let targets = near_the_ends_of_5_9();
     assert!(targets.len() >= 12);
     for (i, q) in targets {

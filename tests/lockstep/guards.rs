@@ -70,7 +70,7 @@ const LEAD: Lead = Lead {
 };
 
 #[test]
-fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
+fn lead_bounds_the_motion_after_a_stream_stops() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.arm_pose();
@@ -108,7 +108,7 @@ fn a_distant_target_moves_the_arm_at_most_by_the_lead_after_the_stream_stops() {
 }
 
 #[test]
-fn a_lead_without_a_bound_in_some_directions_binds_in_the_others() {
+fn lead_unbounded_in_some_directions_binds_in_the_others() {
     for_each_robot(|ready| {
         let free = f64::INFINITY;
         for (translation, rotation) in [(0.05, free), (free, 0.2)] {
@@ -144,7 +144,7 @@ fn a_lead_without_a_bound_in_some_directions_binds_in_the_others() {
 }
 
 #[test]
-fn tuning_does_not_send_an_arm_back_that_was_displaced_after_its_arrival() {
+fn tuning_does_not_send_back_a_displaced_arm() {
     for_each_robot(|ready| {
         let mut lockstep = tolerant(ready);
         let engaged = lockstep.engage();

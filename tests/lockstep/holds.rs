@@ -93,7 +93,7 @@ fn medians(gains: Gains) -> (f64, f64) {
 }
 
 #[test]
-fn realistic_arms_rest_millimetres_away_by_their_springs_alone_and_at_the_target_otherwise() {
+fn springs_alone_leave_realistic_arms_millimetres_off() {
     // Two robots rested 2.8 and 4.6 mm off under such springs. Inertia that is fed forward would
     // add to it (the book, real-arm.md).
     let (median, _) = medians(Gains::droid());
@@ -322,7 +322,7 @@ fn a_load_that_is_gripped_and_dropped_is_compensated() {
 
 /// Each step is a separate motion.
 #[test]
-fn what_one_motion_learns_of_an_arm_is_there_for_the_next() {
+fn learning_of_one_motion_is_kept_for_the_next() {
     let mut lockstep = sticking(2);
     let home = lockstep.arm_pose();
     let mut lags = Vec::new();

@@ -127,7 +127,7 @@ fn agrees(found: &Estimate, truth: f64, deviations: f64) -> bool {
 }
 
 #[test]
-fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
+fn identification_finds_realistic_arms_and_reduces_lag() {
     for seed in 0..if thorough() { 12 } else { 4 } {
         let carries = seed % 4 > 1;
         let (mut lockstep, arm) = realistic(seed, carries);

@@ -7,7 +7,7 @@ use franka_tests::follow::{self, Lag, moved, realistic, twist};
 use nalgebra::{Isometry3, Translation3};
 
 #[test]
-fn a_target_that_moves_evenly_is_followed_with_a_lag_of_two_milliseconds_at_most() {
+fn reference_lags_a_moving_target_by_two_ms_at_most() {
     for period in [1, 10, 100] {
         let Lag { reference, arm } = follow::lag(period, true);
         let unsaid = follow::lag(period, false).reference;
@@ -43,7 +43,7 @@ fn joints_follow_a_target_that_moves() {
 }
 
 #[test]
-fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next() {
+fn arm_without_news_of_a_moving_target_stops_and_resumes() {
     let mut lockstep = realistic();
     let session = lockstep.engage();
     let (start, twist) = (lockstep.reference_pose(), twist());
@@ -91,7 +91,7 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
 
 /// The figures of `docs/src/how-to/teleoperate.md`.
 #[test]
-fn a_target_that_leaps_into_motion_or_out_of_it_is_chased_and_overshot() {
+fn target_that_leaps_into_or_out_of_motion_is_overshot() {
     for (speed, growing, fading, expected, fastest) in [
         (0.05, 0.0, 0.0, 3.0, 0.074),
         (0.1, 0.0, 0.0, 12.0, 0.19),

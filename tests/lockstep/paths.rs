@@ -277,7 +277,7 @@ fn a_path_that_comes_while_the_arm_moves_goes_on_from_there() {
 }
 
 #[test]
-fn a_path_that_waits_for_the_end_of_a_motion_is_gone_along_all_the_same() {
+fn path_waiting_for_the_end_of_a_motion_is_still_followed() {
     let mut lockstep = realistic();
     let poses = corners(&lockstep.arm_pose());
     let before = Translation3::new(0.0, 0.03, 0.0) * lockstep.arm_pose();
@@ -404,7 +404,7 @@ fn refused_on_the_way(name: &str, lockstep: &mut Lockstep, waypoints: &[Waypoint
 }
 
 #[test]
-fn a_way_that_leaves_the_reach_between_two_poses_within_it_is_refused_and_nothing_moves() {
+fn path_leaving_the_reach_between_poses_is_refused() {
     for (name, mut lockstep) in robots() {
         let low = Translation3::new(0.0, 0.0, -0.25) * lockstep.arm_pose();
         let down = lockstep.through(None, &[low.into()]).expect("within reach");
@@ -436,7 +436,7 @@ fn a_way_that_leaves_the_reach_between_two_poses_within_it_is_refused_and_nothin
 }
 
 #[test]
-fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
+fn random_paths_mostly_arrive_or_are_refused_before_motion() {
     let (seed, cases) = (29, if franka_tests::thorough() { 200 } else { 10 });
     for (name, mut lockstep) in robots() {
         let mut random = SmallRng::seed_from_u64(seed);
@@ -513,7 +513,7 @@ fn nearest(lockstep: &mut Lockstep, id: GoalId, place: &Isometry3<f64>) -> f64 {
 
 /// The previous motion may end at any moment: the path that comes then begins as a separate motion.
 #[test]
-fn a_path_that_comes_as_the_motion_before_ends_is_followed_all_the_same() {
+fn path_sent_as_the_previous_motion_ends_is_followed() {
     for_each_robot(|ready| {
         let mut before = ready();
         let up = Translation3::new(0.0, 0.0, 0.05) * before.arm_pose();

@@ -46,7 +46,7 @@ fn assert_shown(error: &ControlError, cause: RobotError, stepped: impl Fn(&LogEn
 }
 
 #[test]
-fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
+fn torque_step_is_in_the_log_beside_its_reflex() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut torques = stepping(0, 10.0);
@@ -58,7 +58,7 @@ fn a_torque_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
 }
 
 #[test]
-fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
+fn velocity_step_is_in_the_log_beside_its_reflex() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut dq = stepping(3, 0.25);
@@ -72,7 +72,7 @@ fn a_velocity_that_steps_is_in_the_log_beside_the_reflex_that_it_caused() {
 
 /// Losses in the last sample are in the text, and lower the rate.
 #[test]
-fn a_communication_reflex_says_how_many_packets_were_lost_at_the_end() {
+fn communication_reflex_tells_the_number_of_lost_packets() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let version = lockstep.client.version();

@@ -86,7 +86,7 @@ fn plan(kind: RobotKind, samples: &[Sample], options: ReplayOptions) -> ReplayPl
 }
 
 #[test]
-fn a_replay_follows_the_recorded_motion_at_any_speed_and_over_a_lossy_link() {
+fn replay_follows_recording_at_any_speed_and_with_losses() {
     for kind in RobotKind::ALL {
         let samples = recorded(kind);
         let options = ReplayOptions::default();
@@ -118,7 +118,7 @@ fn a_replay_follows_the_recorded_motion_at_any_speed_and_over_a_lossy_link() {
 }
 
 #[test]
-fn a_reflex_in_mid_replay_ends_it_and_nothing_moves_after_the_recovery() {
+fn reflex_in_mid_replay_ends_it_for_good() {
     for kind in RobotKind::ALL {
         let samples = recorded(kind);
         let plan = plan(kind, &samples, ReplayOptions::default());
@@ -169,7 +169,7 @@ fn an_arm_whose_host_stops_in_mid_replay_comes_to_rest() {
 }
 
 #[test]
-fn cycles_before_and_after_the_arm_is_told_where_to_be_are_left_out() {
+fn replay_omits_cycles_around_the_commanded_ones() {
     let samples = recorded(RobotKind::Fr3);
     let told = 30..samples.len() - 20;
     let mut edged = samples.clone();
@@ -193,7 +193,7 @@ fn cycles_before_and_after_the_arm_is_told_where_to_be_are_left_out() {
 }
 
 #[test]
-fn what_is_no_motion_of_this_arm_is_refused_before_anything_moves() {
+fn replay_of_an_unfit_recording_is_refused_before_motion() {
     let samples = recorded(RobotKind::Fr3);
     let model = Model::of(RobotKind::Fr3);
     let refused = |recorded, samples: &[Sample], options| {

@@ -10,7 +10,7 @@ use franka_rt::session::Target;
 use nalgebra::Translation3;
 
 #[test]
-fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
+fn link_survives_only_silence_shorter_than_the_timeout() {
     for timeout in [LinkTimeout::MIN, Duration::from_millis(150), LINK_TIMEOUT] {
         for_each_robot(|robot| {
             for (silent, lost) in [(-1, false), (0, true)] {
@@ -41,7 +41,7 @@ fn a_motion_survives_a_silence_below_the_timeout_and_no_longer_one() {
 
 /// The robot misses the commands, aborts the motion and reports that: its states would show it.
 #[test]
-fn an_end_that_no_state_confirms_is_a_lost_link_after_the_link_timeout_and_not_before() {
+fn unconfirmed_end_is_lost_link_at_the_timeout() {
     for_each_robot(|robot| {
         for silence in [END_TIMEOUT * 2, LinkTimeout::MAX] {
             let mut lockstep = robot();

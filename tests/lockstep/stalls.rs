@@ -89,7 +89,7 @@ fn the_stalls_reproduce_the_figures_measured_on_fers() {
 /// The robot's stalls decide how many states are answered in time; the speed of the client decides
 /// how many states of a burst it sees.
 #[test]
-fn a_faster_client_loses_no_state_and_is_as_late_with_its_answers() {
+fn faster_client_loses_no_state_but_answers_as_late() {
     let [fast, measured, slow] =
         [10, 35, 120].map(|us| measure(Duration::from_micros(us), RUNS / 4));
     assert_eq!(mean_loss(&fast), 0.0);

@@ -38,7 +38,7 @@ fn winding(kind: RobotKind, tool: Tool) -> (Lockstep, Isometry3<f64>) {
 }
 
 #[test]
-fn a_line_that_winds_the_joints_is_taken_with_another_elbow_or_refused() {
+fn winding_line_takes_another_elbow_or_is_refused() {
     for kind in RobotKind::ALL {
         for tool in [Tool::hand(), Tool::NONE] {
             let (mut lockstep, there) = winding(kind, tool);
@@ -80,7 +80,7 @@ fn an_unplanned_line_ends_where_the_joints_have_no_way_on() {
 /// The line to the other side of the base collides with the arm itself, with every elbow. A joint
 /// motion reaches its end, with the arm clear of itself.
 #[test]
-fn a_line_into_the_arm_itself_is_refused_and_the_joints_get_there() {
+fn line_into_the_arm_is_refused_but_joints_get_there() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let start = lockstep.arm_pose();

@@ -79,7 +79,7 @@ fn an_arm_brakes_when_its_motion_is_aborted() {
 
 /// The robot has received a stop for the first motion, and has not ended it yet.
 #[test]
-fn a_motion_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_before() {
+fn motion_after_unreadable_reply_waits_for_previous_end() {
     for after in [0, 1, 2, 3, 5, 300] {
         let mut lockstep = Lockstep::ready();
         let first = lockstep.begin(Target::Joints(ready_turned(0, 0.3)));
@@ -115,7 +115,7 @@ fn hold(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
 }
 
 #[test]
-fn a_program_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_before() {
+fn program_after_unreadable_reply_waits_for_previous_end() {
     for after in [0, 1, 2, 3, 5, 50] {
         let mut lockstep = Lockstep::ready();
         hold(&mut lockstep).expect("nothing moves");

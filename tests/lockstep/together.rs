@@ -69,7 +69,7 @@ fn moved(robot: &Lockstep) -> f64 {
 }
 
 #[test]
-fn goals_begin_in_the_same_millisecond_for_any_delay_of_the_second() {
+fn goals_begin_in_the_same_millisecond_after_any_delay() {
     for late in [0, 1, 137, 4000] {
         let mut two = Two::new();
         let [left, right] = StartBarrier::new().tickets();
@@ -112,7 +112,7 @@ fn goals_begin_in_the_same_millisecond_for_any_delay_of_the_second() {
 }
 
 #[test]
-fn a_robot_that_never_begins_ends_the_others_motion_at_rest_and_is_named() {
+fn robot_that_never_begins_ends_the_other_and_is_named() {
     type Taking = fn(&mut Two, StartTicket);
     let ways: [(&str, Taking, StartFault); 3] = [
         (
@@ -257,7 +257,7 @@ fn a_motion_with_a_ticket_supersedes_nothing() {
 }
 
 #[test]
-fn a_target_that_moves_during_the_wait_is_followed_from_the_start() {
+fn target_that_moves_during_the_wait_is_followed() {
     let mut two = Two::new();
     let [left, mut right] = StartBarrier::new().tickets();
     let goal = two.left.goal(turned(0.1), OnArrival::Hold);
@@ -359,7 +359,7 @@ fn functions(version: Version, called: &Arc<AtomicU64>) -> Vec<(&'static str, Ca
 }
 
 #[test]
-fn a_control_function_is_not_called_before_the_others_have_joined() {
+fn control_function_is_not_called_before_the_others_join() {
     for kind in RobotKind::ALL {
         for nth in 0..4 {
             let called = Arc::new(AtomicU64::new(0));

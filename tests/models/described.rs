@@ -32,7 +32,7 @@ fn before_5_9() -> Config {
 }
 
 #[test]
-fn the_simulators_description_equals_the_constant_model_to_the_last_bit() {
+fn simulator_description_equals_constants_bit_for_bit() {
     let model = Model::from_urdf(&served()).expect("a description");
     assert_eq!(&model, Model::fr3());
 }
@@ -160,7 +160,7 @@ async fn a_limiter_keeps_the_velocities_that_the_description_gives() {
 }
 
 #[tokio::test]
-async fn a_description_of_something_else_is_refused_unless_the_constants_are_chosen() {
+async fn foreign_description_is_refused_unless_constants_chosen() {
     let text = served_with("<robot name=\"fr3\"", "<robot name=\"tmr_platform\"");
     let sim = serving(text).start().await.expect("it starts");
     let builder = || Robot::builder(sim.addr()).realtime(Realtime::Ignore);

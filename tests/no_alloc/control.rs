@@ -17,7 +17,7 @@ use nalgebra::Translation3;
 use crate::calls_during;
 
 #[test]
-fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
+fn target_control_never_calls_the_allocator() {
     let seed = 7;
     let mut wander = Wander::new(seed);
     let (mut cycles, mut calls) = (0, 0);
@@ -40,7 +40,7 @@ fn a_hundred_thousand_cycles_of_target_control_allocate_and_free_nothing() {
 /// Arrivals, fade-outs and ends of motions, with a goal of the other kind in the middle of every
 /// third motion.
 #[test]
-fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothing() {
+fn reached_targets_never_call_the_allocator() {
     let mut lockstep = Lockstep::ready();
     let home = lockstep.arm_pose();
     let q = lockstep.robot.state().q;
@@ -139,7 +139,7 @@ fn generators(version: Version) -> [Callback; 4] {
 }
 
 #[test]
-fn control_functions_of_all_nine_kinds_allocate_and_free_nothing() {
+fn control_functions_never_call_the_allocator() {
     for version in Version::ALL {
         let torques = Callback::torques(version, |state, _| Torques(state.tau_J_d));
         let both = generators(version)

@@ -24,7 +24,7 @@ use crate::calls_during;
 const CYCLES: u64 = 30_000;
 
 #[test]
-fn every_kind_of_goal_under_every_guard_allocates_and_frees_nothing() {
+fn goals_under_every_guard_never_call_the_allocator() {
     for (workload, seed) in Workload::ALL
         .map(|workload| (workload, 0))
         .into_iter()
@@ -140,7 +140,7 @@ fn turned(by: f64) -> Target {
 }
 
 #[test]
-fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
+fn sessions_under_any_order_never_call_the_allocator() {
     for backend in [Backend::Torques]
         .into_iter()
         .chain(Backend::ROBOT_CONTROLLERS)

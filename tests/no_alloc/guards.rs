@@ -40,7 +40,7 @@ fn count(
 }
 
 #[test]
-fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
+fn binding_guards_never_call_the_allocator() {
     let guards = [Guard::Clearance, Guard::Lead, Guard::Deviation];
     let mut bound = [false; 3];
     let mut lockstep = Lockstep::ready();
@@ -123,7 +123,7 @@ fn full() -> Condition {
 }
 
 #[test]
-fn a_full_condition_and_what_follows_it_allocate_and_free_nothing() {
+fn full_condition_never_calls_the_allocator() {
     for engaged in [false, true] {
         let mut lockstep = Lockstep::ready();
         let home = lockstep.arm_pose();

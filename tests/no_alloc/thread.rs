@@ -225,7 +225,7 @@ fn the_running_thread_neither_allocates_nor_frees() {
 
 /// The output of the turns is not read: the queues are full for most of the time.
 #[test]
-fn turns_and_writes_on_a_borrowing_thread_neither_allocate_nor_free() {
+fn borrowing_thread_never_calls_the_allocator() {
     const TURNS: u64 = 100_000;
     let modes = Modes {
         generator: MotionGeneratorMode::None,

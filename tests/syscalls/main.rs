@@ -77,9 +77,9 @@ fn assert_clean(threads: &[Calls]) {
 }
 
 #[test]
-fn a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states() {
+fn idle_thread_only_receives_and_notifies() {
     trace(
-        a_thread_without_a_motion_only_receives_and_notifies_with_and_without_states,
+        idle_thread_only_receives_and_notifies,
         &[CONTROL],
         scenarios::watching(),
         assert_clean,
@@ -127,10 +127,10 @@ fn asynchronous_targets_make_allowed_calls_only() {
 }
 
 #[test]
-fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
+fn user_thread_makes_only_allowed_calls_in_the_cycle() {
     let names = [CONTROL, scenarios::ACTIVE];
     trace(
-        a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle,
+        user_thread_makes_only_allowed_calls_in_the_cycle,
         &names,
         scenarios::active(),
         |threads| {
@@ -146,9 +146,9 @@ fn a_users_thread_makes_allowed_calls_only_while_it_is_the_cycle() {
 }
 
 #[test]
-fn failing_receives_and_an_idle_borrower_cause_allowed_calls_and_a_wait_for_the_borrower() {
+fn failing_receives_cause_only_allowed_calls_and_a_wait() {
     trace(
-        failing_receives_and_an_idle_borrower_cause_allowed_calls_and_a_wait_for_the_borrower,
+        failing_receives_cause_only_allowed_calls_and_a_wait,
         &[CONTROL],
         scenarios::failing(),
         |threads| {

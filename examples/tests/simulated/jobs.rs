@@ -228,7 +228,7 @@ fn metrics_are_served_as_open_metrics() {
 }
 
 #[test]
-fn a_service_that_is_told_to_end_rests_the_arm_and_tells_its_clients() {
+fn service_rests_arm_and_tells_clients_on_sigterm() {
     let arm = Arm::by_the_clock("fr3");
     let start = arm.state();
     let deadline = ["--deadline", "60"];
@@ -254,7 +254,7 @@ fn a_service_that_is_told_to_end_rests_the_arm_and_tells_its_clients() {
 }
 
 #[test]
-fn a_request_that_never_ends_does_not_keep_a_service_from_ending() {
+fn service_ends_despite_a_request_that_never_ends() {
     let arm = Arm::by_the_clock("fr3");
     let (mut service, address) = Beside::serve("axum_service", &arm.address, &["--deadline", "3"]);
     let client = Client::new(address.clone());

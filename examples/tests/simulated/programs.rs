@@ -56,7 +56,7 @@ fn recover_explains_asks_and_recovers() {
 }
 
 #[test]
-fn recover_says_when_there_is_nothing_to_do_and_when_a_person_is_needed() {
+fn recover_reports_nothing_to_do_and_need_of_a_person() {
     let arm = Arm::start("fer", Scene::default());
     let arguments = [arm.address.as_str(), "--realtime", "ignore"];
     let said = run("recover", &arguments, "");
@@ -155,7 +155,7 @@ fn record_keeps_both_motions_in_a_file_that_is_read_back() {
 }
 
 #[test]
-fn explain_names_the_cause_and_the_place_and_draws_the_last_second() {
+fn explain_names_the_contact_link_and_draws_a_figure() {
     let folder = Folder::new("explain");
     let figure = folder.file("blow.svg");
     let said = run("explain", &["--figure", &figure], "");

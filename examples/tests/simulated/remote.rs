@@ -206,7 +206,7 @@ fn a_reflex_is_a_status_with_its_errors_and_diagnosis() {
 }
 
 #[test]
-fn a_service_that_is_told_to_end_rests_the_arm_and_answers_its_caller() {
+fn service_rests_arm_and_fails_its_caller_on_sigterm() {
     let arm = Arm::by_the_clock("fr3");
     let deadline = ["--deadline", "60"];
     let (mut service, address) = Beside::serve("tonic_service", &arm.address, &deadline);

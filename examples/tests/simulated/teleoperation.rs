@@ -166,7 +166,7 @@ fn stop_is_open_to_every_socket_and_ends_the_lease() {
 }
 
 #[test]
-fn a_target_that_is_refused_ends_nothing_and_a_reflex_is_explained() {
+fn refused_target_ends_nothing_and_reflex_is_explained() {
     let arm = Arm::by_the_clock("fr3");
     let (_service, address) = serve(&arm, "60");
     let mut client = Client::connect(&address);

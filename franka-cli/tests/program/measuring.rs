@@ -165,7 +165,7 @@ fn verdict<'a>(report: &'a serde_json::Value, id: &str) -> &'a str {
 }
 
 #[test]
-fn what_desk_says_is_the_reason_of_a_refusal() {
+fn desk_status_is_the_reason_for_a_refusal() {
     let home = Home::new();
     let desk = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = desk.local_addr().expect("bound").to_string();

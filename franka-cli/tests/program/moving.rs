@@ -48,7 +48,7 @@ fn every_kind_of_target_is_reached() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_refused_before_anything_moves() {
+fn target_out_of_reach_is_refused_before_anything_moves() {
     Simulated::each(|sim| {
         let (home, robot) = (Home::new(), sim.address());
         for (rest, text) in [
@@ -167,7 +167,7 @@ fn interrupt_and_wait(id: u32) {
 }
 
 #[test]
-fn a_motion_that_ends_for_want_of_packets_names_causes_on_this_computer() {
+fn motion_ended_by_lost_packets_names_causes_on_this_host() {
     // After about 200 commands all are lost.
     let lost = Conditions {
         loss: Loss::Bursts(BurstLoss {

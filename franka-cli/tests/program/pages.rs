@@ -155,7 +155,7 @@ fn one_lost_robot_leaves_the_others_their_page() {
 }
 
 #[test]
-fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
+fn page_recording_is_complete_after_ctrl_c_and_lost_robot() {
     for is_lost in [false, true] {
         let (home, sim) = (Home::new(), Simulated::fr3());
         let folder = home.path("recordings");

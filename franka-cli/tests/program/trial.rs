@@ -217,7 +217,7 @@ fn a_trial_that_is_interrupted_at_rest_moves_nothing() {
 }
 
 #[test]
-fn a_load_that_is_not_declared_ends_a_trial_before_anything_moves() {
+fn undeclared_load_ends_the_trial_before_anything_moves() {
     let (home, sim) = (Home::new(), Simulated::fast(Sim::fr3()));
     // Thresholds that are not reached.
     let robot = sim.address();

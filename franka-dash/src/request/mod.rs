@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_unknown_or_of_another_type_is_not_read() {
+    fn malformed_request_is_not_read() {
         for text in [
             "",
             "null",
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_is_refused_with_what_was_got() {
+    fn out_of_range_request_is_refused_with_its_value() {
         for (text, got) in [
             (r#"{"type":"take","name":"  "}"#, "got 2"),
             (

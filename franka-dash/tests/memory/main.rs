@@ -74,7 +74,7 @@ fn flood(address: SocketAddr) -> usize {
 }
 
 #[test]
-fn a_viewer_that_never_reads_costs_no_memory_and_the_others_nothing() {
+fn viewer_that_never_reads_costs_no_memory_or_delay() {
     let served = Served::movable();
     let frames: [AtomicU64; OTHERS] = Default::default();
     let end = AtomicBool::new(false);

@@ -107,7 +107,7 @@ async fn without_a_token_only_this_computer_is_served() {
 }
 
 #[tokio::test]
-async fn what_is_sent_does_not_wait_for_an_acknowledgement() {
+async fn accepted_socket_has_nodelay_set() {
     let here = "127.0.0.1:0".parse().expect("an address");
     let bound = franka_dash::bind(here, &Options::default()).await;
     let listener = bound.expect("a port");
@@ -118,7 +118,7 @@ async fn what_is_sent_does_not_wait_for_an_acknowledgement() {
 }
 
 #[test]
-fn the_page_is_served_with_a_policy_that_keeps_everything_else_out() {
+fn page_policy_allows_only_content_of_the_server() {
     let served = Served::new(|_| Options::default());
     for (path, kind) in [
         ("", "text/html"),

@@ -12,7 +12,7 @@ fn disturb(viewer: &mut Viewer, disturbance: Value) {
 }
 
 #[test]
-fn a_network_is_set_and_cut_and_the_robot_stops_itself_for_want_of_commands() {
+fn network_is_set_and_cut_and_the_cut_stops_a_motion() {
     let served = Served::movable();
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
@@ -50,7 +50,7 @@ fn a_network_is_set_and_cut_and_the_robot_stops_itself_for_want_of_commands() {
 }
 
 #[test]
-fn a_load_pulls_another_arm_stands_there_and_an_object_needs_a_hand() {
+fn load_and_arm_can_change_but_object_needs_a_hand() {
     let served = Served::movable();
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
@@ -72,7 +72,7 @@ fn a_load_pulls_another_arm_stands_there_and_an_object_needs_a_hand() {
 }
 
 #[test]
-fn virtual_time_is_paused_and_goes_on_with_the_robot_still_connected() {
+fn virtual_time_pauses_and_resumes_without_disconnecting() {
     let served = Served::in_virtual_time();
     let mut viewer = Viewer::connect(served.address);
     assert_eq!(viewer.hello["virtual_time"], true);
@@ -132,7 +132,7 @@ fn the_user_stop_guiding_and_the_brakes_are_those_of_the_robot() {
 }
 
 #[test]
-fn nothing_is_done_to_a_robot_that_is_not_simulated() {
+fn unsimulated_robot_refuses_disturbances() {
     let served = Served::new(|_| franka_dash::Options::default().allow_motion());
     let mut viewer = Viewer::connect(served.address);
     viewer.take();

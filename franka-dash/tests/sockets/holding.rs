@@ -100,7 +100,7 @@ fn lease_of_the_robot_is_shared_by_all_services() {
 }
 
 #[test]
-fn status_and_refusals_tell_how_many_holds_were_asked_for_before() {
+fn status_and_refusals_tell_the_number_of_earlier_holds() {
     let served = Served::movable();
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
@@ -126,7 +126,7 @@ fn a_stop_is_answered_to_who_asked_for_it() {
 }
 
 #[test]
-fn what_is_no_request_is_refused_and_ends_nothing() {
+fn malformed_request_is_refused_and_ends_nothing() {
     let served = Served::movable();
     let mut commander = Viewer::connect(served.address);
     commander.take();

@@ -117,7 +117,7 @@ fn attack(address: SocketAddr, random: &mut SmallRng) -> std::io::Result<()> {
 
 /// The only excluded request is the one allowed for every viewer: to stop the arm.
 #[test]
-fn a_hundred_viewers_that_mean_harm_change_nothing_for_one_that_jogs() {
+fn hostile_viewers_change_nothing_for_the_one_that_jogs() {
     let seed: u64 = rand::rng().random();
     println!("seed {seed}");
     let served = Served::new(|running| {

@@ -78,7 +78,7 @@ fn targets_of_joints_reach_the_ends_that_the_driver_accepts() {
 }
 
 #[test]
-fn what_must_not_be_done_is_refused_before_and_when_it_is_asked_for() {
+fn forbidden_motion_is_refused_in_preview_and_on_request() {
     let height = 0.3;
     let served = Served::new(|running| {
         let options = Options::default().allow_motion().simulated(running);

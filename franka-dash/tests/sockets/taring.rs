@@ -56,7 +56,7 @@ fn a_tare_is_shown_to_every_viewer_until_it_is_cleared() {
 }
 
 #[test]
-fn a_newcomer_is_told_the_tare_and_a_cleared_one_does_not_come_back() {
+fn late_viewer_gets_tare_and_cleared_tare_stays_cleared() {
     let served = Served::movable();
     let mut viewer = Viewer::connect(served.address);
     viewer.take();

@@ -127,7 +127,7 @@ fn sparse(cycles: u32) -> Story {
 }
 
 #[test]
-fn cycles_between_sparse_targets_are_no_losses_and_targets_no_leaps() {
+fn sparse_targets_count_as_no_losses_and_no_leaps() {
     let error = E::JointMotionGeneratorAccelerationDiscontinuity;
     let asked = sparse(20).newest().q_d;
     let diagnosis = sparse(20).stop(

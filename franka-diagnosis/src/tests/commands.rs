@@ -8,7 +8,7 @@ use crate::commanded::{Which, resulting_readings};
 use crate::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 
 #[test]
-fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
+fn differences_after_lost_cycles_count_from_robot_values() {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition);
     // Five states are lost; the robot has continued meanwhile, and its state shows it.
     story.go(
@@ -149,7 +149,7 @@ fn a_first_position_that_is_measured_is_no_start() {
 }
 
 #[test]
-fn a_jerk_that_is_too_large_comes_before_an_acceleration_that_nearly_is() {
+fn excessive_jerk_precedes_a_nearly_excessive_acceleration() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     story.entries.last_mut().unwrap().state.ddq_d[0] = -9.0;
     let diagnosis = story.stop(
@@ -163,7 +163,7 @@ fn a_jerk_that_is_too_large_comes_before_an_acceleration_that_nearly_is() {
 }
 
 #[test]
-fn a_velocity_within_its_cap_but_not_its_envelope_is_laid_to_the_limit_ahead() {
+fn velocity_beyond_envelope_is_blamed_on_the_limit_ahead() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     // 0.1 rad before the end of joint 4's range.
     story.entries.last_mut().unwrap().state.q_d[3] = -0.2458;
@@ -194,7 +194,7 @@ fn a_velocity_within_its_cap_but_not_its_envelope_is_laid_to_the_limit_ahead() {
 }
 
 #[test]
-fn a_commanded_position_beyond_the_range_is_named_before_the_measured_one() {
+fn commanded_position_violation_precedes_measured_one() {
     for error in [
         E::JointMotionGeneratorPositionLimitsViolation,
         E::JointPositionLimitsViolation,
@@ -276,7 +276,7 @@ fn the_elbow_has_limits_of_its_own() {
 }
 
 #[test]
-fn joints_of_a_smooth_command_in_a_singular_pose_are_found_by_inverse_kinematics() {
+fn singular_pose_is_diagnosed_by_inverse_kinematics() {
     let mut story = Story::of(Model::fr3(), Generator::CartesianVelocity);
     let mut q = READY;
     q[1] = 0.2;

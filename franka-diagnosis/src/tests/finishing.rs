@@ -109,7 +109,7 @@ fn a_leap_with_the_last_command_is_a_leap() {
 }
 
 #[test]
-fn a_motion_that_is_finished_while_it_slows_down_ends_in_a_step_of_acceleration() {
+fn motion_finished_while_braking_ends_in_acceleration_step() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     story.go(
         |_, _| {},

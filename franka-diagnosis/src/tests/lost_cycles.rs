@@ -122,7 +122,7 @@ fn states_that_a_slow_function_skips_are_not_lost() {
 }
 
 #[test]
-fn states_that_are_lost_while_a_function_does_not_return_are_this_hosts_doing() {
+fn states_lost_while_a_function_blocks_are_blamed_on_host() {
     let told = |turnaround| {
         let story = Story::of(Model::fr3(), Generator::None);
         let mut counts = MotionStatistics::default();

@@ -6,7 +6,7 @@ use super::*;
 use crate::Advice;
 
 #[test]
-fn what_the_log_does_not_show_is_said_not_to_be_visible() {
+fn cause_missing_from_the_log_is_called_not_visible() {
     for error in [
         E::JointVelocityViolation,
         E::JointReflex,
@@ -42,7 +42,7 @@ fn an_error_that_shows_comes_before_one_that_does_not() {
 }
 
 #[test]
-fn neither_an_empty_log_nor_one_cycle_of_it_is_too_little_to_say_so() {
+fn empty_log_and_single_cycle_still_get_a_diagnosis() {
     for error in E::ALL {
         let mut story = Story::unbegun(Model::fr3(), Generator::CartesianPosition);
         let one = story.diagnosis(error.into(), None);

@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_a_login_or_is_not_said_stays_open() {
+    fn desk_answers_missing_or_behind_a_login_stay_open() {
         let read = state(&[
             ("/api/system", 200, json!({ "status": "Started" })),
             (
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_desk_is_told() {
+    fn unknown_desk_is_reported_with_the_reason() {
         let login = state(&[("/api/system", 401, json!({}))]);
         assert_eq!(
             login,

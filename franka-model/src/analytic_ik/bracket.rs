@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_root_where_the_function_touches_zero_is_found_once_or_twice() {
+    fn tangent_root_is_found_once_or_twice() {
         let f = |x: f64| -(x - 0.2) * (x - 0.2) * (2.0 + x);
         let roots = found(f, [-0.3, 0.1, 0.8]);
         assert!(roots.len() == 1 || roots.len() == 2);

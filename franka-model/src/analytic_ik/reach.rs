@@ -178,7 +178,7 @@ mod tests {
     use crate::{Frame, READY};
 
     #[test]
-    fn every_pose_of_the_arm_is_within_reach_with_a_posture_that_meets_it() {
+    fn reach_contains_every_pose_of_the_arm_with_a_posture() {
         let mut random = Random::new(91);
         let model = Model::fr3();
         for _ in 0..40 {
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_beyond_reach_is_as_far_as_the_line_says_or_infinitely_far() {
+    fn margin_beyond_reach_is_the_distance_or_infinite() {
         // Joints within 0.1 rad of the ready posture keep the hand pointing down.
         let limits = JointLimits {
             lower: READY.add_scalar(-0.1),
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_is_reached_up_to_the_stretched_arm_with_the_hand_in_line() {
+    fn point_is_within_reach_up_to_the_stretched_arm() {
         let mut random = Random::new(92);
         let (model, ee) = (Model::fr3(), EndEffector::default());
         for _ in 0..10 {

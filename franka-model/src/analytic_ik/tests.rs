@@ -53,7 +53,7 @@ fn parameter_miss(q: &JointVector, given: Redundancy, of: fn(&JointVector) -> f6
 }
 
 #[test]
-fn every_solution_meets_pose_and_limits_and_the_seeding_posture_is_among_them() {
+fn solutions_meet_pose_and_limits_and_include_the_seed() {
     for kind in RobotKind::ALL {
         let model = Model::of(kind);
         let limits = model.joint_limits();
@@ -90,7 +90,7 @@ fn every_solution_meets_pose_and_limits_and_the_seeding_posture_is_among_them() 
 }
 
 #[test]
-fn joint_7_gives_none_four_or_eight_solutions_with_the_seed_among_them() {
+fn joint_7_gives_none_four_or_eight_solutions() {
     let mut random = Random::new(82);
     for _ in 0..2_000 {
         let target = flange(&random.posture(Model::fr3()));
@@ -132,7 +132,7 @@ fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
 }
 
 #[test]
-fn the_solutions_for_a_swivel_angle_are_those_that_a_scan_of_joint_7_finds() {
+fn swivel_solutions_match_a_scan_of_joint_7() {
     let mut random = Random::new(83);
     let (mut fewer, mut total) = (0, 0);
     for _ in 0..60 {
@@ -223,7 +223,7 @@ fn with_joint_2_at_zero_joints_1_and_3_share_the_turn_and_slide() {
 }
 
 #[test]
-fn a_turn_that_joints_1_and_3_cannot_share_evenly_is_shared_as_the_limits_let() {
+fn turn_of_joints_1_and_3_is_shared_within_the_limits() {
     let limits = Model::fr3().joint_limits();
     let mut q = READY;
     (q[0], q[1], q[2]) = (limits.upper[0] - 0.01, 0.0, limits.upper[2] - 0.01);
@@ -236,7 +236,7 @@ fn a_turn_that_joints_1_and_3_cannot_share_evenly_is_shared_as_the_limits_let() 
 }
 
 #[test]
-fn a_path_straight_through_the_shoulder_singularity_is_followed_without_a_jump() {
+fn path_through_the_shoulder_singularity_does_not_jump() {
     // Joint 2 passes through zero; the others move evenly.
     let at = |step: i32| {
         let share = f64::from(step) * 1e-3;
@@ -275,7 +275,7 @@ fn near_joint_2_at_zero_poses_are_met_all_the_same() {
 }
 
 #[test]
-fn two_solutions_meet_like_square_roots_at_a_stretched_elbow_and_a_turned_wrist() {
+fn solutions_merge_as_square_roots_at_elbow_and_wrist() {
     let fold = |index: usize, place: f64| {
         let mut last: Option<f64> = None;
         for exponent in 1..8 {
@@ -320,7 +320,7 @@ fn with_the_shoulder_on_axis_7_joint_4_leaves_joint_7_at_zero() {
 }
 
 #[test]
-fn the_nearest_posture_is_no_further_than_the_one_that_the_pose_is_of() {
+fn nearest_posture_is_no_further_than_the_known_one() {
     let mut random = Random::new(85);
     let (model, ee) = (Model::fr3(), EndEffector::default());
     let mut further = 0;
@@ -378,7 +378,7 @@ fn input_that_means_nothing_is_refused() {
 }
 
 #[test]
-fn an_arm_with_other_lengths_gets_solutions_that_meet_its_own_poses() {
+fn solutions_with_other_lengths_meet_their_own_poses() {
     let model = Model::fr3().clone().with_lengths(Lengths::RECORDED_FR3);
     let limits = model.joint_limits();
     let mut random = Random::new(83);

@@ -75,7 +75,7 @@ fn exact_torques_name_body_place_and_force() {
 }
 
 #[test]
-fn what_cannot_be_known_is_said() {
+fn unknown_contact_is_reported_with_the_reason() {
     let placed = arm(&READY);
     let locate = |torque: JointVector| locate(&placed, &torque, &EXACT);
     let mut torque = JointVector::zeros();

@@ -154,7 +154,7 @@ fn damping_is_smooth_along_a_path_into_a_singularity() {
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 100_000 };
 
 #[test]
-fn the_answer_is_the_minimum_that_an_enumeration_of_all_active_sets_finds() {
+fn solution_matches_the_minimum_over_all_active_sets() {
     let mut random = Random::new(55);
     let ik = DifferentialIk::default();
     let (mut passes, mut worst) = (0, 0.0_f64);
@@ -293,7 +293,7 @@ fn reachable(from: &JointVector, direction: &Vector3<f64>, length: f64) -> bool 
 }
 
 #[test]
-fn a_line_along_a_joint_limit_keeps_the_position_and_lets_the_orientation_give() {
+fn line_along_a_joint_limit_gives_up_orientation_only() {
     let mut random = Random::new(56);
     let model = Model::fr3();
     let limits = model.joint_limits();

@@ -230,7 +230,7 @@ mod tests {
     use std::os::unix::fs::PermissionsExt;
 
     #[test]
-    fn a_temporary_file_is_for_this_user_only_and_gone_when_it_is_dropped() {
+    fn temporary_file_is_private_and_removed_on_drop() {
         let first = Temporary::with(b"one").expect("a file");
         let second = Temporary::with(b"two").expect("a file");
         assert_ne!(first.path, second.path);

@@ -245,7 +245,7 @@ const ROOT_OF_ROUNDING: f64 = 2e-5;
 
 /// This axis can be at its target until 0.11403 s and again from 0.36 s on.
 #[test]
-fn an_axis_that_would_be_early_by_less_than_a_cycle_is_not_early() {
+fn axis_early_by_less_than_a_cycle_is_not_early() {
     let limits = AxisLimits {
         velocity: 0.19915637055060992,
         acceleration: 14.697186906757418,
@@ -281,7 +281,7 @@ fn an_axis_that_would_be_early_by_less_than_a_cycle_is_not_early() {
 /// The start is at the velocity limit, except for an acceleration that can just be removed in time:
 /// its first ramp has no duration, and rounding must not make the duration negative.
 #[test]
-fn a_start_whose_acceleration_leads_to_the_velocity_limit_is_on_time() {
+fn start_whose_ramp_ends_at_velocity_limit_is_on_time() {
     for (limits, from, to) in [
         (
             [1.5535810034256612, 0.12317897597788591, 857.8158894876473],

@@ -50,7 +50,7 @@ fn targets_and_states_that_are_not_finite_are_refused() {
 }
 
 #[test]
-fn what_no_double_can_compute_is_refused() {
+fn uncomputable_target_or_limit_is_refused() {
     let untouched = moving();
     let mut generator = moving();
     assert_eq!(

@@ -61,7 +61,7 @@ proptest! {
     }
 
     #[test]
-    fn a_motion_that_is_slowed_in_every_cycle_stays_on_its_line_and_arrives(
+    fn motion_slowed_every_cycle_stays_on_line_and_arrives(
         start in point(), way in point(), most in 0.05..0.5,
     ) {
         let limits = Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap();
@@ -83,7 +83,7 @@ proptest! {
     }
 
     #[test]
-    fn a_line_takes_no_longer_than_independent_axes_if_one_axis_binds(start in point(), target in point()) {
+    fn line_is_as_fast_as_independent_axes_if_one_binds(start in point(), target in point()) {
         let limits = Limits::from_arrays([1.0; 3], [5.0; 3], [1000.0; 3]).unwrap();
         let duration = |synchronisation| {
             let mut generator = Generator::new(State::at_rest(start), limits)

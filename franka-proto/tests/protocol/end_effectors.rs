@@ -117,7 +117,7 @@ fn every_request_of_the_hand_comes_back_value_for_value() {
 }
 
 #[test]
-fn every_request_of_the_vacuum_gripper_comes_back_value_for_value() {
+fn vacuum_gripper_requests_round_trip_value_for_value() {
     let mut pair = suction();
     for profile in 0..4 {
         let id = pair.request(vacuum::Request::Vacuum(vacuum::Vacuum {
@@ -182,7 +182,7 @@ fn an_unknown_status_ends_its_request_with_libfrankas_text() {
 }
 
 #[test]
-fn a_short_reply_tells_got_and_expected_with_the_ten_byte_header() {
+fn short_reply_tells_got_and_expected_size() {
     let mut pair = hand();
     let id = pair.request(gripper::Request::Homing);
     let error = pair.receive(&[1, 0, 1, 0, 0, 0, 11, 0, 0, 0, 0]);
@@ -242,7 +242,7 @@ fn another_version_is_told() {
 }
 
 #[test]
-fn what_leaves_the_protocol_is_reported() {
+fn protocol_violation_is_reported() {
     let mut client = gripper::Client::new(gripper::Version::V3);
     let error = client.request(&gripper::Request::Homing).unwrap_err();
     assert_eq!(error, RequestError::NotConnected);

@@ -109,7 +109,7 @@ fn a_table_that_another_program_has_written_anew_is_read() {
 }
 
 #[test]
-fn what_a_table_leaves_out_follows_from_its_rows() {
+fn values_missing_from_a_table_follow_from_its_rows() {
     let file = ControlLogFile::parse(&format!("{MESSAGE}\n{}", table())).unwrap();
     let entries: Vec<_> = file.log.iter().collect();
     let (last, running) = entries.split_last().unwrap();
@@ -179,7 +179,7 @@ fn a_table_without_its_message_says_that_the_errors_are_missing() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_has_its_line_and_column() {
+fn file_fault_is_reported_with_line_and_column() {
     let row = |from: &str, to: &str| table().replacen(from, to, 1);
     let cut = |text: &str, end: &str| text[..text.find(end).unwrap() + end.len()].to_owned();
     let lines: Vec<_> = table().lines().map(str::to_owned).collect();

@@ -342,7 +342,7 @@ fn events_tell_goals_and_the_diagnosis() {
 }
 
 #[test]
-fn nothing_and_odd_numbers_are_taken() {
+fn explanation_accepts_empty_input_and_odd_numbers() {
     assert!(explained([]).to_string().contains("nothing to explain"));
     assert!(explained([]).figure().contains("no cycles"));
     let mut odd = state(1);

@@ -122,7 +122,7 @@ mod tests {
     use crate::schema::franka;
 
     #[test]
-    fn what_a_recording_leaves_out_is_no_column() {
+    fn unrecorded_field_is_no_column() {
         let mut before = Cycle::default();
         let state = &mut before.state;
         for field in [&mut state.theta, &mut state.dtheta, &mut state.dtau_J] {

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn the_frames_lead_from_the_base_to_the_end_effector_of_the_model() {
+    fn frames_lead_from_base_to_end_effector() {
         let mut robot = Robot::new(RobotKind::Fr3);
         robot.lengths = Lengths::RECORDED_FR3;
         let model = Model::fr3().clone().with_lengths(robot.lengths);

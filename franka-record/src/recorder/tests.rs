@@ -41,7 +41,7 @@ fn cycles_and_dropped(recording: &Recording) -> (Vec<Cycle>, u64) {
 }
 
 #[test]
-fn the_end_of_a_recording_waits_no_longer_than_it_is_told_for_a_disk_that_hangs() {
+fn finish_waits_no_longer_than_its_limit_for_a_hung_disk() {
     let (recorder, reader) = hanging();
     let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
     // Every cycle is received, regardless of the disk.
@@ -60,7 +60,7 @@ fn the_end_of_a_recording_waits_no_longer_than_it_is_told_for_a_disk_that_hangs(
 }
 
 #[test]
-fn what_is_left_out_while_a_disk_hangs_is_counted_and_told_in_the_file() {
+fn data_dropped_while_a_disk_hangs_is_counted_in_the_file() {
     for goes_on in [true, false] {
         let (recorder, reader) = hanging();
         let (mut arm, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fer));

@@ -112,7 +112,7 @@ mod tests {
     ];
 
     #[test]
-    fn one_message_in_some_is_kept_of_each_robot_where_nothing_happens() {
+    fn thinning_keeps_one_message_in_n_of_each_robot() {
         for (topic, rate) in RATES {
             let expected: Vec<_> = (0..5000).step_by(rate).collect();
             assert!(kept(topic, |_| false) == expected, "{topic:?}");

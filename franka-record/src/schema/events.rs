@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_a_motion_from_outside_is_an_incident() {
+    fn incident_is_a_motion_ended_from_outside() {
         let incidents: Vec<_> = every_kind()
             .into_iter()
             .filter(EventKind::is_incident)

@@ -92,7 +92,7 @@ fn near(got: f64, expected: f64) -> bool {
 }
 
 #[test]
-fn episodes_are_frames_at_the_rate_of_the_dataset_with_the_next_reference_as_action() {
+fn episodes_are_frames_with_the_next_reference_as_action() {
     let root = folder("frames");
     let mut dataset = Dataset::create(&root, options()).unwrap();
     // Every third state was lost.
@@ -214,7 +214,7 @@ fn episodes_are_added_to_a_dataset_that_is_there() {
 }
 
 #[test]
-fn cycles_before_and_after_the_motion_of_an_episode_are_left_out() {
+fn cycles_around_the_motion_of_an_episode_are_left_out() {
     let root = folder("around");
     let samples = (0..300).map(|millisecond| {
         let mut sample = sample(millisecond);
@@ -232,7 +232,7 @@ fn cycles_before_and_after_the_motion_of_an_episode_are_left_out() {
 }
 
 #[test]
-fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
+fn invalid_episode_or_dataset_is_refused_with_a_reason() {
     let root = folder("refused");
     let refused = |result: Result<u64, ExportError>| result.unwrap_err().to_string();
     let mut dataset = Dataset::create(&root, options()).unwrap();

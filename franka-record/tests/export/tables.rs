@@ -141,7 +141,7 @@ fn tables_that_were_interrupted_are_in_no_later_ones_way() {
 }
 
 #[test]
-fn a_name_that_no_column_has_is_refused_with_those_that_there_are() {
+fn unknown_column_is_refused_with_the_known_ones() {
     let error = Columns::named(["q", "tau_j"]).unwrap_err();
     assert_eq!(error.got, "tau_j");
     assert!(error.to_string().contains("tau_J, "), "{error}");

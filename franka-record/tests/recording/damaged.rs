@@ -320,7 +320,7 @@ fn cassettes_are_no_recordings_but_called_cassettes() {
 }
 
 #[test]
-fn what_a_killed_program_has_flushed_is_readable() {
+fn flushed_data_of_a_killed_program_is_readable() {
     if let Some(path) = std::env::var_os(CHILD) {
         record_for_ever(Path::new(&path));
     }
@@ -329,7 +329,7 @@ fn what_a_killed_program_has_flushed_is_readable() {
     let mut child = Command::new(std::env::current_exe().unwrap())
         .args([
             "--exact",
-            "damaged::what_a_killed_program_has_flushed_is_readable",
+            "damaged::flushed_data_of_a_killed_program_is_readable",
         ])
         .env(CHILD, &path)
         .stdout(Stdio::null())

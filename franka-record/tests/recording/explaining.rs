@@ -98,7 +98,7 @@ fn a_recording_is_explained_as_its_cycles_are() {
 }
 
 #[test]
-fn what_cannot_be_read_of_a_recording_is_noted_and_the_rest_explained() {
+fn unreadable_part_is_noted_and_the_rest_explained() {
     let (mut bytes, _) = stopped();
     let middle = bytes.len() / 4;
     bytes[middle..middle + 2000].fill(0xff);

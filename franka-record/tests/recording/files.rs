@@ -60,7 +60,7 @@ fn cycles_of_other_connections_follow_those_of_the_first() {
 }
 
 #[test]
-fn what_happens_before_the_first_cycle_has_the_time_at_which_the_robot_was_attached() {
+fn event_before_the_first_cycle_has_the_attach_time() {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");
     let recorder = Recorder::to_file(&path, quick()).unwrap();
@@ -213,7 +213,7 @@ fn the_last_seconds_are_written_when_a_reflex_ends_a_motion() {
 }
 
 #[test]
-fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_once() {
+fn full_disk_keeps_earlier_data_and_reports_one_error() {
     if let Some(path) = std::env::var_os(FULL) {
         return record_until_full(Path::new(&path));
     }
@@ -226,7 +226,7 @@ fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_o
         .arg("-c")
         .arg("trap '' XFSZ; ulimit -f 900; exec \"$0\" \"$@\"");
     child.arg(std::env::current_exe().unwrap());
-    let name = "what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_once";
+    let name = "full_disk_keeps_earlier_data_and_reports_one_error";
     child.args(["--exact", &format!("files::{name}"), "--nocapture"]);
     let output = child.env(FULL, &path).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
@@ -283,7 +283,7 @@ fn record_until_full(path: &Path) {
 
 /// A folder path that is a file accepts no files, even for a privileged user.
 #[test]
-fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
+fn unwritable_folder_is_reported_and_recording_goes_on() {
     let scratch = Scratch::new();
     let folder = scratch.path("file");
     std::fs::write(&folder, b"").unwrap();

@@ -116,7 +116,7 @@ mod tests {
     );
 
     #[test]
-    fn what_is_wrong_is_told_in_the_order_of_the_reference_client() {
+    fn write_errors_come_in_the_reference_clients_order() {
         use WriteError as E;
         let bad = MotionCommand::JointPositions(JointPositions([f64::NAN; 7]));
         let bad_torques = Torques([f64::NAN; 7]);

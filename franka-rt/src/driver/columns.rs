@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn every_column_has_a_name_of_its_own_and_as_many_numbers_as_its_shape() {
+    fn column_has_unique_name_and_as_many_numbers_as_shape() {
         let (state, record) = (RobotState::default(), Record::default());
         for column in Column::all() {
             let mut row = Vec::new();

@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_link_that_comes_and_goes_unheard_leaves_room_for_the_end_of_a_motion() {
+    fn unheard_link_events_leave_room_for_the_motions_end() {
         let mut queue = EventQueue::default();
         for ms in 1..=100 {
             queue.push(Event::LinkLost {

@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_out_of_range_is_refused_with_the_range() {
+    fn link_timeout_out_of_range_is_refused_with_the_range() {
         for (us, accepted) in [
             (0, false),
             (19_999, false),

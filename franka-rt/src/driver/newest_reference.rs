@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_guard_that_bound_in_one_cycle_counts_for_a_tenth_of_a_second() {
+    fn guard_counts_as_bound_for_a_tenth_of_a_second() {
         let (mut writer, reader) = ReferenceWriter::new();
         let mut at = |time: u64, bindings: &[Guard]| {
             writer.write(&Record {

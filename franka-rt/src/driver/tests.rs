@@ -139,7 +139,7 @@ fn a_setpoint_that_is_not_finite_gets_no_answer_either() {
 
 /// The velocities are finite, but the Coriolis torques are not.
 #[test]
-fn a_session_whose_command_is_not_finite_fails_and_sends_nothing() {
+fn session_with_non_finite_command_fails_and_sends_nothing() {
     let mut driver = armed_with(session(nearby(), Backend::Torques));
     assert!(answer(&mut driver, &moving(101)).is_some());
     let wild = RobotState {
@@ -191,7 +191,7 @@ fn torques(function: impl FnMut(u64) -> f64 + Send + 'static) -> Program {
 }
 
 #[test]
-fn a_program_that_fails_leaves_the_motion_without_commands_until_the_robot_ends_it() {
+fn failed_program_sends_no_commands_until_motion_ends() {
     let mut driver = armed_with(torques(|time| if time < 103 { 1.0 } else { f64::NAN }));
     assert!(answer(&mut driver, &moving(101)).is_some());
     assert!(answer(&mut driver, &moving(102)).is_some());
@@ -221,7 +221,7 @@ fn a_program_that_fails_leaves_the_motion_without_commands_until_the_robot_ends_
 }
 
 #[test]
-fn a_command_that_is_not_finite_fails_the_motion_whatever_program_made_it() {
+fn non_finite_asynchronous_target_fails_the_motion() {
     let (positions, mut targets) = AsynchronousPositions::new();
     let mut driver = armed_with(Program::Asynchronous(positions));
     let mut target = AsynchronousTarget {
@@ -294,7 +294,7 @@ fn an_abandoned_program_gets_no_more_states_in_any_phase() {
 }
 
 #[test]
-fn what_is_written_answers_the_newest_state_and_is_logged_with_the_next() {
+fn written_command_answers_newest_state_and_is_logged_next() {
     let mut driver = armed_with(Program::Active(ActiveControl));
     let command = |tau| Command::torques(Version::V10, Torques([tau; 7]));
     assert_eq!(
@@ -364,7 +364,7 @@ fn ended(driver: &mut Driver) -> Ended {
 }
 
 #[test]
-fn a_motion_counts_what_was_lost_and_what_was_skipped_until_it_ends() {
+fn motion_counts_lost_and_skipped_states_until_its_end() {
     let mut driver = armed_with(torques(|_| 1.0));
     let state = |time, rate| RobotState {
         control_command_success_rate: rate,

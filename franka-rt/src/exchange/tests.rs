@@ -117,7 +117,7 @@ fn a_number_impossibly_far_ahead_does_not_make_the_link_deaf() {
 }
 
 #[test]
-fn a_receive_that_fails_again_and_again_does_not_keep_the_processor_busy() {
+fn failing_receive_does_not_keep_the_processor_busy() {
     let mut bench = Bench::new();
     // This descriptor is not a socket, so every receive fails at once.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
@@ -225,7 +225,7 @@ fn the_socket_is_of_the_family_of_the_robot() {
 }
 
 #[test]
-fn a_robot_on_ipv6_and_one_whose_address_is_mapped_are_known_and_answered() {
+fn ipv6_and_mapped_robot_addresses_are_known_and_answered() {
     let v6 = IpAddr::from(Ipv6Addr::LOCALHOST);
     let v4 = IpAddr::from(Ipv4Addr::LOCALHOST);
     let mapped = IpAddr::from(Ipv4Addr::LOCALHOST.to_ipv6_mapped());

@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     #[cfg(feature = "serde")]
-    fn it_can_be_stored() {
+    fn identified_survives_a_round_trip_through_json() {
         let text = serde_json::to_string(&found()).unwrap();
         assert!(text.starts_with(r#"{"kind":"Fr3","joints":[{"friction":{"value":0.8,"#));
         assert_eq!(serde_json::from_str::<Identified>(&text).unwrap(), found());

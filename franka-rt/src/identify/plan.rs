@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn it_takes_a_minute_and_is_small() {
+    fn plan_takes_a_minute_and_keeps_motions_small() {
         for model in [Model::fr3(), Model::fer()] {
             let plan = plan(model, READY.into());
             assert_eq!(plan.motions().len(), 31);
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn wherever_it_begins_it_keeps_off_the_limits_and_all_joints_go_both_ways() {
+    fn plan_keeps_off_limits_and_moves_all_joints_both_ways() {
         let mut random = SmallRng::seed_from_u64(7);
         for model in [Model::fr3(), Model::fer()] {
             let limits = model.joint_limits();

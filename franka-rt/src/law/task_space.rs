@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_operational_space_of_the_model_where_the_arm_is_regular() {
+    fn task_space_agrees_with_the_models_operational_space() {
         let (space, jacobian, mass) = space_at(&READY);
         let model = franka_model::OperationalSpace::new(&jacobian, &mass).expect("physical");
         let translational = model.translational_inertia().expect("regular");

@@ -147,7 +147,7 @@ fn an_arm_on_its_way_is_braked_after_the_connection_is_gone() {
 }
 
 #[test]
-fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
+fn stalled_borrower_ends_motion_and_blocks_new_ones() {
     let (mut pair, _, goal) = LifecycleAndDriver::moving();
     let silence = Duration::from_millis(100);
     pair.lifecycle.on_stall(Some(silence), NOW);
@@ -174,7 +174,7 @@ fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
 
 /// The robot is asked to stop the first motion, but continues to show it.
 #[test]
-fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_not_come() {
+fn motion_waits_for_end_of_an_abandoned_one_or_fails() {
     let (mut pair, motion, first) = LifecycleAndDriver::moving();
     let violation = Violation::SecondMotionStarted { id: CommandId(1) };
     pair.lifecycle.on_move_violation(motion, violation, NOW);

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn any_reading_that_shows_real_time_counts_and_no_lesser_preemption_does() {
+    fn kernel_with_any_real_time_reading_is_real_time() {
         let plain = "#1 SMP PREEMPT_DYNAMIC Debian 6.12.43-1 (2025-08-27)";
         for (version, flag, configured, expected) in [
             // Debian 13, since 6.12: the file does not exist.

@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_touched_costs_no_page_fault_and_what_was_not_does() {
+    fn touched_stack_costs_no_page_fault() {
         for touched in [DEFAULT, 4 * DEFAULT] {
             let used = touched - 4 * FRAME;
             let met = faults_of(touched, used);

@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn braking_keeps_inside_the_envelope_and_is_made_no_gentler_than_that_takes() {
+    fn braking_stays_in_envelope_and_no_gentler_than_needed() {
         let robot = Model::fr3().joint_limits();
         let mut gentler = 0;
         for i in 0..7 {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_few_milliradians_of_the_range_are_lost_and_none_where_the_envelope_is_flat() {
+    fn range_shrinks_slightly_unless_the_envelope_is_flat() {
         let robot = Model::fr3().joint_limits();
         for i in 0..7 {
             let (lower, upper) = range(i, robot);

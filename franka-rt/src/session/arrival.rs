@@ -309,7 +309,7 @@ mod tests {
     const WORKING: (bool, bool) = (true, true);
 
     #[test]
-    fn an_arm_without_progress_is_short_of_its_target_after_half_a_second() {
+    fn arm_without_progress_falls_short_after_half_a_second() {
         let mut landing = landing(Settling::default());
         let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
         // The arm creeps, moves, and the law works on it.
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_that_goes_on_moving_is_short_of_its_target_after_the_timeout() {
+    fn arm_that_keeps_moving_falls_short_at_the_timeout() {
         let mut landing = landing(Settling::default());
         let away = Isometry3::translation(0.02, 0.0, 0.0);
         let cycles = 5000;
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn an_arm_that_never_rests_is_released_in_vain_and_its_motion_does_not_finish() {
+    fn restless_arm_is_released_in_vain_and_does_not_finish() {
         let mut release = Release::new(None, JointVector::zeros(), &JointVector::zeros());
         let cycles = RELEASE_TIMEOUT.as_millis() as u32;
         for _ in 0..cycles {

@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_speed_that_no_motion_can_have_is_told_with_the_range_of_those_that_can() {
+    fn impossible_speed_is_refused_with_the_possible_range() {
         for model in [Model::fr3(), Model::fer()] {
             let budget = Budget::of(model.joint_limits());
             // The default is a fifth of the joints' jerks, and those grow with the cube.

@@ -241,7 +241,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_acceleration_of_a_leashed_reference_fades_and_comes_back_without_a_step() {
+    fn leashed_acceleration_fades_and_returns_without_a_step() {
         let mut inertia = Inertia {
             acceleration: JointVector::zeros(),
             free: RETURN,

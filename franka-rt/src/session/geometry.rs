@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn residuals_are_rounding_with_the_right_lengths_and_far_beyond_with_others() {
+    fn residual_is_rounding_only_with_the_right_lengths() {
         let [described, recorded] = Lengths::KNOWN.map(|it| Model::fr3().clone().with_lengths(it));
         for k in 0..200 {
             let q =

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_that_begin_to_follow_their_own_pose_go_on_without_a_kick() {
+    fn joints_taking_up_their_own_pose_go_on_without_a_kick() {
         for model in [Model::fr3(), Model::fer()] {
             let (ee, budget) = (EndEffector::default(), Budget::of(model.joint_limits()));
             let moving = Reference {
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_that_takes_over_from_a_plan_of_the_joints_keeps_the_jerk_that_the_robot_sees() {
+    fn pose_taking_over_a_joint_plan_keeps_the_jerk_bound() {
         for model in [Model::fr3(), Model::fer()] {
             let (ee, limits) = (EndEffector::default(), model.joint_limits());
             let joints = core::array::from_fn(|i| franka_otg::AxisLimits {
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_motion_over_the_joints_fades_without_a_step() {
+    fn drift_of_a_joint_motion_fades_without_a_step() {
         let mut drift = Drift::of(JointVector::repeat(1.0));
         let mut last = 1.0;
         for _ in 0..300 {

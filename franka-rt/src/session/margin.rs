@@ -179,7 +179,7 @@ mod tests {
     /// Results of simulated arms: `arms --law joint --scaled joint-damping --gain F` was quiet with
     /// a factor of 2.4 and was not with 3. With all gains of the default it was quiet with 4.
     #[test]
-    fn it_is_what_simulated_arms_have() {
+    fn margin_matches_simulated_arms() {
         let margin = of(Gains::joint()).damping;
         assert!((2.4..3.0).contains(&margin), "{margin}");
         let margin = of(Gains::cartesian()).damping;
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_a_factor_on_the_gains() {
+    fn margin_is_a_factor_on_the_gains() {
         let gains = Gains::cartesian();
         let margin = of(gains);
         let damped = Gains {

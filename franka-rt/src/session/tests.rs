@@ -123,7 +123,7 @@ fn a_guided_arm_is_answered_from_where_it_is() {
 }
 
 #[test]
-fn a_goal_that_comes_as_its_common_start_breaks_is_not_taken_for_the_one_that_waited() {
+fn goal_at_a_broken_start_is_not_taken_for_the_waiting_one() {
     let fault = StartFault::Withdrawn { member: 1 };
     for another in [false, true] {
         let mut arm = Arm::new();
@@ -159,7 +159,7 @@ fn watched(by: f64, milliseconds: u64) -> Goal {
 }
 
 #[test]
-fn a_state_with_a_force_that_is_no_number_is_answered_and_not_reacted_to() {
+fn non_finite_force_is_answered_without_a_reaction() {
     let mut arm = Arm::new();
     arm.goals.write(watched(1.0, 100_000));
     for force in [0.0, f64::NAN, f64::INFINITY, 0.0] {
@@ -180,7 +180,7 @@ fn a_state_with_a_force_that_is_no_number_is_answered_and_not_reacted_to() {
 }
 
 #[test]
-fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
+fn goal_does_not_react_before_its_common_start() {
     let mut arm = Arm::new();
     arm.goals.write(watched(1.0, 100));
     assert!(!arm.session.is_withdrawn());

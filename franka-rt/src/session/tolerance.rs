@@ -107,7 +107,7 @@ mod tests {
 
     /// Compares with the 99th percentiles of `arms --law springs` and its siblings.
     #[test]
-    fn what_springs_alone_leave_is_within_it() {
+    fn error_left_by_springs_alone_is_within_tolerance() {
         for (gains, [mm, mrad]) in [
             (Gains::cartesian().without_compensation(), [7.7, 25.2]),
             (Gains::joint().without_compensation(), [6.9, 32.4]),

@@ -259,7 +259,7 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
 
         #[test]
-        fn the_nearest_rotation_is_the_factor_of_the_singular_value_decomposition(m in block()) {
+        fn nearest_rotation_is_the_factor_of_the_svd(m in block()) {
             let mut singular = m.singular_values();
             singular.as_mut_slice().sort_by(f64::total_cmp);
             let (least, middle) = (singular[0], singular[1]);
@@ -280,7 +280,7 @@ mod tests {
         }
 
         #[test]
-        fn what_is_not_close_and_what_is_give_the_same(r in rotation(), noise in block()) {
+        fn polishing_and_procrustes_give_the_same_rotation(r in rotation(), noise in block()) {
             let m = r + noise * 0.01;
             let polished = polished(m).expect("close to a rotation");
             prop_assert!((polished - procrustes(&m)).amax() < 4e-15);

@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn the_total_counts_what_follows_the_command_and_not_twice_what_precedes_it() {
+    fn total_adds_times_after_the_command_and_no_time_twice() {
         assert_eq!(timed().total(), US(20 + 60 + 30 + 20));
         let untimed = CycleTimes {
             phases: None,

@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_printed_is_a_line() {
+    fn histogram_prints_as_one_line() {
         let histogram = Histogram::default();
         histogram.note(Duration::from_micros(7));
         let text = format!("{histogram:?}");

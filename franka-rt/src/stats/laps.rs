@@ -95,7 +95,7 @@ mod tests {
 
     #[cfg(not(feature = "cycle-phases"))]
     #[test]
-    fn nothing_is_timed_or_kept_without_the_feature() {
+    fn laps_are_neither_timed_nor_kept_without_the_feature() {
         use super::*;
 
         let mut laps = Laps::start(Instant::now());

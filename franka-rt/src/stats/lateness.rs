@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_late_is_late_by_that_much() {
+    fn lateness_equals_the_extra_delay() {
         let delay = |time| if time % 10 == 7 { 100 + time } else { 20 };
         let found = lateness(0..500, 0, delay);
         for (time, late) in found.iter().enumerate() {
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_first_state_is_believed_until_a_more_punctual_one_comes() {
+    fn late_first_state_is_trusted_until_a_punctual_one() {
         let found = lateness(0..4, 0, |time| if time < 2 { 700 } else { 50 });
         assert_eq!(found, [0, 0, 0, 0]);
         let found = lateness(0..4, 0, |time| if time == 1 { 50 } else { 700 });
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stood_still_is_punctual_again_within_two_windows() {
+    fn stalled_robot_is_punctual_again_within_two_windows() {
         let found = lateness(0..1000, 0, |time| if time < 500 { 0 } else { 5000 });
         assert!(found[500..530].iter().all(|&late| late == 5000));
         assert!(found[564..].iter().all(|&late| late == 0));

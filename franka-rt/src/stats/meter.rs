@@ -145,7 +145,7 @@ mod tests {
     const US: fn(u64) -> Duration = Duration::from_micros;
 
     #[test]
-    fn an_answer_is_measured_from_the_receipt_and_from_when_it_was_due() {
+    fn answer_is_measured_from_receipt_and_due_time() {
         let mut meter = Meter::new();
         let start = Instant::now();
         assert_eq!(meter.heard(), None);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_cycle_is_kept_with_its_phases_and_the_newest_overrun_beside_it() {
+    fn worst_cycle_keeps_its_phases_beside_newest_overrun() {
         let mut meter = Meter::new();
         let stats = meter.stats().clone();
         assert_eq!((stats.worst_cycle(), stats.newest_overrun()), (None, None));

@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn states_are_counted_with_what_is_missing_and_rates_but_those_of_the_ends() {
+    fn statistics_count_missing_states_and_inner_rates() {
         let statistics = some();
         assert_eq!(statistics.cycles, 5);
         assert_eq!((statistics.lost_states, statistics.skipped_states), (1, 2));

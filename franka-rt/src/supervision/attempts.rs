@@ -85,7 +85,7 @@ mod tests {
     const MS: fn(u64) -> Duration = Duration::from_millis;
 
     #[test]
-    fn pauses_double_up_to_the_longest_and_chance_makes_them_shorter() {
+    fn pauses_double_up_to_a_maximum_and_jitter_shortens_them() {
         let backoff = Backoff {
             first: MS(100),
             most: MS(500),

@@ -7,7 +7,7 @@ fn stop_of(member: usize, fault: MemberFault) -> TeamStop {
 }
 
 #[test]
-fn a_round_opens_when_the_last_goal_is_there_and_each_round_anew() {
+fn round_opens_with_the_last_goal_each_time_anew() {
     let (coordinator, [mut first, mut second]) = team();
     for now in [100, 5000] {
         let round = coordinator.begin();
@@ -67,7 +67,7 @@ fn a_session_that_ends_stops_what_is_done_after_a_stop_too() {
 }
 
 #[test]
-fn a_stop_is_seen_by_each_member_whatever_begins_before_it_looks() {
+fn stop_is_seen_by_each_member_despite_new_rounds() {
     let (coordinator, [mut first, mut second]) = team();
     let round = coordinator.begin();
     first.pass(round, 0);
@@ -89,7 +89,7 @@ fn a_stop_is_seen_by_each_member_whatever_begins_before_it_looks() {
 }
 
 #[test]
-fn a_fault_in_a_round_is_seen_by_each_member_and_lets_the_next_round_begin() {
+fn fault_is_seen_by_each_member_and_frees_the_next_round() {
     let (coordinator, [mut first, mut second]) = team();
     let round = coordinator.begin();
     first.pass(round, 0);
@@ -139,7 +139,7 @@ fn a_stop_is_seen_once_where_the_numbers_of_rounds_begin_anew() {
 }
 
 #[test]
-fn what_is_taken_back_stops_if_it_is_the_newest_round_and_goes_on() {
+fn taken_back_round_stops_only_if_it_is_the_newest() {
     let (coordinator, [mut first]) = team();
     let (older, round) = (coordinator.begin(), coordinator.begin());
     coordinator.take_back(older);
@@ -170,7 +170,7 @@ fn fault_under_way_stops_the_round_that_waits() {
 }
 
 #[test]
-fn what_a_member_tells_of_a_round_is_what_the_others_read_of_it() {
+fn report_of_a_member_reaches_the_others_of_its_round() {
     let (coordinator, [first, second, third]) = team();
     let (older, round) = (coordinator.begin(), coordinator.begin());
     let told = |remaining, lags| Carrying { remaining, lags };

@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_for_which_the_watch_itself_is_held_up_is_no_stall_of_the_borrower() {
+    fn watch_delay_is_no_stall_of_the_borrower() {
         let (lifetime, event_fd) = (Lifetime::default(), EventFd::new().expect("a descriptor"));
         let mut now = Instant::now();
         let mut watch = BorrowerWatch::new(&lifetime, &event_fd, 5 * TICK, now);

@@ -62,7 +62,7 @@ fn a_member_that_leaves_lets_the_others_go_with_its_number() {
 }
 
 #[test]
-fn who_is_taken_out_goes_on_by_itself() {
+fn withdrawn_member_goes_on_by_itself() {
     let [mut first, mut second] = StartBarrier::new().tickets();
     assert_eq!(first.pass(0), Gate::Closed);
     first.withdraw();

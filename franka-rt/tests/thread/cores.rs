@@ -58,7 +58,7 @@ impl Core for Probe {
 }
 
 #[test]
-fn every_state_is_answered_to_its_sender_before_its_record_is_made() {
+fn state_is_answered_before_its_record_is_made() {
     let (mut handle, robot) = start(config(), Probe::default());
     for message_id in 1..=100 {
         robot.send(message_id);

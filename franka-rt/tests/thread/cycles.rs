@@ -30,7 +30,7 @@ fn wait_until_there<R>(reader: &CycleReader<R>, count: usize) {
 }
 
 #[test]
-fn readers_get_every_cycle_from_where_they_came_to_where_they_went() {
+fn readers_get_each_cycle_from_attach_to_detach() {
     let (mut handle, peer) = start(config(), Probe::default());
     exchange_states(&peer, 1..=3);
     let mut early = handle.cycles.attach(DEPTH).expect("there is room");
@@ -59,7 +59,7 @@ fn readers_get_every_cycle_from_where_they_came_to_where_they_went() {
 }
 
 #[test]
-fn what_does_not_fit_is_counted_and_told_with_the_next_cycle_that_does() {
+fn cycles_that_do_not_fit_are_counted_with_the_next_one() {
     let (handle, peer) = start(config(), Probe::default());
     let mut held_up = handle.cycles.attach(2).expect("there is room");
     let mut other = handle.cycles.attach(DEPTH).expect("there is room");
@@ -75,7 +75,7 @@ fn what_does_not_fit_is_counted_and_told_with_the_next_cycle_that_does() {
 }
 
 #[test]
-fn a_reader_that_waits_returns_with_the_cycle_the_time_or_the_end() {
+fn waiting_reader_returns_at_cycle_timeout_or_end() {
     let (handle, peer) = start(config(), Probe::default());
     let mut reader = handle.cycles.attach(DEPTH).expect("there is room");
     assert!(!reader.wait(Duration::from_millis(1)), "no state was sent");
@@ -95,7 +95,7 @@ fn a_reader_that_waits_returns_with_the_cycle_the_time_or_the_end() {
 }
 
 #[test]
-fn too_many_readers_are_refused_and_a_place_is_free_as_soon_as_one_goes() {
+fn excess_readers_are_refused_until_one_leaves() {
     let (handle, peer) = start(config(), Probe::default());
     let attach = || handle.cycles.attach(DEPTH);
     let mut readers: Vec<_> = (0..READERS_MAX)

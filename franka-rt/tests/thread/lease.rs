@@ -8,7 +8,7 @@ use franka_rt::thread::{BorrowError, WriteFault};
 use super::*;
 
 #[test]
-fn whoever_borrows_the_cycle_runs_it_and_gives_it_back() {
+fn borrower_runs_the_cycle_and_gives_it_back() {
     let (mut handle, robot) = start(config(), Probe::default());
     robot.send(1);
     assert_eq!(robot.command().message_id, 1, "the thread answers");
@@ -38,7 +38,7 @@ fn whoever_borrows_the_cycle_runs_it_and_gives_it_back() {
 }
 
 #[test]
-fn one_of_many_borrowers_at_once_gets_it_and_the_thread_goes_on_after() {
+fn cycle_survives_many_borrowers_at_once() {
     let (handle, robot) = start(config(), Probe::default());
     for round in 1..=20 {
         let borrowers: Vec<_> = (0..4)

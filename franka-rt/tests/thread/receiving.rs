@@ -98,7 +98,7 @@ fn datagrams_from_elsewhere_change_nothing() {
 }
 
 #[test]
-fn short_datagrams_are_reported_once_and_the_next_state_is_taken() {
+fn short_datagrams_are_reported_once_and_end_nothing() {
     let (mut handle, robot) = start(config(), Driver::new(VERSION));
     let expected = state(1).len();
     for _ in 0..20 {
@@ -157,7 +157,7 @@ fn silence_is_reported_and_a_later_state_taken() {
 
 /// A busy machine may delay single attempts, so only one of them must be in time.
 #[test]
-fn the_shortest_link_timeout_is_noticed_before_another_has_passed() {
+fn shortest_link_timeout_is_noticed_within_two_periods() {
     let timeout = LinkTimeout::new(LinkTimeout::MIN).expect("in range");
     wait_for("timely notice", || {
         let driver = Driver::new(VERSION).with_link_timeout(timeout);
@@ -213,7 +213,7 @@ extern "C" fn hold_up(_: libc::c_int) {
 
 /// Uses a borrower's thread, because the driver's own thread blocks signals.
 #[test]
-fn a_state_that_came_while_the_thread_was_held_up_counts_before_the_silence() {
+fn state_received_during_a_hold_up_averts_a_lost_link() {
     const LATE: u64 = 1_000_000;
     let (mut handle, robot) = start(config(), Driver::new(VERSION));
     let other = robot.0.try_clone().expect("a descriptor");

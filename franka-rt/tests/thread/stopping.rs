@@ -43,7 +43,7 @@ fn dropping_the_owner_stops_the_thread_without_waiting() {
 }
 
 #[test]
-fn what_is_enforced_and_refused_starts_nothing() {
+fn refused_enforced_setting_starts_no_thread() {
     let (socket, _) = socket();
     let scheduling = Scheduling {
         priority: Some(1_000),

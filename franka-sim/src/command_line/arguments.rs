@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_robot_is_refused() {
+    fn arguments_that_make_no_robot_are_refused() {
         let patience = |arguments| parse(arguments).ok().and_then(|parsed| parsed.virtual_time);
         // libfranka drops a connection when no state comes for a second. A client that skips an
         // answer must not lose its connection for this reason.

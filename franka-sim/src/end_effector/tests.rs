@@ -117,7 +117,7 @@ fn widths_are_refused_until_homing_has_found_the_largest() {
 }
 
 #[test]
-fn a_move_takes_the_time_that_its_speed_asks_for_up_to_the_fastest() {
+fn move_takes_the_time_of_its_speed_up_to_the_fastest() {
     for (speed, milliseconds) in [(0.01, 4000), (0.04, 1000), (0.1, 400), (5.0, 400)] {
         let mut hand = homed(Fingers::new());
         let (status, elapsed) = hand.complete(&move_to(0.04, speed));
@@ -128,7 +128,7 @@ fn a_move_takes_the_time_that_its_speed_asks_for_up_to_the_fastest() {
 }
 
 #[test]
-fn what_makes_no_sense_fails_at_once_and_moves_nothing() {
+fn senseless_request_fails_at_once_and_moves_nothing() {
     let mut hand = homed(Fingers::new());
     let speeds = [0.0, -0.1, f64::NAN, f64::INFINITY];
     let widths = [-0.001, 0.081, f64::NAN, f64::INFINITY];
@@ -204,7 +204,7 @@ fn a_grasp_of_what_is_held_is_unsuccessful_and_holds_on() {
 }
 
 #[test]
-fn an_object_that_is_lost_is_no_longer_grasped_and_the_fingers_close() {
+fn lost_object_is_no_longer_grasped_and_fingers_close() {
     let mut hand = homed(Fingers::new().with_object(0.05));
     hand.complete(&grasp(0.05));
     assert_eq!(hand.device.mechanism_mut().take_object(), Some(0.05));
@@ -266,7 +266,7 @@ fn stop_lets_go_of_what_is_held() {
 }
 
 #[test]
-fn a_client_that_goes_stops_its_action_and_leaves_a_finished_grasp() {
+fn client_that_leaves_stops_its_action_but_not_its_grasp() {
     let mut hand = homed(Fingers::new().with_object(0.05));
     hand.ask(&grasp(0.05));
     hand.run(100);
@@ -357,7 +357,7 @@ fn a_vacuum_is_reached_on_an_object_and_held() {
 }
 
 #[test]
-fn what_takes_too_long_is_unsuccessful() {
+fn suction_that_takes_too_long_is_unsuccessful() {
     let mut gripper = Pair::new(Suction::new());
     assert_eq!(
         gripper.complete(&vacuum(10, 300)),
@@ -376,7 +376,7 @@ fn what_takes_too_long_is_unsuccessful() {
 }
 
 #[test]
-fn a_stop_of_the_pump_aborts_and_an_object_that_is_lost_takes_the_vacuum_along() {
+fn pump_stop_aborts_and_a_lost_object_ends_the_vacuum() {
     let mut gripper = Pair::new(Suction::new().with_object());
     let aborted = gripper.ask(&vacuum(70, 5000));
     gripper.run(100);

@@ -139,7 +139,7 @@ fn a_fall_turns_potential_into_kinetic_energy_and_loses_none() {
 }
 
 #[test]
-fn what_is_missing_or_left_over_is_the_steps_and_goes_with_them() {
+fn energy_surplus_shrinks_with_the_steps() {
     for_each(Some(Friction::NONE), |name, book| {
         let errors = [STEP, STEP / 2.0].map(|dt| {
             let holding = book.plant.place(&READY);

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn the_light_last_joint_is_stable_under_a_strong_damper_held_for_a_millisecond() {
+    fn light_last_joint_is_stable_under_a_held_strong_damper() {
         let (mut arm, mut train) = robot(&Arm::ideal(RobotKind::Fr3));
         let kick = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
         train.step(&mut arm, &kick, &External::NONE, 0.01);

@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_comes_from_afar_may_pass_the_bound_by_the_allowance() {
+    fn clearance_from_afar_may_pass_bound_by_the_allowance() {
         let mut ratchet = Ratchet::new();
         for (clearance, passed) in [(3.0, false), (1.0, false), (0.95, false), (0.85, true)] {
             assert_eq!(
@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn what_begins_beyond_the_bound_may_leave_but_not_go_back() {
+    fn start_beyond_the_bound_may_leave_but_not_return() {
         let mut ratchet = Ratchet::new();
         for (clearance, passed) in [
             (0.3, false),

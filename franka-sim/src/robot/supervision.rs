@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_is_measured_to_the_nearest_face_whatever_the_corners_signs() {
+    fn depth_is_measured_to_nearest_face_for_any_corner_signs() {
         let mut frame = Matrix4::<f64>::identity();
         frame.m14 = 1.0;
         let mut object_frame = [0.0; 16];

@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busy_host_takes_little_of_the_patience_and_leaves_no_client_in_silence() {
+    fn patience_outlasts_a_busy_host_but_not_long_silence() {
         const PATIENCE: Duration = Duration::from_millis(100);
         let held_up = Duration::from_millis(60);
         assert!(!after(8, held_up).is_over(PATIENCE));

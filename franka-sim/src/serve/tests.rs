@@ -83,7 +83,7 @@ pub(super) fn runtime() -> tokio::runtime::Runtime {
 }
 
 #[test]
-fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
+fn states_keep_coming_while_the_runtime_is_blocked() {
     let runtime = runtime();
     // The simulator is never further ahead of the client than the client's socket has room for.
     let (read, reads) = std::sync::mpsc::channel();
@@ -133,7 +133,7 @@ fn jobs_before_and_after_each_state_miss_none() {
 }
 
 #[test]
-fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
+fn robots_in_step_share_each_millisecond_until_one_stops() {
     let counts = [0, 1].map(|_| Arc::new(AtomicU64::new(0)));
     let apart = Arc::new(AtomicU64::new(0));
     let counting = |number: usize| {
@@ -171,7 +171,7 @@ fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
 }
 
 #[test]
-fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
+fn second_client_is_reset_and_the_next_one_served() {
     let runtime = runtime();
     let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let first = Client::connect(sim.addr());
@@ -187,7 +187,7 @@ fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
 }
 
 #[test]
-fn a_connection_that_says_nothing_is_closed_and_keeps_no_client_out() {
+fn silent_connection_is_closed_and_blocks_no_client() {
     let runtime = runtime();
     let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
     let mut silent = TcpStream::connect(sim.addr()).expect("a listener");
@@ -318,7 +318,7 @@ fn a_simulation_that_dies_says_so_and_closes_its_port() {
 }
 
 #[test]
-fn what_clients_hear_passes_the_network() {
+fn states_to_clients_pass_the_simulated_network() {
     let runtime = runtime();
     let delay = Duration::from_millis(30);
     let late = Conditions {
@@ -364,7 +364,7 @@ fn in_virtual_time_a_network_delays_by_the_time_of_the_robot() {
 }
 
 #[test]
-fn what_the_network_cuts_reaches_no_client() {
+fn datagrams_cut_by_the_network_reach_no_client() {
     let runtime = runtime();
     let mut network = Network::perfect();
     network.to_client.cut(Duration::ZERO..Duration::MAX);

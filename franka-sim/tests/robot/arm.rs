@@ -30,7 +30,7 @@ fn lean(pair: &mut Pair, most: f64, milliseconds: u32) -> RobotState {
 }
 
 #[test]
-fn friction_of_the_links_side_shows_in_the_estimate_and_that_of_the_motors_does_not() {
+fn estimate_shows_friction_of_the_link_side_only() {
     for share in [0.0, 0.5, 1.0] {
         let mut pair = pair(|arm| {
             arm.friction = Friction {
@@ -135,7 +135,7 @@ fn the_state_has_the_models_pose_and_the_robot_the_true_one() {
 }
 
 #[test]
-fn what_the_state_reports_is_apart_from_where_the_links_are() {
+fn reported_pose_is_separate_from_the_links_true_pose() {
     use franka_model::{EndEffector, Frame, Model};
     use franka_sim::arm::StateGeometry;
 
@@ -222,7 +222,7 @@ fn torques_come_in_quanta_and_noise_is_as_large_as_the_arm_says() {
 }
 
 #[test]
-fn sampled_arms_hold_their_pose_quietly_under_the_robots_own_controllers() {
+fn sampled_arms_hold_still_under_the_robots_controllers() {
     for family in [Family::nominal(), Family::realistic(), Family::bad()] {
         for seed in 0..5 {
             let kind = [RobotKind::Fr3, RobotKind::Fer][seed as usize % 2];

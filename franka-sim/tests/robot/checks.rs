@@ -32,7 +32,7 @@ fn a_small_kink_breaks_the_jerk_only() {
 }
 
 #[test]
-fn commands_at_the_nominal_bounds_pass_on_the_exact_and_on_the_published_history() {
+fn commands_at_the_nominal_bounds_pass_on_both_histories() {
     for published in [false, true] {
         let (mut pair, _) = joint_velocity();
         let (mut v, mut a) = (0.0, 0.0);
@@ -142,7 +142,7 @@ fn a_cartesian_ramp_may_be_too_fast_for_the_joints_alone() {
 }
 
 #[test]
-fn a_matrix_that_is_no_pose_and_a_number_that_is_none_are_refused() {
+fn mirrored_pose_and_nan_torque_are_refused() {
     let (mut pair, id) = cartesian(MoveGeneratorMode::CartesianPosition);
     let mut mirrored = pair.state.O_T_EE_c;
     mirrored[0] = -mirrored[0];
@@ -238,7 +238,7 @@ fn lost_commands_are_extrapolated_and_twenty_end_the_motion() {
 }
 
 #[test]
-fn of_two_commands_for_a_cycle_the_first_counts() {
+fn command_sent_first_counts_for_its_cycle() {
     let mut pair = Pair::fr3();
     pair.start_torques();
     let message_id = pair.state.message_id;

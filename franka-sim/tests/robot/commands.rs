@@ -58,7 +58,7 @@ fn one_abort_carries_every_error_of_its_cycle() {
 }
 
 #[test]
-fn a_joint_position_out_of_range_has_the_name_of_the_robots_generation() {
+fn joint_position_error_is_named_by_robot_generation() {
     for (mut pair, expected, other) in [
         (
             Pair::fr3(),
@@ -125,7 +125,7 @@ fn the_path_and_goal_deviations_of_a_move_are_kept() {
 }
 
 #[test]
-fn of_two_asynchronous_targets_in_one_millisecond_the_newer_counts() {
+fn asynchronous_target_is_the_newest_of_its_millisecond() {
     let mut pair = Pair::fr3();
     pair.begin(MoveRequest {
         asynchronous: Some([0.3; 7]),
@@ -238,7 +238,7 @@ fn the_elbow_sign_is_that_of_the_flip_angle_and_not_of_joint_4() {
 }
 
 #[test]
-fn a_start_in_a_singularity_is_told_after_the_motion_has_been_accepted() {
+fn singular_start_is_rejected_after_the_acceptance() {
     let q = JointVector::from([0.0, 1.28, 0.0, -0.5415, 0.0, 2.74, 0.0]);
     let mut pair = Pair::new(Config {
         q,

@@ -114,7 +114,7 @@ fn equal_lower_and_upper_thresholds_are_legal() {
 }
 
 #[test]
-fn a_load_that_is_not_declared_seems_external_and_sinks_and_a_declared_one_does_neither() {
+fn undeclared_load_seems_external_and_lowers_the_arm() {
     for declared in [false, true] {
         let load = half_kilogram();
         let mut pair = Pair::fr3();

@@ -33,7 +33,7 @@ fn rise(pair: &mut Pair, elbow: bool, mut see: impl FnMut(&RobotState, &RobotCom
 }
 
 #[test]
-fn q_d_of_a_cartesian_motion_is_the_inverse_kinematics_of_the_command() {
+fn q_d_of_cartesian_motion_is_the_ik_of_the_command() {
     let mut pair = Pair::fr3();
     let model = Model::fr3();
     rise(&mut pair, false, |state, command| {
@@ -99,7 +99,7 @@ fn lost_commands_leave_an_elbow_that_rests_where_it_is() {
 }
 
 #[test]
-fn o_t_ee_d_outside_a_cartesian_motion_is_that_of_the_desired_joints() {
+fn o_t_ee_d_is_of_desired_joints_outside_cartesian_motion() {
     let mut pair = Pair::fr3();
     pair.start_joints();
     // Pushed off its path, the arm is elsewhere.
@@ -130,7 +130,7 @@ fn the_torque_rate_is_that_of_the_measured_torque() {
 }
 
 #[test]
-fn the_motor_side_differs_from_the_joint_by_torque_over_stiffness() {
+fn motor_position_differs_by_torque_over_stiffness() {
     let mut pair = Pair::fr3();
     pair.idle(10);
     let state = &pair.state;
@@ -163,7 +163,7 @@ fn gravity_and_the_end_effector_of_desk_are_told() {
 }
 
 #[test]
-fn the_accelerometers_feel_gravity_and_the_motion_of_their_boards() {
+fn accelerometers_feel_gravity_and_their_own_motion() {
     let norm = |v: [f32; 3]| f64::from((v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt());
     let mut pair = Pair::fr3();
     pair.idle(10);
@@ -234,7 +234,7 @@ fn fields_that_joint_setpoints_do_not_use_are_zero() {
 }
 
 #[test]
-fn the_motor_side_has_the_offsets_of_the_session_beside_the_torque() {
+fn motor_position_includes_the_offsets_of_the_session() {
     let mut arm = Arm::ideal(RobotKind::Fr3);
     arm.sensors.motor_offset = JointVector::from([-3.8e-3, 0.0, 1e-3, 2e-3, 0.0, 0.0, 2.6e-3]);
     let offset = arm.sensors.motor_offset;

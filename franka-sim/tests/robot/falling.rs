@@ -144,7 +144,7 @@ fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing
 }
 
 #[test]
-fn a_fall_onto_the_table_trips_the_thresholds_that_were_set_and_not_those_30_percent_higher() {
+fn fall_trips_its_thresholds_but_none_30_percent_higher() {
     for descent in [Descent::Commanded, Descent::Free] {
         for kind in [Threshold::Force(HIGH), Threshold::Torque(HIGH)] {
             let count = robots(&above_the_table()).len();

@@ -172,7 +172,7 @@ fn finished(command: RobotCommand) -> RobotCommand {
 }
 
 #[test]
-fn its_own_gravity_compensation_holds_the_arm_and_nothing_seems_to_touch_it() {
+fn gravity_compensation_holds_arm_and_shows_no_contact() {
     let mut pair = Pair::fer();
     pair.idle(2000);
     assert!((pair.robot.q() - READY).amax() < 1e-9);
@@ -287,7 +287,7 @@ fn requests_of_protocol_5_are_answered() {
 }
 
 #[test]
-fn a_library_that_the_robot_was_given_is_served_if_it_fits_into_a_message() {
+fn model_library_is_served_if_it_fits_into_a_message() {
     for (size, status) in [(3, LibraryStatus::Success), (9 << 20, LibraryStatus::Error)] {
         let mut pair = Pair::new(Config {
             kind: RobotKind::Fer,

@@ -122,7 +122,7 @@ fn a_still_arm_stays_still_in_the_stiffest_grip() {
 }
 
 #[test]
-fn a_grip_gives_way_by_force_over_stiffness_and_lets_the_robot_serve_again() {
+fn grip_yields_by_force_over_stiffness_until_released() {
     for_each_arm(0, |name, pair| {
         assert!(pair.robot.guide(true));
         let grip = pair.robot.touch(Touch::hold());

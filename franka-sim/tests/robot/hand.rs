@@ -136,7 +136,7 @@ fn a_lost_object_is_reported() {
 }
 
 #[test]
-fn a_robot_with_hand_and_vacuum_gripper_needs_nothing_but_this_process() {
+fn robot_with_hand_and_vacuum_gripper_runs_in_one_process() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
         let sim = Sim::fr3()

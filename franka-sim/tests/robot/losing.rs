@@ -106,7 +106,7 @@ fn nominal(channel: &Channel, start: &RobotState, cycle: u32) -> RobotCommand {
 }
 
 #[test]
-fn what_is_lost_goes_on_with_the_acceleration_that_it_had() {
+fn lost_command_is_bridged_with_the_last_acceleration() {
     for kind in RobotKind::ALL {
         for channel in &CHANNELS {
             let (mut pair, _) = underway(channel, kind);
@@ -138,8 +138,7 @@ fn what_is_lost_goes_on_with_the_acceleration_that_it_had() {
 }
 
 #[test]
-fn a_client_that_goes_on_as_the_robot_did_is_bridged_and_one_that_did_not_notice_is_a_discontinuity()
- {
+fn resuming_client_is_bridged_but_an_unaware_one_jumps() {
     const LOST: u32 = 10;
     for kind in RobotKind::ALL {
         for channel in &CHANNELS {
@@ -167,7 +166,7 @@ fn a_client_that_goes_on_as_the_robot_did_is_bridged_and_one_that_did_not_notice
 }
 
 #[test]
-fn what_is_made_up_for_lost_commands_has_to_keep_the_limits() {
+fn bridged_commands_must_keep_the_limits() {
     for kind in RobotKind::ALL {
         let mut pair = Pair::of(kind);
         let limits = franka_model::limits::JointLimits::of(kind);

@@ -110,7 +110,7 @@ fn an_arm_outside_its_limits_takes_a_manual_recovery() {
 }
 
 #[test]
-fn the_user_stop_has_its_mode_ends_motion_and_recovery_and_allows_none() {
+fn user_stop_ends_motion_and_recovery_and_allows_none() {
     let mut pair = Pair::fr3();
     let id = pair.start_torques();
     pair.tick(Some(RobotCommand::default()));
@@ -231,7 +231,7 @@ fn closed_brakes_are_the_mode_other_and_hold_whatever_pushes() {
 }
 
 #[test]
-fn a_safety_function_has_statuses_of_its_own_on_protocol_10_and_the_user_stops_on_5() {
+fn safety_function_has_own_statuses_on_protocol_10_only() {
     for (mut pair, preempted, rejected, setter, recovery) in [
         (
             Pair::fr3(),

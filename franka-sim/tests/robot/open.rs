@@ -135,7 +135,7 @@ fn the_success_rates_denominator_before_100_cycles() {
 }
 
 #[test]
-fn whether_reflex_reason_is_cleared_at_move() {
+fn reflex_reason_is_cleared_at_move_as_configured() {
     for (mut pair, cleared) in [
         (Pair::fr3(), true),
         (assuming(|u| u.move_clears_reason = false), false),

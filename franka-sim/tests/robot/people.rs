@@ -26,7 +26,7 @@ fn elbow(pair: &Pair) -> Vector3<f64> {
 }
 
 #[test]
-fn a_swaying_push_on_the_elbow_sways_it_and_a_grip_keeps_the_hand_where_it_is() {
+fn swaying_push_moves_the_elbow_but_not_the_gripped_hand() {
     for_each_robot(|name, pair| {
         assert!(pair.robot.guide(true));
         let grip = pair.robot.touch(Touch::hold());
@@ -48,7 +48,7 @@ fn a_swaying_push_on_the_elbow_sways_it_and_a_grip_keeps_the_hand_where_it_is() 
 }
 
 #[test]
-fn a_spring_pulls_to_its_point_a_wall_is_in_the_way_and_a_blocked_joint_does_not_turn() {
+fn spring_pulls_wall_stops_and_block_holds_a_joint() {
     for_each_robot(|name, pair| {
         assert!(pair.robot.guide(true));
         let start = hand(pair);
@@ -79,7 +79,7 @@ fn a_spring_pulls_to_its_point_a_wall_is_in_the_way_and_a_blocked_joint_does_not
 }
 
 #[test]
-fn the_user_stop_and_the_brakes_end_motions_and_allow_them_again() {
+fn user_stop_and_brakes_end_motions_and_allow_new_ones() {
     for_each_robot(|name, pair| {
         let id = pair.start_joints();
         let mut q_c = pair.q_d();
@@ -136,7 +136,7 @@ fn any_error_can_be_tripped_and_recovered_from() {
 }
 
 #[test]
-fn a_payload_comes_and_goes_while_the_robot_stands_and_is_felt_until_it_is_declared() {
+fn payload_change_at_rest_is_felt_until_declared() {
     for_each_robot(|name, pair| {
         let load = Load {
             mass: 0.5,
@@ -169,7 +169,7 @@ fn a_payload_comes_and_goes_while_the_robot_stands_and_is_felt_until_it_is_decla
 }
 
 #[test]
-fn another_arm_stands_where_the_one_before_stood_and_carries_its_load() {
+fn fitted_arm_keeps_posture_and_load_of_the_former_one() {
     for_each_robot(|name, pair| {
         let kind = pair.robot.config().kind;
         let load = Load {
@@ -207,7 +207,7 @@ fn axis(joint: usize) -> JointVector {
 }
 
 #[test]
-fn a_moving_spring_leads_the_hand_along_and_says_how_hard_it_pulls() {
+fn moving_spring_leads_the_hand_and_tells_its_force() {
     for_each_robot(|name, pair| {
         assert!(pair.robot.guide(true));
         let start = hand(pair);

@@ -46,7 +46,7 @@ fn end_effector(pair: &Pair) -> Isometry3<f64> {
 }
 
 #[test]
-fn a_push_of_5_newton_on_the_flange_reads_5_newton_within_100_milliseconds() {
+fn push_of_5_newton_reads_true_within_100_milliseconds() {
     for (name, mut pair) in robots_with_and_without_hand() {
         let mut worst = 0.0_f64;
         for direction in directions() {
@@ -69,7 +69,7 @@ fn a_push_of_5_newton_on_the_flange_reads_5_newton_within_100_milliseconds() {
 }
 
 #[test]
-fn the_robots_own_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness() {
+fn robot_impedance_yields_by_force_over_stiffness() {
     let run = |name: &str, pair: &mut Pair| {
         let k = STIFFNESS;
         pair.request(&Request::SetCartesianImpedance([
@@ -91,7 +91,7 @@ fn the_robots_own_impedance_of_750_newton_per_metre_gives_way_by_force_over_stif
 }
 
 #[test]
-fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness() {
+fn client_impedance_yields_by_force_over_stiffness() {
     for (name, mut pair) in robots(&Config::default()) {
         pair.start_torques();
         let goal = end_effector(&pair);

@@ -157,7 +157,7 @@ impl Cell {
 }
 
 #[test]
-fn a_box_of_40_millimetres_and_200_grams_is_grasped_lifted_and_felt() {
+fn box_is_grasped_lifted_and_felt() {
     for kind in RobotKind::ALL {
         let mut cell = Cell::with_box(kind, 1.0);
         for _ in 0..500 {
@@ -244,7 +244,7 @@ fn a_box_that_is_dropped_into_the_hand_is_grasped() {
 }
 
 #[test]
-fn nothing_is_grasped_where_nothing_is() {
+fn grasp_of_nothing_is_unsuccessful() {
     let mut cell = Cell::new("<mujoco/>");
     assert_eq!(cell.grasp(), HandStatus::Unsuccessful);
     assert!(!cell.state.is_grasped);
@@ -268,7 +268,7 @@ fn the_width_of_the_hand_is_that_of_the_fingers_in_the_scene() {
 }
 
 #[test]
-fn what_stands_in_the_way_is_felt_where_it_is() {
+fn obstacle_is_felt_where_it_stands() {
     let ((x, z), top) = (TCP, TCP.1 - 0.03);
     let height = top / 2.0;
     let mut cell = Cell::new(&format!(

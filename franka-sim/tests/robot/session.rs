@@ -136,7 +136,7 @@ fn a_stop_without_a_motion_succeeds() {
 }
 
 #[test]
-fn a_move_sent_right_behind_a_stop_begins_when_the_arm_is_at_rest() {
+fn move_sent_after_a_stop_begins_with_the_arm_at_rest() {
     let mut pair = Pair::fr3();
     pair.start(
         MoveControllerMode::JointImpedance,
@@ -167,7 +167,7 @@ fn a_move_sent_right_behind_a_stop_begins_when_the_arm_is_at_rest() {
 
 /// The client sends asynchronous targets only once, so it has no second chance to answer.
 #[test]
-fn the_first_state_of_a_motion_that_waited_for_the_brake_can_be_answered() {
+fn first_state_of_a_motion_after_braking_can_be_answered() {
     let mut pair = Pair::fr3();
     let request = MoveRequest {
         asynchronous: Some([1.0; 7]),

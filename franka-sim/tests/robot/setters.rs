@@ -71,7 +71,7 @@ fn large(value: f64) -> [Request; 8] {
 }
 
 #[test]
-fn no_finite_value_moves_an_arm_that_stands_nor_outlasts_its_client() {
+fn huge_setter_values_move_no_standing_arm() {
     for kind in [Pair::fr3, Pair::fer] {
         let mut pair = kind();
         for value in [1e6, 1e20, 1e300] {
@@ -98,7 +98,7 @@ fn no_finite_value_moves_an_arm_that_stands_nor_outlasts_its_client() {
 }
 
 #[test]
-fn the_largest_values_that_are_taken_leave_an_arm_that_can_be_controlled() {
+fn largest_accepted_setter_values_leave_arm_controllable() {
     let inertia = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     let load = |m_load: f64, com: f64| {
         Request::SetLoad(Load {
@@ -238,7 +238,7 @@ fn the_joint_stiffness_is_that_of_the_internal_controller() {
 }
 
 #[test]
-fn the_cartesian_controller_is_soft_in_the_axes_that_are_set_soft() {
+fn cartesian_controller_is_soft_in_its_soft_axes_only() {
     let give = |stiffness: [f64; 6], force: Vector3<f64>| {
         let mut pair = Pair::fr3();
         assert_eq!(

@@ -36,7 +36,7 @@ fn torques_are_echoed_in_single_precision() {
 }
 
 #[test]
-fn an_impedance_of_750_newton_per_metre_ends_within_a_third_of_a_millimetre() {
+fn impedance_of_750_n_per_m_ends_within_0_3_millimetres() {
     let mut pair = Pair::fr3();
     pair.start_torques();
     let model = franka_model::Model::fr3();

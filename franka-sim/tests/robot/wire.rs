@@ -50,7 +50,7 @@ fn connect_checks_the_version_and_tells_its_own() {
 }
 
 #[test]
-fn a_second_client_is_refused_at_once_instead_of_waiting_in_the_backlog() {
+fn second_client_is_refused_instead_of_queued() {
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(async {
         use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -89,7 +89,7 @@ fn a_status_reply_has_thirteen_bytes() {
 }
 
 #[test]
-fn a_state_waits_for_no_command_and_lateness_counts_by_the_state() {
+fn lateness_counts_in_states_that_wait_for_no_command() {
     let mut pair = Pair::fr3();
     pair.start_joints();
     pair.tick(Some(positions(&READY)));
@@ -126,7 +126,7 @@ fn a_late_command_is_dropped_and_the_first_one_begins_the_count() {
 }
 
 #[test]
-fn the_success_rate_looks_back_a_hundred_cycles_and_is_nothing_at_the_end() {
+fn success_rate_covers_100_cycles_and_is_zero_at_the_end() {
     let mut pair = Pair::fr3();
     pair.start_joints();
     assert_eq!(pair.state.control_command_success_rate, 0.0);

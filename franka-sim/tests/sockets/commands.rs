@@ -62,7 +62,7 @@ const BAD_COMMANDS: [BadCommands; 6] = [
 ];
 
 #[test]
-fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
+fn non_finite_command_ends_motion_and_disturbs_no_client() {
     each_robot(|binary| {
         for trial in &BAD_COMMANDS {
             for place in 0..trial.places {

@@ -68,7 +68,7 @@ fn a_message_that_breaks_off_ends_the_session() {
 }
 
 #[test]
-fn what_is_only_unusual_is_answered() {
+fn unusual_message_is_answered() {
     each_robot(|binary| {
         for port in binary.ports() {
             let (mut connection, _udp) = port.shake_hands();

@@ -33,7 +33,7 @@ async fn virtual_time_takes_patience() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
+async fn states_outpace_the_wall_clock_with_equal_counts() {
     let _alone = alone();
     for sim in [Sim::fr3, Sim::fer] {
         let mut runs = Vec::new();

@@ -18,7 +18,7 @@ use crate::supervising::{
 use crate::{alone, long_way, simulated, under_way, until};
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_link_that_is_lost_is_told_and_cycles_are_recorded_again_after_it() {
+async fn lost_link_is_recorded_and_cycles_resume_after_it() {
     let _alone = alone();
     let (robot, sim) = simulated().await;
     let folder = Folder::new();

@@ -182,7 +182,7 @@ async fn a_motion_is_recorded_with_every_cycle_and_what_was_asked_for() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_reflex_is_recorded_with_its_diagnosis_and_fills_a_black_box() {
+async fn reflex_is_recorded_with_diagnosis_and_black_box() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let folder = Folder::new();
@@ -271,7 +271,7 @@ async fn targets_that_are_refused_are_told() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_recorder_that_ends_in_the_middle_of_a_motion_leaves_a_file_and_the_motion() {
+async fn recorder_ended_in_mid_motion_leaves_file_and_motion() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let folder = Folder::new();

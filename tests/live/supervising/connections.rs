@@ -99,7 +99,7 @@ async fn a_robot_that_was_restarted_is_there_again_and_stands_still() {
 /// At rest, so that the robot does not count missing commands. The cut is longer than the link
 /// timeout, and than the supervisor's patience.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_network_that_is_cut_is_told_and_the_connection_given_up_for_it() {
+async fn cut_network_is_told_and_its_connection_given_up() {
     let _alone = alone();
     let mut network = franka_sim::Network::perfect();
     let cut = Duration::from_secs(2)..Duration::from_secs(4);
@@ -129,7 +129,7 @@ async fn a_network_that_is_cut_is_told_and_the_connection_given_up_for_it() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn what_was_set_holds_at_a_robot_that_was_restarted() {
+async fn settings_hold_on_a_restarted_robot() {
     let _alone = alone();
     let sim = start(Sim::fr3()).await;
     let address = sim.addr();
@@ -236,7 +236,7 @@ fn at_odds(tool: Tool) -> Sim {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_robot_that_reports_no_pose_when_it_is_back_is_the_same_robot() {
+async fn robot_back_without_a_pose_is_the_same_robot() {
     let _alone = alone();
     let sim = at_odds(Tool::hand()).start().await.expect("it starts");
     let address = sim.addr();
@@ -277,7 +277,7 @@ async fn a_robot_with_poses_of_other_lengths_is_another_one() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn the_last_handle_ends_the_supervisor_also_without_a_connection() {
+async fn last_handle_ends_supervisor_even_when_disconnected() {
     let _alone = alone();
     let sim = start(Sim::fr3()).await;
     let address = sim.addr();

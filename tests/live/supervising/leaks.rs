@@ -47,7 +47,7 @@ const WARM_UP: u64 = 10;
 /// Each mishap happens during a motion, which ends with an error. A single leak of the rarest kind
 /// of mishap fails the test.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn nothing_is_left_behind_by_mishaps_in_random_order() {
+async fn random_mishaps_leave_nothing_behind() {
     let _alone = alone();
     let mishaps = if thorough() { 1000 } else { 60 };
     let mut random = SmallRng::seed_from_u64(1);

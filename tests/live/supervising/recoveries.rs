@@ -137,7 +137,7 @@ async fn a_user_stop_ends_a_motion_and_its_release_starts_none() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_robot_that_is_not_supervised_tells_what_happens_and_stays_as_it_is() {
+async fn unsupervised_robot_tells_events_and_stays_as_it_is() {
     let _alone = alone();
     let (robot, sim) = crate::simulated().await;
     let mut events = robot.events();

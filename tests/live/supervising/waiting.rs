@@ -16,7 +16,7 @@ use super::{condition, policy, relayed, restart, small_motion, start, supervised
 use crate::{SOON, alone};
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
+async fn motions_wait_for_a_robot_and_begin_only_if_awaited() {
     let _alone = alone();
     let (sim, mut way) = relayed(Sim::fr3()).await;
     let robot = supervised_at(way.addr(), policy().motions_wait(SOON)).await;
@@ -120,7 +120,7 @@ async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn motion_that_waits_does_not_begin_with_a_robot_that_was_restarted() {
+async fn waiting_motion_does_not_begin_on_a_restarted_robot() {
     let _alone = alone();
     let sim = start(Sim::fr3()).await;
     let address = sim.addr();

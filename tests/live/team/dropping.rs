@@ -51,7 +51,7 @@ async fn both_idle(robots: &[Robot; 2]) {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn the_futures_that_begin_and_end_a_team_may_be_dropped_at_every_poll() {
+async fn team_futures_may_be_dropped_at_any_poll() {
     let _alone = alone();
     let Two {
         team,

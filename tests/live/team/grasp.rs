@@ -68,7 +68,7 @@ async fn an_object_in_both_hands_goes_to_the_pose_that_is_asked_for() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn an_object_on_its_way_stops_with_its_future_and_with_a_stopper() {
+async fn object_in_motion_stops_with_its_future_or_a_stopper() {
     let _alone = alone();
     let two = two().await;
     let grasp = two.team.grasp(bases(), object()).expect("both hold");

@@ -9,7 +9,7 @@ use franka_rt::team::{MemberFault, TeamStop};
 use super::{APART, CAP, Carriers, MOST, bases, pairs, raised};
 
 #[test]
-fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() {
+fn hindered_arm_holds_up_the_other_until_it_is_free() {
     for pair in pairs(&[0, 2, 10]) {
         let mut carriers = Carriers::pair(pair);
         let [left, right] = carriers.references();
@@ -47,7 +47,7 @@ fn an_arm_that_is_held_back_holds_up_the_other_and_both_go_on_when_it_is_free() 
 
 /// If two arms halt, the hindered arm gives up after 5 s, not the waiting one.
 #[test]
-fn who_waits_for_the_other_arm_gives_up_with_it_and_not_before() {
+fn waiting_arm_gives_up_with_the_other_and_not_before() {
     let mut carriers = Carriers::new();
     let to = raised(&carriers.bar(), 0.15, 0.0, 0.0);
     carriers.wall_above(0.04);
@@ -64,7 +64,7 @@ fn who_waits_for_the_other_arm_gives_up_with_it_and_not_before() {
 }
 
 #[test]
-fn what_stops_one_arm_stops_the_other_and_the_bar_is_not_torn_away() {
+fn stop_of_one_arm_stops_the_other_with_the_bar_in_hand() {
     type Happen = fn(&mut Carriers, [GoalId; 2]);
     let ways: [(&str, Happen, MemberFault); 4] = [
         (

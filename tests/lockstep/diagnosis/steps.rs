@@ -83,7 +83,7 @@ fn a_step_in_joint_positions_names_joint_acceleration_and_size() {
 }
 
 #[test]
-fn a_velocity_that_steps_names_the_joint_and_the_commanded_acceleration() {
+fn velocity_step_is_diagnosed_by_joint_and_acceleration() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let mut dq = stepping(6, 0.2);

@@ -62,7 +62,7 @@ fn every_controller_follows_every_kind_of_goal_that_it_takes() {
 }
 
 #[test]
-fn what_no_controller_does_is_refused_with_what_would() {
+fn unsupported_target_is_refused_naming_a_supported_one() {
     for_each_controller(|backend, lockstep, engaged| {
         let refused = |got, expected| {
             Err(MotionError::Goal(GoalError::Backend {
@@ -90,7 +90,7 @@ fn what_no_controller_does_is_refused_with_what_would() {
 }
 
 #[test]
-fn setpoints_with_an_elbow_move_the_robots_joints_like_the_reference() {
+fn setpoints_with_elbow_move_joints_like_the_reference() {
     for_each_robot(|ready| {
         let cartesian = [Setpoints::CartesianPoses, Setpoints::CartesianVelocities];
         for (setpoints, lost) in cartesian

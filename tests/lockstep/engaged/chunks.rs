@@ -20,7 +20,7 @@ fn give(lockstep: &mut Lockstep, engaged: GoalId, goal: Goal, chunk: Chunk) -> G
 }
 
 #[test]
-fn a_chunk_that_waits_for_its_time_is_cancelled_with_the_previous_one() {
+fn waiting_chunk_is_cancelled_with_the_previous_one() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -41,7 +41,7 @@ fn a_chunk_that_waits_for_its_time_is_cancelled_with_the_previous_one() {
 }
 
 #[test]
-fn a_chunk_followed_to_its_end_after_a_timeout_still_needs_its_deadman() {
+fn chunk_that_outlasts_a_timeout_still_needs_its_deadman() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let goal = watched(&mut lockstep, Target::Rest, 100, OnTimeout::Hold);
@@ -61,7 +61,7 @@ fn a_chunk_followed_to_its_end_after_a_timeout_still_needs_its_deadman() {
 }
 
 #[test]
-fn the_chunk_after_a_deadman_timeout_says_so_once_whatever_its_points_are() {
+fn deadman_timeout_is_told_once_by_the_next_chunk() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let held = Err(MotionError::Held(Lapse::Deadman));
@@ -90,7 +90,7 @@ fn the_chunk_after_a_deadman_timeout_says_so_once_whatever_its_points_are() {
 }
 
 #[test]
-fn a_chunk_that_arrives_after_its_goal_is_held_does_not_move_the_arm() {
+fn chunk_after_its_goal_is_held_does_not_move_the_arm() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();

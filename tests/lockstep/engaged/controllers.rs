@@ -84,7 +84,7 @@ fn off_reference(lockstep: &Lockstep) -> f64 {
 }
 
 #[test]
-fn it_arrives_within_its_tolerance_whatever_is_lost() {
+fn controller_arrives_within_tolerance_despite_losses() {
     for (seed, loss) in [(0, 0.0), (3, 0.002), (4, 0.02)] {
         for_each(seed, |backend, lockstep, engaged| {
             if loss > 0.0 {
@@ -108,7 +108,7 @@ fn it_arrives_within_its_tolerance_whatever_is_lost() {
 /// Dropped in any phase of a motion: first the goal alone, whose session holds the arm and
 /// continues; then the session.
 #[test]
-fn it_brakes_to_rest_when_its_goal_or_its_session_is_dropped() {
+fn controller_brakes_when_goal_or_session_is_dropped() {
     for after in [30, 120, 333, 470] {
         for_each(2, |backend, lockstep, engaged| {
             let home = lockstep.arm_pose();
@@ -143,7 +143,7 @@ fn it_brakes_to_rest_when_its_goal_or_its_session_is_dropped() {
 }
 
 #[test]
-fn it_goes_through_waypoints_and_pauses_on_its_way() {
+fn controller_passes_waypoints_and_pauses_on_the_way() {
     for_each(1, |backend, lockstep, engaged| {
         let home = lockstep.arm_pose();
         let through = targets(backend, &home)[..3].to_vec();
@@ -172,7 +172,7 @@ fn it_goes_through_waypoints_and_pauses_on_its_way() {
 }
 
 #[test]
-fn it_follows_a_target_that_moves_and_chunks() {
+fn controller_follows_moving_targets_and_chunks() {
     for_each(1, |backend, lockstep, engaged| {
         let home = lockstep.arm_pose();
         let twist = Vector3::new(0.02, 0.1, -0.05);
@@ -216,7 +216,7 @@ fn it_follows_a_target_that_moves_and_chunks() {
 }
 
 #[test]
-fn it_reacts() {
+fn controller_reacts_to_a_condition() {
     for_each(1, |backend, lockstep, engaged| {
         let home = lockstep.arm_pose();
         let away = Translation3::new(0.0, 0.2, 0.0) * home;
@@ -273,7 +273,7 @@ fn push_on(lockstep: &mut Lockstep, engaged: GoalId, way: Vector3<f64>) -> (Erro
 /// push grows until the robot stops. The stop comes from its thresholds or, without thresholds,
 /// from a torque sensor of the wrist that is out of its range.
 #[test]
-fn it_bears_a_push_and_stops_itself_where_a_hand_pushes_on() {
+fn controller_bears_a_push_and_stops_at_a_lasting_one() {
     let without = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     for kind in RobotKind::ALL {
         let range = 1.1 * Model::of(kind).joint_limits().torque[5];

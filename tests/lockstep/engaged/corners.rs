@@ -60,7 +60,7 @@ fn a_session_can_be_tuned_while_a_goal_is_cancelled() {
 }
 
 #[test]
-fn a_session_continues_after_a_stream_whose_end_would_end_a_motion() {
+fn session_outlives_a_stream_that_would_end_a_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -127,7 +127,7 @@ fn a_session_ends_as_asked_even_if_its_last_goal_is_cancelled() {
 }
 
 #[test]
-fn a_stop_that_arrives_while_a_session_ends_still_resolves_everything() {
+fn stop_during_the_end_of_a_session_resolves_everything() {
     for_each_robot(|ready| {
         let mut late = 0;
         // While the motion ends: its states are lost, so that the stop is not seen before the end.

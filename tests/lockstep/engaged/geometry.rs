@@ -119,7 +119,7 @@ fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) 
 /// Logs of poses and joints from two topics are microns off with the right lengths. The check at
 /// connect compares the values of one state.
 #[test]
-fn the_pose_of_a_state_belongs_to_its_joints_and_not_to_those_of_another() {
+fn pose_of_a_state_belongs_to_the_joints_of_that_state() {
     for kind in RobotKind::ALL {
         let mut lockstep = Lockstep::new(Config {
             arm: Some(Arm::realistic(kind)),

@@ -30,7 +30,7 @@ fn silent_stream(
 }
 
 #[test]
-fn a_stream_that_times_out_is_held_or_braked_and_the_outcome_says_which() {
+fn stream_timeout_holds_or_brakes_as_the_outcome_says() {
     for_each_robot(|ready| {
         let silence = Duration::from_millis(100);
         let lapse = Lapse::Silent { silence };
@@ -57,7 +57,7 @@ fn a_stream_that_times_out_is_held_or_braked_and_the_outcome_says_which() {
 }
 
 #[test]
-fn a_deadman_timeout_holds_the_arm_until_the_deadman_is_kept_alive_again() {
+fn deadman_timeout_holds_the_arm_until_kept_alive_again() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let goal = lockstep
@@ -228,7 +228,7 @@ fn a_guided_arm_is_held_firmly_once_its_deadman_is_dropped() {
 }
 
 #[test]
-fn a_guiding_stream_does_not_soften_the_hold_after_a_deadman_timeout() {
+fn guiding_stream_leaves_the_hold_of_a_deadman_firm() {
     for_each_robot(|ready| {
         let (mut lockstep, engaged, token) = guarded(ready, 50);
         let guided = Target::Guide(Free::ALL);

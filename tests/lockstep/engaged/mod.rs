@@ -207,7 +207,7 @@ fn every_goal_after_a_reflex_fails_with_that_reflex() {
 }
 
 #[test]
-fn a_goal_submitted_while_the_session_ends_gets_the_sessions_outcome() {
+fn late_goal_ends_superseded_or_like_its_session() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -309,7 +309,7 @@ fn chunks_of_a_slow_policy_become_one_smooth_motion() {
 }
 
 #[test]
-fn a_chunk_of_another_clock_or_from_before_the_newest_is_refused() {
+fn chunk_of_another_clock_or_an_older_origin_is_refused() {
     let mut lockstep = Lockstep::ready();
     let engaged = lockstep.engage();
     lockstep.run(500);

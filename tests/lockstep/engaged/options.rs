@@ -66,7 +66,7 @@ fn tuning_gains_does_not_step_the_torque_and_keeps_their_bounds() {
 /// The arm is held back on its way, far behind its reference on a long leash, which is then
 /// shortened in a single call.
 #[test]
-fn a_leash_that_is_tightened_in_mid_motion_steps_neither_the_reference_nor_the_torque() {
+fn leash_tightened_in_mid_motion_causes_no_step() {
     for kind in [RobotKind::Fr3, RobotKind::Fer] {
         let held = Free {
             axes: [true, false, true, true, true, true],

@@ -64,7 +64,7 @@ fn go(
 }
 
 #[test]
-fn no_point_of_the_arm_is_faster_than_the_cap_on_the_way_to_a_pose() {
+fn speed_cap_holds_for_every_point_on_the_way_to_a_pose() {
     let (seed, cases) = (7, if franka_tests::thorough() { 200 } else { 8 });
     println!("seed {seed}");
     let down = UnitQuaternion::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);

@@ -85,7 +85,7 @@ fn a_session_is_refused_during_a_stop() {
 }
 
 #[test]
-fn a_stream_that_ends_while_it_waits_for_a_session_ends_its_own_motion() {
+fn stream_closed_while_waiting_ends_its_own_motion() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();

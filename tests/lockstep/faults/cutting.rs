@@ -191,7 +191,7 @@ fn a_motion_whose_replies_are_lost_times_out_once_it_has_ended() {
 
 /// The robot gets no commands either, and stops meanwhile.
 #[test]
-fn the_link_to_a_silent_robot_is_lost_after_the_timeout_and_not_before() {
+fn link_to_a_silent_robot_is_lost_at_the_timeout() {
     let mut matrix = Matrix::new("silent");
     for variant in Variant::all() {
         for moment in MOMENTS {

@@ -158,7 +158,7 @@ fn a_lost_finish_is_repeated_until_the_robot_stops_by_itself() {
 /// The robot repeats the last torques when commands are lost, and target control limits its torques
 /// against those.
 #[test]
-fn target_control_goes_on_after_all_losses_that_the_robot_bridges() {
+fn target_control_survives_all_losses_the_robot_bridges() {
     let mut matrix = Matrix::new("lost-target");
     for variant in Variant::all().filter(|variant| variant.is_target()) {
         for count in counts() {

@@ -201,7 +201,7 @@ fn an_arm_that_approaches_gently_retreats_all_the_same() {
 
 /// The law must not continue to push with its compensation.
 #[test]
-fn an_engaged_arm_rests_on_what_it_met_and_does_not_press_harder() {
+fn engaged_arm_rests_on_contact_and_presses_no_harder() {
     for (arm, mut lockstep) in arms() {
         let engaged = lockstep.engage();
         let table = table(&mut lockstep, 0.03, FIRM);

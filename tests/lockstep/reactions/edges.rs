@@ -38,7 +38,7 @@ fn begin(lockstep: &mut Lockstep, goal: GoalId) -> u64 {
 }
 
 #[test]
-fn a_condition_that_is_true_from_the_first_cycle_on_stops_the_arm_at_once() {
+fn condition_true_from_the_first_cycle_stops_at_once() {
     for_each_robot(|ready| {
         for then in [None, Some(())] {
             let mut lockstep = ready();
@@ -67,7 +67,7 @@ fn a_condition_that_is_true_from_the_first_cycle_on_stops_the_arm_at_once() {
 
 /// The duration of a motion does not count the time for which the arm is watched at the target.
 #[test]
-fn a_condition_counts_until_the_arrival_is_reported_and_not_after() {
+fn condition_counts_until_the_arrival_is_reported() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let goal = until(&mut lockstep, 60_000, None, OnArrival::ReportAndFinish);
@@ -122,7 +122,7 @@ fn around(mut each: impl FnMut(u64)) {
 }
 
 #[test]
-fn a_newer_goal_takes_over_whether_or_not_the_older_one_has_reacted() {
+fn newer_goal_takes_over_before_and_after_a_reaction() {
     for_each_robot(|ready| {
         around(|cycle| {
             for own in [false, true] {
@@ -305,7 +305,7 @@ fn either_kind_of_target_may_follow_either_kind_of_goal() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_before_anything_moves() {
+fn impossible_reaction_is_refused_before_anything_moves() {
     let mut lockstep = Lockstep::ready();
     let still = lockstep.arm_pose();
     let mut refused = |reaction: Reaction| {

@@ -82,7 +82,7 @@ impl Most {
 
 /// A threshold of 5 N, chosen without regard to friction, reacts without contact on some arms.
 #[test]
-fn realistic_arms_that_touch_nothing_do_not_react_at_the_recommended_thresholds() {
+fn recommended_thresholds_trigger_nothing_without_contact() {
     let velocities: &[f64] = match thorough() {
         true => &[0.05, 0.1, 0.3],
         false => &[0.1],

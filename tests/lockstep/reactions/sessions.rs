@@ -30,7 +30,7 @@ fn on_a_table(seed: u64) -> (Lockstep, GoalId, franka_sim::TouchId) {
 
 /// The force continues; its condition belonged to the previous goal.
 #[test]
-fn after_a_reaction_the_arm_is_tuned_and_moved_like_any_that_is_held() {
+fn arm_after_a_reaction_is_tuned_and_moved_like_a_held_one() {
     let (mut lockstep, engaged, table) = on_a_table(2);
     assert!(felt(&lockstep, table) > 1.0);
     let tuning = Tuning {
@@ -123,7 +123,7 @@ fn the_condition_of_a_goal_ends_with_it() {
 
 /// The condition of a goal that takes over in mid-motion starts with the goal.
 #[test]
-fn time_and_changes_count_from_the_goal_that_the_condition_belongs_to() {
+fn condition_counts_time_and_changes_from_its_own_goal() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let engaged = lockstep.engage();
@@ -236,7 +236,7 @@ fn a_silent_stream_is_watched_on_its_way_to_the_last_target() {
 }
 
 #[test]
-fn a_deadman_that_falls_silent_on_the_way_to_the_other_target_brakes_the_arm() {
+fn deadman_silence_brakes_the_arm_after_a_reaction() {
     for_each_robot(|ready| {
         let mut lockstep = ready();
         let (token, monitor) = Deadman::new(50 * MS);
@@ -325,7 +325,7 @@ fn an_arm_that_holds_may_wait_for_a_push() {
 
 /// Nothing moves an arm that is paused, not even its reaction; a stop needs no way.
 #[test]
-fn a_paused_motion_reacts_and_goes_on_to_its_other_target_when_it_is_resumed() {
+fn paused_motion_reacts_and_resumes_to_its_other_target() {
     for_each_robot(|ready| {
         for then in [false, true] {
             let mut lockstep = ready();

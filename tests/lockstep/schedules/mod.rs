@@ -11,12 +11,12 @@
 //!
 //! ```text
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=10000 cargo test --release --package franka-tests --test lockstep \
-//!     every_schedule_of_a_session -- --nocapture
+//!     session_schedules -- --nocapture
 //! FRANKA_SCHEDULE_SEED=1 FRANKA_SCHEDULES=1000 cargo test --release --package franka-tests --features mujoco \
 //!     --test lockstep mujoco_plant -- --nocapture
 //! ```
 //!
-//! `every_schedule_ends` are the motions. A schedule that fails prints its seed, which replays it
+//! `motion_schedules` are the motions. A schedule that fails prints its seed, which replays it
 //! with the same build.
 //!
 //! * `motions`: motions that supersede one another, each with a separate end.
@@ -67,7 +67,7 @@ impl OutcomeCounts {
 }
 
 #[test]
-fn every_schedule_ends_with_all_goals_resolved_and_the_arm_at_rest() {
+fn motion_schedules_resolve_all_goals_and_rest_the_arm() {
     run(MOTIONS, |seed, counts| {
         let mut schedule = Motions::new(seed);
         schedule.play();
@@ -76,7 +76,7 @@ fn every_schedule_ends_with_all_goals_resolved_and_the_arm_at_rest() {
 }
 
 #[test]
-fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest() {
+fn session_schedules_resolve_all_goals_and_rest_the_arm() {
     run(SESSIONS, |seed, counts| {
         Sessions::play(seed, Lockstep::ready_of, counts);
     });

@@ -48,7 +48,7 @@ fn play(seed: u64, mishaps: u64) -> Vec<String> {
 }
 
 #[test]
-fn mishaps_keep_the_policies_move_nothing_unasked_and_lose_no_motion() {
+fn mishaps_break_no_policy_and_lose_no_motion() {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let seed: u64 = number("FRANKA_MISHAP_SEED").unwrap_or(1);
     let mishaps: u64 = number("FRANKA_MISHAPS").unwrap_or_else(count);

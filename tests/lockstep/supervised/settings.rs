@@ -262,7 +262,7 @@ fn robot_that_refuses_a_setting_again_takes_no_motion() {
 }
 
 #[test]
-fn user_stop_during_the_configuring_holds_motions_until_it_is_done() {
+fn user_stop_while_configuring_holds_motions_until_done() {
     for (after, long) in [(0, 1), (0, 500), (1, 1), (1, 500), (2, 2), (3, 500)] {
         let mut robot = robot();
         set(&mut robot, &[load(0.05), end_effector(0.05)]);

@@ -14,7 +14,7 @@ use super::{Pair, stopped_by};
 const MS: Duration = Duration::from_millis(1);
 
 #[test]
-fn goals_begin_in_the_same_millisecond_and_each_resolves_when_it_arrives() {
+fn team_goals_begin_together_and_resolve_separately() {
     for (swapped, late) in [(false, 0), (true, 0), (false, 1), (true, 700)] {
         let mut pair = Pair::new(swapped);
         // Twice, in the same sessions.
@@ -198,7 +198,7 @@ impl Waiting {
 }
 
 #[test]
-fn a_goal_that_comes_before_the_first_state_of_its_session_waits_too() {
+fn goal_before_the_first_state_of_its_session_waits_too() {
     let mut waiting = Waiting::with(|robot| robot.goal(turned(0.2), OnArrival::ReportAndHold));
     waiting.begin();
     let Waiting {

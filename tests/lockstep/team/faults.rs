@@ -238,7 +238,7 @@ fn each_silence_of_one_brakes_the_other_anew() {
 
 /// Tuning gives the session's name to the target that holds the arm.
 #[test]
-fn an_arm_that_has_arrived_is_part_of_its_round_until_it_goes_elsewhere() {
+fn arrived_arm_stays_in_its_round_until_it_moves_on() {
     type Meanwhile = fn(&mut Pair);
     let ways: [(&str, Meanwhile, bool); 4] = [
         ("held", |_| {}, true),

@@ -31,7 +31,7 @@ fn a_stop_from_outside_brakes_all_and_the_next_motion_begins() {
 
 /// As by a program that sets goals in a loop, with the stop of a person in between.
 #[test]
-fn a_stop_is_not_lost_to_a_round_that_begins_before_the_arms_look() {
+fn stop_survives_a_round_that_begins_before_arms_look() {
     for swapped in [false, true] {
         let mut pair = Pair::new(swapped);
         let older = pair.both([0.6, 0.6]);
@@ -101,7 +101,7 @@ fn no_target_that_comes_after_a_stop_sets_an_arm_in_motion() {
 
 /// Conditions that come true while the arms begin to brake, brake, and are at rest.
 #[test]
-fn no_condition_that_comes_true_after_a_stop_sets_an_arm_in_motion() {
+fn condition_met_after_a_stop_moves_no_arm() {
     for after in [3, 50, 150, 400] {
         let mut pair = Pair::new(false);
         let round = Some(pair.coordinator.begin());
@@ -135,7 +135,7 @@ fn no_condition_that_comes_true_after_a_stop_sets_an_arm_in_motion() {
 
 /// It has arrived, and its spring is released: nothing is left to brake.
 #[test]
-fn a_motion_that_is_about_to_finish_ends_as_it_was_when_the_team_stops() {
+fn finishing_motion_ends_unchanged_when_the_team_stops() {
     let mut pair = Pair::new(false);
     let last = pair.robots[0].goal(turned(0.02), OnArrival::ReportAndFinish);
     let last = pair.submit_goal(0, last);

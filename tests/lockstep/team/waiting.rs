@@ -68,7 +68,7 @@ fn push(robot: &mut Lockstep, force: f64) {
 /// The clock of the second robot runs at half the speed of the first one's. The first would be
 /// ahead by 5 cm with a common object, and is ahead without one.
 #[test]
-fn a_reference_halts_while_it_is_ahead_of_another_one_of_the_same_object() {
+fn reference_halts_while_ahead_of_another_on_its_object() {
     for together in [true, false] {
         let mut pair = Pair::new(false);
         let start = pair.heights();
@@ -100,7 +100,7 @@ fn a_reference_halts_while_it_is_ahead_of_another_one_of_the_same_object() {
 /// Farther behind than the threshold of a lag, nearer than that, and nearer than the threshold for
 /// having caught up.
 #[test]
-fn references_that_halt_for_an_arm_go_on_when_it_has_caught_up_by_three_millimetres() {
+fn halted_references_resume_when_the_arm_has_caught_up() {
     let mut pair = Pair::new(false);
     let goals = pair.raise(|_, goal| goal);
     pair.run(500);
@@ -128,7 +128,7 @@ fn references_that_halt_for_an_arm_go_on_when_it_has_caught_up_by_three_millimet
 /// The second arm is drawn back at the end of a short leash, and so also hindered, and for longer
 /// than the first one. The clock of the first one runs at a third of its speed.
 #[test]
-fn of_two_arms_that_are_held_back_the_one_that_is_waited_for_gives_up() {
+fn awaited_one_of_two_hindered_arms_gives_up() {
     let mut pair = Pair::new(false);
     pair.wall_above(0, 0.02);
     let goals = pair.raise(|i, goal| match i {
@@ -171,7 +171,7 @@ fn of_two_arms_that_are_held_back_the_one_that_is_waited_for_gives_up() {
 }
 
 #[test]
-fn an_arm_that_has_reacted_on_its_way_with_the_object_holds_up_no_other() {
+fn arm_that_reacted_with_an_object_holds_up_no_other() {
     let mut pair = Pair::new(false);
     let goals = pair.raise(|i, goal| {
         let due = elapsed(Duration::from_millis(2500));
@@ -245,7 +245,7 @@ fn an_arm_that_has_lagged_with_the_object_does_not_lag_without() {
 
 /// If others have the same object, the hindrance 3 mm short of its target counts as the object's.
 #[test]
-fn an_arm_that_is_near_its_target_has_arrived_if_it_carries_with_others() {
+fn arm_near_its_target_arrives_if_it_carries_with_others() {
     for together in [true, false] {
         let mut pair = Pair::new(false);
         pair.wall_above(0, 0.096);
@@ -263,7 +263,7 @@ fn an_arm_that_is_near_its_target_has_arrived_if_it_carries_with_others() {
 
 /// Its plan was for the hand.
 #[test]
-fn an_arm_that_takes_an_object_on_its_way_goes_on_from_where_that_is() {
+fn arm_taking_an_object_in_motion_goes_on_from_there() {
     let mut robot = Lockstep::ready();
     let session = robot.engage();
     let home = robot.reference_pose();

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_told() {
+    fn missing_command_target_is_reported() {
         let target = |package: &str, kind: &str, name: &str| Target {
             package: package.to_owned(),
             kind: kind.to_owned(),

@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_report_is_an_error() {
+    fn malformed_step_report_is_an_error() {
         for line in ["Moving", "{}", r#"{"step": "x", "window": [2, 1]}"#] {
             assert!(steps(line, &Trace::default()).is_err(), "{line}");
         }

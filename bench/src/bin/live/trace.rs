@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turnaround_runs_from_a_state_to_the_first_command_that_names_it() {
+    fn turnaround_ends_at_first_command_naming_the_state() {
         let mut trace = hundred();
         trace.answers.push(CommandArrival {
             id: 7,

@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_proxy_passes_on_needs_a_token() {
+    fn forwarded_request_needs_a_token() {
         let bearer = ("authorization", &*format!("Bearer {SECRET}"));
         for name in [
             "Forwarded",

@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_comes_before_the_variable_and_an_empty_one_is_an_error() {
+    fn token_file_precedes_variable_and_empty_one_is_an_error() {
         let file = std::env::temp_dir().join(format!("franka-token-{}", std::process::id()));
         fs::write(&file, "token-of-the-file\n").expect("a file");
         let variable = || Ok("  token-of-the-variable ".to_owned());

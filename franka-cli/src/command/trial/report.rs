@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_bad() {
+    fn verdict_of_nan_is_bad() {
         let limits = [1.0, 2.0];
         assert_eq!(Verdict::of(1.0, limits), Verdict::Good);
         assert_eq!(Verdict::of(1.5, limits), Verdict::Look);

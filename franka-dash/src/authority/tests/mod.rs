@@ -104,7 +104,7 @@ fn begin(speed: f64) -> Request {
 /// For any messages at any times, the arm moves only for the holder of the lease. It stops at the
 /// latest when the deadman expires after the last valid message.
 #[test]
-fn nothing_moves_without_the_messages_of_its_commander() {
+fn arm_moves_only_on_messages_of_its_commander() {
     let seed: u64 = rand::rng().random();
     println!("seed {seed}");
     let mut random = SmallRng::seed_from_u64(seed);

@@ -5,7 +5,7 @@ use franka_async::connection::lease::Taken;
 use super::*;
 
 #[test]
-fn a_second_viewer_commands_only_after_release_expiry_or_departure() {
+fn second_viewer_commands_only_once_the_lease_is_free() {
     let mut server = Server::holding(3);
     let name = "a person".to_owned();
     let taken = Refusal::Taken(Taken { name });

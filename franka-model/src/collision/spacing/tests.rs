@@ -60,7 +60,7 @@ fn plain(
 }
 
 #[test]
-fn rooms_are_what_the_distances_leave_and_those_below_a_limit_are_told() {
+fn margin_is_the_distance_left_and_is_told_below_a_limit() {
     let mut random = Random::new(301);
     let (mut near, mut far) = (0, 0);
     for case in 0..4000 {

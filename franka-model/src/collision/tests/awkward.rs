@@ -11,7 +11,7 @@ fn segment(start: [f64; 3], end: [f64; 3]) -> Segment {
 }
 
 #[test]
-fn parallel_axes_side_by_side_are_nearest_in_the_middle_of_what_they_share() {
+fn parallel_segments_are_nearest_amid_their_overlap() {
     let a = segment([0.0; 3], [1.0, 0.0, 0.0]);
     let b = segment([1.8, 0.0, 0.3], [0.6, 0.0, 0.3]);
     let nearest = a.nearest(&b);
@@ -31,7 +31,7 @@ fn parallel_axes_behind_each_other_are_nearest_at_their_ends() {
 }
 
 #[test]
-fn axes_that_are_almost_parallel_keep_their_distance_to_the_last_digits() {
+fn near_parallel_segments_keep_an_exact_distance() {
     let mut random = Random::new(98);
     for case in 0..CASES {
         // From clearly apart to identical in all digits.
@@ -82,7 +82,7 @@ fn balls_are_capsules_too() {
 }
 
 #[test]
-fn an_axis_that_runs_along_a_box_is_nearest_in_the_middle_of_what_they_share() {
+fn segment_along_a_box_is_nearest_amid_their_overlap() {
     let tool = [Capsule::new([0.0, 0.0, 0.0], [0.0, 0.0, 0.4], 0.01)];
     let shape = Shape::vendor().with_tool(&tool).expect("a tool");
     // At zero the flange is at (0.088, 0, 0.926) and the tool hangs down to 0.526.
@@ -128,7 +128,7 @@ fn a_tool_beyond_the_room_for_it_or_with_odd_numbers_is_refused() {
 }
 
 #[test]
-fn a_position_that_is_no_number_gives_no_distance_that_looks_like_one() {
+fn nan_position_gives_nan_distance() {
     for i in 0..7 {
         let mut q = READY;
         q[i] = f64::NAN;
@@ -179,7 +179,7 @@ fn the_covering_hand_contains_the_fingers_at_every_width() {
 }
 
 #[test]
-fn the_way_out_of_a_box_is_exact_for_axes_almost_parallel_to_an_edge() {
+fn way_out_of_box_is_exact_for_axes_nearly_along_an_edge() {
     let mut random = Random::new(99);
     let half = Vector3::new(0.2, 0.3, 0.5);
     let pose = Isometry3::translation(0.0, 0.0, 0.333);

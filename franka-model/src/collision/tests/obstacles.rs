@@ -154,7 +154,7 @@ fn random_plane(random: &mut Random) -> Obstacle {
 }
 
 #[test]
-fn the_distance_to_a_plane_is_that_of_the_lowest_point_of_a_dense_sample() {
+fn plane_distance_is_that_of_the_lowest_sampled_point() {
     let mut random = Random::new(97);
     for _ in 0..CASES {
         let shape = Shape::vendor().with_hand();

@@ -59,7 +59,7 @@ fn is_of_one_piece(inner: u8, outer: u8) -> bool {
 }
 
 #[test]
-fn the_pairs_of_the_vendors_capsules_are_those_that_come_near_each_other() {
+fn vendor_capsule_pairs_are_those_that_come_near() {
     const NEAR: f64 = 0.05;
     let shape = Shape::vendor();
     let mut least = [[f64::INFINITY; 8]; 8];
@@ -105,7 +105,7 @@ fn a_tool_is_checked_against_everything_up_to_link_5() {
 }
 
 #[test]
-fn joints_that_do_not_move_a_pair_against_itself_have_no_part_in_its_gradient() {
+fn gradient_of_a_pair_omits_joints_that_do_not_move_it() {
     let placed = Shape::vendor().with_hand().at(&crate::READY);
     for pair in placed.pairs() {
         let (inner, outer) = pair.bodies;
@@ -116,7 +116,7 @@ fn joints_that_do_not_move_a_pair_against_itself_have_no_part_in_its_gradient() 
 }
 
 #[test]
-fn folding_the_arm_onto_its_base_is_a_collision_and_the_gradient_leads_out_of_it() {
+fn folded_arm_collides_and_the_gradient_leads_out() {
     let shape = Shape::vendor().with_hand();
     let mut q = JointVector::from([0.0, 1.2, 0.0, -2.6, 0.0, 2.0, 0.785]);
     let mut pair = shape.at(&q).nearest_pair();

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn what_is_no_description_of_an_arm_is_refused() {
+fn urdf_that_describes_no_arm_is_refused() {
     for (text, message) in [
         ("", "Failed to parse URDF: "),
         ("no XML at all", "Failed to parse URDF: "),

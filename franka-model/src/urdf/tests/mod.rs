@@ -105,7 +105,7 @@ fn the_vendors_numbers_give_the_constant_model_to_the_last_bit() {
 }
 
 #[test]
-fn an_arm_with_recorded_lengths_is_a_model_with_these_lengths_and_a_mixture_is_refused() {
+fn urdf_with_recorded_lengths_is_read_but_no_mixture() {
     let lengths = Lengths::RECORDED_FR3;
     let upper = with("0 -0.316 0", "0 -0.3162 0");
     let both = upper.replace("-0.0825 0.384 0", "-0.0825 0.3842 0");
@@ -120,7 +120,7 @@ fn an_arm_with_recorded_lengths_is_a_model_with_these_lengths_and_a_mixture_is_r
 }
 
 #[test]
-fn what_the_vendors_parser_accepts_around_the_document_is_accepted() {
+fn urdf_variants_of_the_vendors_parser_are_accepted() {
     let text = text();
     let undeclared = text.split_once("?>").expect("a declaration").1;
     for variant in [
@@ -139,7 +139,7 @@ fn what_the_vendors_parser_accepts_around_the_document_is_accepted() {
 }
 
 #[test]
-fn joints_may_come_in_any_order_and_rounded_angles_count_as_right() {
+fn urdf_joint_order_is_free_and_angles_may_be_rounded() {
     let text = text();
     let mut lines: Vec<&str> = text.lines().collect();
     let last = lines.len() - 1;
@@ -193,7 +193,7 @@ fn numbers_of_the_text_are_those_of_the_model() {
 }
 
 #[test]
-fn what_is_fixed_to_a_link_is_part_of_it() {
+fn fixed_part_counts_towards_its_link() {
     let part = r#"<inertial><origin xyz="0 0 0.02" rpy="0 1.5707963267948966 0"/><mass value="0.5"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.002" iyz="0" izz="0.003"/></inertial>"#;
     let text = with(
         "<link name=\"link8\"/>",
@@ -225,7 +225,7 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
 }
 
 #[test]
-fn whatever_a_number_is_replaced_by_the_model_is_finite_or_refused() {
+fn replaced_number_gives_a_finite_model_or_a_refusal() {
     let text = text();
     // Every passage between quotation marks, and the numbers within.
     let quoted = text.split('"').skip(1).step_by(2);

@@ -34,7 +34,7 @@ fn setters_and_recovery_work_in_every_version() {
 }
 
 #[test]
-fn what_a_version_lacks_is_refused_before_a_byte_is_made() {
+fn request_unknown_to_the_version_is_refused_unsent() {
     let mut pair = Pair::connected(Version::V5);
     let torques = Request::Move(MoveRequest::new(
         MoveControllerMode::ExternalController,

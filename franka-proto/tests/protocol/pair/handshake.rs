@@ -30,7 +30,7 @@ fn another_version_is_told_and_can_be_followed() {
 }
 
 #[test]
-fn a_robot_that_accepts_and_reports_another_version_is_a_violation() {
+fn accepted_connect_of_another_version_is_a_violation() {
     let mut client = client::Session::new(Version::V10);
     client.connect(1);
     let bytes = raw_reply(0, &[0, 5, 0]);

@@ -42,7 +42,7 @@ fn a_model_text_never_goes_into_the_fixed_buffer() {
 }
 
 #[test]
-fn a_library_for_an_unknown_system_is_an_error_and_the_session_goes_on() {
+fn library_for_unknown_system_fails_but_session_goes_on() {
     let mut pair = Pair::connected(Version::V5);
     let outgoing = pair.client.request(&library()).unwrap();
     let mut bytes = outgoing.as_bytes().to_vec();

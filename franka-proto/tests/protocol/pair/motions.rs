@@ -80,7 +80,7 @@ fn a_second_start_is_a_violation_and_the_motion_goes_on() {
 }
 
 #[test]
-fn a_move_with_an_unknown_mode_is_answered_as_an_invalid_argument() {
+fn move_with_unknown_mode_is_an_invalid_argument() {
     for version in Version::ALL {
         let mut pair = Pair::connected(version);
         let outgoing = pair.client.request(&joint_motion()).unwrap();

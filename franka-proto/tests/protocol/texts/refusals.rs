@@ -38,21 +38,21 @@ fn check(version: Version, command: Command, texts: Texts, unknown: &str) {
 }
 
 #[test]
-fn of_a_move() {
+fn move_statuses_have_their_texts() {
     let unknown = "Unexpected response while handling Move command!";
     check(Version::V10, Command::Move, MOVE_V10, unknown);
     check(Version::V5, Command::Move, MOVE_V5, unknown);
 }
 
 #[test]
-fn of_a_stop() {
+fn stop_statuses_have_their_texts() {
     let unknown = "Unexpected response while handling Stop Move command!";
     check(Version::V10, Command::StopMove, STOP_V10, unknown);
     check(Version::V5, Command::StopMove, STOP_V5, unknown);
 }
 
 #[test]
-fn of_a_recovery() {
+fn recovery_statuses_have_their_texts() {
     let unknown = "Unexpected response while handling Automatic Error Recovery command!";
     let command = Command::AutomaticErrorRecovery;
     check(Version::V10, command, RECOVERY_V10, unknown);
@@ -60,7 +60,7 @@ fn of_a_recovery() {
 }
 
 #[test]
-fn of_the_setters() {
+fn setter_statuses_have_their_texts() {
     for (command, name) in SETTERS {
         for version in Version::ALL {
             if !version.supports(command) {
@@ -80,7 +80,7 @@ fn of_the_setters() {
 }
 
 #[test]
-fn of_the_models() {
+fn model_statuses_have_their_texts() {
     let unknown = "Unexpected response while handling Get Robot Model command!";
     check(Version::V10, Command::GetRobotModel, MODEL, unknown);
     // Every status except success gives this error, including an undefined byte.

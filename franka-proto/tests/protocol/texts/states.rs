@@ -12,7 +12,7 @@ fn keys(text: &str, value: &Value) -> Vec<String> {
 }
 
 #[test]
-fn a_state_prints_as_an_object_with_libfrankas_keys_in_its_order() {
+fn state_prints_as_json_object_in_libfranka_key_order() {
     let state = RobotState {
         message_id: 1234,
         q: [0.123456789, -1e-9, 2.0, 1e7, 0.0, -0.5, 3.0],

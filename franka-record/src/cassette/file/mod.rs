@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_cassette_says_so() {
+    fn foreign_file_is_reported_as_no_cassette() {
         let error = Cassette::read(b"GIF89a").unwrap_err();
         assert!(matches!(error, CassetteError::NotMcap(_)), "{error}");
         let mut other = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();

@@ -103,7 +103,7 @@ fn one_loss_is_one_end() {
 }
 
 #[test]
-fn a_goal_that_failed_of_itself_is_told_where_nothing_ended_a_motion() {
+fn failed_goal_is_told_if_nothing_ended_a_motion() {
     let mut explainer = Explainer::new(Model::fr3());
     explainer.push_state(&state(1));
     let outcome = Outcome {

@@ -85,7 +85,7 @@ fn the_order_of_two_functions_is_that_of_the_versions_client() {
 }
 
 #[test]
-fn whoever_finishes_first_keeps_the_other_from_its_call() {
+fn finished_function_keeps_the_other_from_its_call() {
     // In the third cycle one function finishes. If the other would have been called after it, its
     // command of the second cycle is sent.
     for (version, motion_ends, torques_end, last) in [
@@ -144,7 +144,7 @@ fn each_kind_of_command_asks_for_its_generator() {
 }
 
 #[test]
-fn torques_alone_stand_still_beside_where_a_version_has_no_such_motion() {
+fn torques_alone_come_with_a_still_motion_if_needed() {
     for version in Version::ALL {
         let callback = Callback::torques(version, |_, _| Torques([3.0; 7]).finish());
         let mut callback = callback.with_shaper(plain(version));

@@ -67,7 +67,7 @@ fn the_filter_comes_before_the_limiter() {
 }
 
 #[test]
-fn the_first_position_or_pose_of_a_motion_counts_as_its_own_past_in_protocol_10() {
+fn first_position_or_pose_is_its_own_past_in_protocol_10() {
     let state = at_rest();
     let q = JointPositions(state.q_d.map(|q| q + 0.01));
     let pose = nudged(&state);
@@ -113,7 +113,7 @@ fn unfilled(state: &RobotState) -> RobotState {
 }
 
 #[test]
-fn cartesian_commands_are_shaped_against_the_desired_pose_where_none_is_commanded() {
+fn cartesian_shaping_uses_desired_pose_if_none_commanded() {
     let state = at_rest();
     let zeros = unfilled(&state);
     for version in Version::ALL {
@@ -135,7 +135,7 @@ fn cartesian_commands_are_shaped_against_the_desired_pose_where_none_is_commande
 }
 
 #[test]
-fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
+fn fr3_envelope_holds_positions_near_the_range_end() {
     let mut state = at_rest();
     state.q_d[0] = 2.749;
     let ahead = JointPositions(core::array::from_fn(|i| {
@@ -165,7 +165,7 @@ fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
 }
 
 #[test]
-fn the_envelope_of_a_first_position_is_that_of_the_position_itself() {
+fn first_position_is_bounded_by_its_own_envelope() {
     let state = at_rest();
     let mut q = JointPositions(state.q_d);
     q.0[0] = 2.75;
@@ -175,7 +175,7 @@ fn the_envelope_of_a_first_position_is_that_of_the_position_itself() {
 }
 
 #[test]
-fn room_for_the_echo_is_left_in_protocol_10_unless_it_is_trusted() {
+fn echo_room_is_left_in_protocol_10_unless_it_is_trusted() {
     let state = RobotState {
         tau_J_d: [80.0; 7],
         ..at_rest()
@@ -227,7 +227,7 @@ fn an_elbow_of_two_zeros_is_none() {
 
 /// The first step that finds a bad number names the signal.
 #[test]
-fn what_is_not_finite_is_refused_by_the_first_step_that_sees_it() {
+fn non_finite_command_is_refused_by_first_step_to_see_it() {
     let state = at_rest();
     let filter = |signal| InvalidCommand::Filter {
         signal,
@@ -285,7 +285,7 @@ fn what_is_not_finite_is_refused_by_the_first_step_that_sees_it() {
 }
 
 #[test]
-fn a_pose_in_row_major_order_is_refused_with_the_text_of_the_step() {
+fn row_major_pose_is_refused_with_the_text_of_the_step() {
     let state = at_rest();
     let pose = nudged(&state);
     let transposed = CartesianPose {
@@ -307,7 +307,7 @@ fn a_pose_in_row_major_order_is_refused_with_the_text_of_the_step() {
 }
 
 #[test]
-fn a_pose_that_is_none_is_refused_though_the_filter_would_make_one_of_it() {
+fn invalid_pose_is_refused_even_if_filter_would_mend_it() {
     let state = at_rest();
     let mut pose = nudged(&state);
     for element in &mut pose.O_T_EE[..3] {
@@ -321,7 +321,7 @@ fn a_pose_that_is_none_is_refused_though_the_filter_would_make_one_of_it() {
 }
 
 #[test]
-fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() {
+fn non_positive_cutoff_is_reported_with_first_command() {
     for cutoff in [0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
         let shaper = Shaper::new(Version::V10, false, cutoff);
         let got = shaper.torques(&Torques([0.0; 7]), &at_rest());

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_counts_as_far_as_it_is_sure() {
+    fn known_values_weigh_by_their_certainty() {
         let begin = |deviation| {
             let joint = ((0.8, deviation), (-0.3, deviation));
             Learned::known([joint; 7])

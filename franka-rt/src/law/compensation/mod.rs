@@ -392,7 +392,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_is_left_alone_inside_its_dead_zone_and_broken_away_outside() {
+    fn joint_rests_in_its_dead_zone_and_breaks_away_outside() {
         let mut this = learned(0.8, 0.0);
         let inside = run(&mut this, 1, 0.0, 2e-4, 0.05);
         assert_eq!(run(&mut this, 5000, 0.0, 2e-4, 0.05), inside);
@@ -406,7 +406,7 @@ mod tests {
 
     /// The arm stops while a push acts on it; then the push ends.
     #[test]
-    fn what_stood_against_a_push_is_not_kept() {
+    fn torque_against_an_ended_push_is_not_kept() {
         let mut this = learned(0.8, 0.0);
         run(&mut this, 400, 0.0, 2e-3, 0.3);
         run(&mut this, 400, 0.0, 2e-4, 0.0);
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn the_integral_waits_for_the_springs_to_have_done_what_they_can() {
+    fn integral_waits_until_springs_have_done_their_part() {
         let mut this = learned(0.8, 0.0);
         let at_once = run(&mut this, 1, 0.0, 5e-4, 0.05);
         assert_eq!(run(&mut this, RESTED[1] - 1, 0.0, 5e-4, 0.05), at_once);
@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn where_something_holds_the_arm_only_the_bias_stays_and_nothing_is_learned() {
+    fn held_arm_keeps_only_the_bias_and_learns_nothing() {
         let mut this = learned(0.8, -0.3);
         run(&mut this, 1000, 0.0, 5e-3, 0.5);
         let before = this.learned();
@@ -474,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn it_begins_and_ends_at_zero_without_a_step() {
+    fn compensation_begins_and_ends_at_zero_without_a_step() {
         let known = learned(0.8, -0.6).learned();
         let mut this = Compensation::new(known);
         let mut last = 0.0;
@@ -533,7 +533,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_bounded_whatever_springs_demand(
+        fn compensation_is_bounded_for_any_spring_torque(
             demands in prop::collection::vec((-0.5..0.5f64, -0.01..0.01f64, -5.0..5.0f64), 20),
         ) {
             let mut this = Compensation::new(Learned::default());

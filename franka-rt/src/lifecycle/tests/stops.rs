@@ -64,7 +64,7 @@ fn stop_of_a_motion_given_up_fails_while_the_robot_shows_it() {
 }
 
 #[test]
-fn stop_of_a_motion_given_up_resolves_when_a_state_shows_the_arm_at_rest() {
+fn stop_of_abandoned_motion_resolves_with_the_arm_at_rest() {
     let mut pair = given_up();
     assert!(pair.stop(10) && pair.stop(11));
     pair.comes_to(0.2);
@@ -97,7 +97,7 @@ fn stop_while_the_cycle_is_lent_and_not_run_waits_for_a_state() {
 }
 
 #[test]
-fn stop_without_a_motion_of_this_program_waits_for_an_arm_that_moves() {
+fn stop_without_own_motion_waits_for_a_moving_arm() {
     let mut pair = LifecycleAndDriver::new();
     assert!(!pair.stop(10), "it rests");
     pair.cycle(RobotMode::Move);
@@ -118,7 +118,7 @@ fn stop_without_a_motion_of_this_program_waits_for_an_arm_that_moves() {
 }
 
 #[test]
-fn stop_that_waits_for_a_state_is_superseded_by_a_motion_that_begins() {
+fn stop_waiting_for_a_state_is_superseded_by_a_motion() {
     let mut pair = LifecycleAndDriver::new();
     pair.comes_to(0.2);
     assert!(pair.stop(10));
@@ -190,7 +190,7 @@ fn stop_of_an_arm_that_does_not_rest_has_the_robot_stop_it() {
 }
 
 #[test]
-fn stop_by_the_robot_resolves_when_a_state_shows_the_arm_at_rest() {
+fn stop_by_the_robot_resolves_with_the_arm_at_rest() {
     let (mut pair, motion, _) = LifecycleAndDriver::moving();
     assert!(pair.stop(10) && pair.stop(11));
     pair.state.dq[0] = 0.2;
@@ -209,7 +209,7 @@ fn stop_by_the_robot_resolves_when_a_state_shows_the_arm_at_rest() {
 }
 
 #[test]
-fn a_goal_that_comes_as_the_robot_is_told_to_stop_gets_a_motion_of_its_own() {
+fn goal_sent_during_a_robot_stop_gets_its_own_motion() {
     let (mut pair, motion, goal) = LifecycleAndDriver::moving();
     pair.lifecycle.cancel(goal, NOW);
     pair.settle();

@@ -146,7 +146,7 @@ fn signals_are_blocked_but_for_those_that_report_a_fault() {
 }
 
 #[test]
-fn the_thread_runs_on_the_processor_asked_for_and_not_on_one_that_does_not_exist() {
+fn thread_runs_on_the_requested_processor_if_it_exists() {
     let asked = Scheduling {
         realtime: Realtime::Ignore,
         cpu: Some(0),
@@ -205,7 +205,7 @@ fn a_socket_is_polled_as_asked_or_the_refusal_is_told() {
 }
 
 #[test]
-fn what_cannot_be_polled_is_refused_under_enforce_and_noted_under_ignore() {
+fn refused_busy_poll_is_an_error_only_under_enforce() {
     // This descriptor is not a socket.
     let file = std::fs::File::open("/dev/null").expect("Linux has it");
     let duration = Duration::from_micros(50);

@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_is_whole_at_first_and_gone_at_the_end_with_true_derivatives_between() {
+    fn gap_fades_from_whole_to_nothing_with_true_derivatives() {
         let (from, base) = (state([3.0, 0.1, 0.2], 0.4), state([2.6, -0.3, 0.6], -0.8));
         let gap = from.gap_from(&base);
         assert!(close(&base.displaced(&gap, 0.1, 0.0), &from, 1e-12));

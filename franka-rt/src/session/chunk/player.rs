@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blend_leaves_the_motion_before_and_enters_the_chunk_with_two_derivatives() {
+    fn blend_joins_motion_and_chunk_with_two_derivatives() {
         let before = moving(0.3, -0.5, 2.0);
         let player = play(line().observed_at(1000), &before, 1120);
         let blended = |t: f64| {

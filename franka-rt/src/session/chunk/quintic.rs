@@ -62,7 +62,7 @@ mod tests {
     use nalgebra::SVector;
 
     #[test]
-    fn meets_both_ends_and_its_derivatives_are_those_of_its_position() {
+    fn quintic_meets_both_ends_with_matching_derivatives() {
         let from = PointState {
             p: SVector::from([0.3, -1.0]),
             v: SVector::from([0.5, 2.0]),

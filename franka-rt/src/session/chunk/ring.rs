@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chunk_whose_points_have_passed_is_late_and_one_of_another_goal_is_obsolete() {
+    fn past_chunk_is_late_and_another_goals_chunk_obsolete() {
         let (mut writer, mut reader) = chunk_ring();
         writer.send(GOAL, chunk().observed_at(100)).unwrap();
         assert_eq!(reader.poll(GOAL, 161, true), None);
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chunk_of_the_future_waits_for_its_first_point_while_another_runs() {
+    fn future_chunk_waits_while_another_runs() {
         let (mut writer, mut reader) = chunk_ring();
         writer.send(GOAL, chunk().observed_at(100)).unwrap();
         assert_eq!(reader.poll(GOAL, 109, false), None);

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_state_outside_the_limits_comes_back_and_never_goes_further_out() {
+    fn state_outside_limits_returns_and_strays_no_further() {
         let limits = LIMITS[1];
         let mut now = PointState {
             p: Vector3::zeros(),

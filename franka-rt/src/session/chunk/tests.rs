@@ -186,7 +186,7 @@ proptest! {
     #![proptest_config(cases(60))]
 
     #[test]
-    fn joints_keep_the_budget_and_their_range_whatever_chunks_ask_for(
+    fn joints_keep_budget_and_range_for_any_chunks(
         chunks in prop::collection::vec(wild(), 1..5),
     ) {
         let mut arm = Arm::default_budget();
@@ -250,7 +250,7 @@ fn prediction(observed: u64) -> Vec<(Duration, [f64; 7])> {
 const LATENCY: u64 = 150;
 
 #[test]
-fn a_policy_of_10_hz_and_150_ms_latency_follows_a_sine_to_a_tenth_of_a_milliradian() {
+fn late_chunks_at_10_hz_follow_sine_to_0_1_milliradian() {
     let mut arm = Arm::default_budget();
     let mut worst = 0.0_f64;
     for cycle in 0..6000 {
@@ -423,7 +423,7 @@ impl Session {
 }
 
 #[test]
-fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
+fn session_follows_the_chunks_of_its_goal_to_their_end() {
     let mut session = Session::new();
     session.chunks.send(GOAL, Session::way()).unwrap();
     session.set(1, Target::Rest, OnArrival::ReportAndHold);

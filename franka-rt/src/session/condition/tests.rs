@@ -310,7 +310,7 @@ fn changes_count_from_the_first_state_that_is_finite() {
 }
 
 #[test]
-fn what_cannot_be_is_refused() {
+fn impossible_condition_is_refused() {
     let nan = Quantity::Speed.below(f64::NAN).check().unwrap_err();
     assert!(matches!(nan, ConditionError::Threshold { .. }), "{nan}");
     for wrong in [f64::NAN, f64::INFINITY, 0.0, -5.0] {

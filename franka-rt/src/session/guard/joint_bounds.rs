@@ -174,7 +174,7 @@ mod tests {
     use franka_model::{Model, READY};
 
     #[test]
-    fn an_interval_is_never_beyond_one_cycle_of_acceleration_and_of_jerk() {
+    fn velocity_interval_respects_acceleration_and_jerk() {
         let limits = Model::fr3().joint_limits();
         for sign in [-1.0, 1.0] {
             let moving = Reference {
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_comes_to_its_cap_and_to_the_end_of_its_range_within_its_jerk() {
+    fn joint_meets_velocity_cap_and_range_end_within_jerk() {
         for model in [Model::fr3(), Model::fer()] {
             let limits = model.joint_limits();
             for i in 0..7 {

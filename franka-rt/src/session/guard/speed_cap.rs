@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_joints_are_left_alone_and_nothing_is_faster_than_the_share() {
+    fn slow_joints_stay_as_they_are_and_fast_ones_are_capped() {
         for speed in [0.0, 0.2, 0.42] {
             assert_eq!(kept(speed), speed);
         }

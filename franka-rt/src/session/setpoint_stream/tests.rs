@@ -78,7 +78,7 @@ fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
 }
 
 #[test]
-fn velocities_end_at_the_target_where_the_robot_integrates_to_another_place() {
+fn velocities_end_at_target_despite_integration_drift() {
     for (slip, step) in [
         (0.0, 0.0),
         (1e-4, 0.0),

@@ -95,7 +95,7 @@ proptest! {
     }
 
     #[test]
-    fn a_rate_within_the_echo_is_within_the_limit_of_the_torque_sent(
+    fn rate_within_the_echo_keeps_the_limit_of_sent_torque(
         wish in -200.0..200.0_f64,
         sent in -87.0..87.0_f64,
     ) {
@@ -128,7 +128,7 @@ proptest! {
     /// As in libfranka, the jerk is exceeded where the envelope takes the velocity back faster than
     /// the jerk allows.
     #[test]
-    fn joint_positions_keep_velocity_and_acceleration_and_without_an_envelope_the_jerk(
+    fn joint_positions_keep_limits_and_jerk_without_envelope(
         shares in commands::<7>(share()),
         (kind, bounds) in robot(),
     ) {
@@ -276,7 +276,7 @@ fn joints_5_and_7_of_the_fr3_pass_their_upper_end() {
 }
 
 #[test]
-fn above_its_bounds_a_velocity_keeps_the_acceleration_and_below_them_it_does_not() {
+fn velocity_keeps_acceleration_above_bounds_but_not_below() {
     let bounds = AxisBounds {
         upper_velocity: 1.0,
         lower_velocity: -1.0,
@@ -295,7 +295,7 @@ fn above_its_bounds_a_velocity_keeps_the_acceleration_and_below_them_it_does_not
 }
 
 #[test]
-fn far_outside_the_velocity_bound_a_vector_is_only_bounded_in_its_jerk() {
+fn vector_far_beyond_velocity_bound_keeps_only_jerk_bound() {
     // Across the last velocity, no acceleration leads back into the sphere: its distance is NaN.
     let bounds = Bounds::fr3().cartesian;
     let last = [10.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -306,7 +306,7 @@ fn far_outside_the_velocity_bound_a_vector_is_only_bounded_in_its_jerk() {
 }
 
 #[test]
-fn a_vector_with_a_last_acceleration_that_is_no_number_keeps_its_velocity() {
+fn vector_with_nan_acceleration_keeps_its_velocity() {
     let bounds = Bounds::fr3().cartesian;
     let last = [0.1, 0.2, 0.3, 0.0, 0.0, 0.0];
     let acceleration = [0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0];

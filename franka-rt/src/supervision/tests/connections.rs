@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_lost_connection_is_made_again_at_once_and_then_with_growing_pauses() {
+fn lost_connection_is_retried_at_once_then_with_pauses() {
     let mut robot = Supervised::ready(without_chance());
     let begun = robot.now;
     robot.lose(CloseReason::ClosedByPeer);
@@ -54,7 +54,7 @@ fn connections_that_do_not_last_are_not_made_again_at_once() {
 }
 
 #[test]
-fn it_gives_up_as_told_and_when_another_robot_answers() {
+fn reconnecting_ends_at_the_limit_or_for_another_robot() {
     let mut robot = Supervised::ready(without_chance().give_up_after(MS(250)));
     robot.lose(CloseReason::ClosedByPeer);
     robot.release();
@@ -170,7 +170,7 @@ fn robot_that_is_recognised_is_recovered_as_before() {
 }
 
 #[test]
-fn what_this_program_closes_is_not_made_again() {
+fn connection_closed_by_us_is_not_made_again() {
     for reason in [CloseReason::ClosedByUs, CloseReason::RuntimeEnded] {
         let mut robot = Supervised::ready(without_chance());
         robot.lose(reason.clone());
@@ -190,7 +190,7 @@ fn what_this_program_closes_is_not_made_again() {
 }
 
 #[test]
-fn a_robot_that_is_only_watched_tells_what_happens_and_asks_for_nothing() {
+fn unsupervised_robot_tells_events_and_asks_for_nothing() {
     let mut robot = Supervised::connected(None);
     robot.reflex([COLLISION]);
     assert!(matches!(robot.submit(1), Admission::Begin));

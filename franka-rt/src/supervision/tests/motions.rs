@@ -31,7 +31,7 @@ fn a_motion_meanwhile_is_refused_unless_it_may_wait() {
 }
 
 #[test]
-fn a_motion_that_waits_begins_when_the_robot_is_ready_and_not_after_its_time() {
+fn waiting_motion_begins_when_ready_but_not_too_late() {
     let policy = without_chance().recover(3, WINDOW).motions_wait(MS(500));
     let mut robot = Supervised::ready(policy);
     robot.reflex([COLLISION]);
@@ -52,7 +52,7 @@ fn a_motion_that_waits_begins_when_the_robot_is_ready_and_not_after_its_time() {
 }
 
 #[test]
-fn latched_stop_refuses_every_motion_until_released_across_connections() {
+fn latched_stop_refuses_motions_across_connections() {
     let latched = not_ready(Unready::StopLatched, 0);
     for policy in [
         None,
@@ -138,7 +138,7 @@ fn motions_and_silences_may_take_the_longest_duration() {
 }
 
 #[test]
-fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
+fn newest_waiting_motion_counts_and_a_stop_withdraws_it() {
     let policy = without_chance().motions_wait(MS(500));
     let mut robot = Supervised::ready(policy);
     robot.lose(CloseReason::ClosedByPeer);

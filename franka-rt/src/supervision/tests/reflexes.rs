@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_reflex_is_told_and_recovered_from_once_its_motion_has_ended() {
+fn reflex_is_told_and_recovered_once_its_motion_has_ended() {
     let mut robot = Supervised::ready(without_chance().recover(3, WINDOW));
     let now = MS(robot.now);
     robot.after(|it| it.on_begun(GoalId(7), now));
@@ -46,7 +46,7 @@ fn a_reflex_is_told_and_recovered_from_once_its_motion_has_ended() {
 
 /// On a busy host, states may be read after the replies.
 #[test]
-fn a_reflex_that_ended_a_motion_before_a_state_shows_it_has_its_log_too() {
+fn reflex_that_ends_a_motion_before_its_state_has_a_log() {
     let mut robot = Supervised::ready(without_chance().recover(3, WINDOW));
     let now = MS(robot.now);
     robot.after(|it| it.on_begun(GoalId(7), now));
@@ -60,7 +60,7 @@ fn a_reflex_that_ended_a_motion_before_a_state_shows_it_has_its_log_too() {
 }
 
 #[test]
-fn it_recovers_as_often_as_the_policy_allows_and_from_the_errors_that_it_names() {
+fn recovery_obeys_the_count_and_errors_of_the_policy() {
     let mut robot = Supervised::ready(without_chance());
     robot.reflex([COLLISION]);
     assert_eq!(robot.left(), Some(NotRecovered::Never));
@@ -160,7 +160,7 @@ fn a_recovery_waits_for_the_release_of_the_user_stop() {
 }
 
 #[test]
-fn where_somebody_has_to_agree_nothing_happens_before_and_to_another_reflex_it_is_no_answer() {
+fn recovery_waits_for_agreement_to_the_same_reflex() {
     let policy = without_chance().recover(3, WINDOW).ask_first();
     let mut robot = Supervised::ready(policy);
     robot.reflex([COLLISION]);

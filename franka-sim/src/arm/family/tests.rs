@@ -13,7 +13,7 @@ fn families() -> [(&'static str, Family); 3] {
 }
 
 #[test]
-fn every_embedded_family_is_what_its_json_says_after_a_round_trip() {
+fn embedded_families_survive_a_json_round_trip() {
     for (name, family) in families() {
         let again = Family::from_json(&family.to_json()).expect("what was written");
         assert_eq!(again, family, "{name}");
@@ -97,7 +97,7 @@ fn a_central_arm_is_the_middle_and_only_an_fer_stalls() {
 }
 
 #[test]
-fn a_text_that_is_no_family_says_which_field_and_what_was_expected() {
+fn invalid_family_names_the_field_and_the_expectation() {
     let text = Family::realistic().to_json();
     let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let error = |field: &str, json: &str| {

@@ -166,7 +166,7 @@ fn bursts_take_datagrams_in_a_row() {
 }
 
 #[test]
-fn a_stall_holds_datagrams_back_and_sends_them_all_at_the_rate_of_the_line() {
+fn stall_holds_datagrams_and_releases_them_at_line_rate() {
     let conditions = Conditions {
         stalls: Some(Stalls::FER),
         ..CLEAR

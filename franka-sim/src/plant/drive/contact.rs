@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sliding_body_comes_to_rest_without_chatter_whatever_its_inertia() {
+    fn sliding_body_comes_to_rest_without_chatter() {
         for (stiffness, damping, inertia) in [
             (1e4, 5.0, 1.2e-4),
             (1e4, 0.0, 1.2e-4),
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn it_breaks_away_at_the_static_torque_and_then_resists_less() {
+    fn friction_breaks_away_at_static_torque_and_then_drops() {
         let mut body = Body::new(&friction(2e3, 5.0), 0.1);
         let mut torque = 0.0;
         while body.v < 1e-3 {

@@ -141,7 +141,7 @@ fn a_stuck_arm_does_not_creep() {
 }
 
 #[test]
-fn the_links_share_of_friction_shows_in_the_sensed_torque_and_the_motors_does_not() {
+fn sensed_torque_shows_friction_of_the_link_side_only() {
     for share in [0.0, 0.4, 1.0] {
         let mut friction = Arm::realistic(KIND).friction;
         friction.link_share = JointVector::repeat(share);

@@ -259,7 +259,7 @@ mod tests {
     const STEP: f64 = 0.000_25;
 
     #[test]
-    fn what_is_felt_is_what_accelerates_a_falling_arm() {
+    fn felt_force_is_the_one_that_accelerates_the_arm() {
         let (kind, frames) = (RobotKind::Fr3, EndEffector::default());
         let arm = Arm::ideal(kind);
         let as_built = arm.body.as_built(kind);

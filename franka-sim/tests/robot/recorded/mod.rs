@@ -44,7 +44,7 @@ fn median(sorted: &[f64]) -> f64 {
 }
 
 #[test]
-fn reported_poses_are_those_of_the_model_with_the_recorded_lengths() {
+fn reported_poses_fit_the_model_with_recorded_lengths() {
     let (rest, angle) = deviations(Lengths::RECORDED_FR3, AT_REST.iter());
     assert!(median(&rest) < 1e-7, "{rest:?}");
     // Motion of joints that turn at 5 mrad/s, in 1.3 ms.
@@ -60,7 +60,7 @@ fn reported_poses_are_those_of_the_model_with_the_recorded_lengths() {
 }
 
 #[test]
-fn torques_of_the_model_are_the_sensed_less_the_external_estimate() {
+fn model_torques_equal_sensed_less_external_ones() {
     let model = Model::physically_consistent(RobotKind::Fr3);
     let load = Tool::hand().load;
     let gravity = Vector3::new(0.0, 0.0, -9.81);

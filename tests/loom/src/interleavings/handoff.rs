@@ -39,7 +39,7 @@ fn take_a_turn(handoff: &Handoff<u64>) -> Result<(), BorrowError> {
 /// With ticks that never end, a notification that gets lost would leave a thread waiting for good,
 /// which loom reports.
 #[test]
-fn whoever_wants_it_gets_it() {
+fn handoff_serves_the_borrower_that_wants_it() {
     loom::model(|| {
         let handoff = Arc::new(Handoff::new(FOREVER));
         let served = Arc::new(AtomicBool::new(false));

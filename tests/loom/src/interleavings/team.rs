@@ -32,7 +32,7 @@ fn a_fault_reaches_who_begins_at_the_same_time() {
 }
 
 #[test]
-fn of_two_faults_at_once_all_hear_the_same() {
+fn simultaneous_faults_are_heard_alike_by_all() {
     loom::model(|| {
         let (coordinator, [mut first, mut second, mut third]) = team();
         let round = coordinator.begin();
@@ -81,7 +81,7 @@ const SAID: [Carrying; 2] = [
 ];
 
 #[test]
-fn what_a_member_says_of_its_object_is_read_whole_and_in_order() {
+fn object_report_is_read_whole_and_in_order() {
     loom::model(|| {
         let (coordinator, [mut first, mut second]) = team();
         let round = coordinator.begin();
@@ -106,7 +106,7 @@ fn what_a_member_says_of_its_object_is_read_whole_and_in_order() {
 }
 
 #[test]
-fn what_is_said_of_one_round_is_never_read_in_the_next() {
+fn report_of_one_round_is_never_read_in_the_next() {
     loom::model(|| {
         let (coordinator, [first, mut second]) = team();
         let round = coordinator.begin();
@@ -127,7 +127,7 @@ fn what_is_said_of_one_round_is_never_read_in_the_next() {
 }
 
 #[test]
-fn of_two_others_at_once_the_farthest_and_any_that_lags_count() {
+fn reports_at_once_count_by_the_farthest_and_any_lag() {
     loom::model(|| {
         let (coordinator, [mut first, mut second, mut third]) = team();
         let round = coordinator.begin();

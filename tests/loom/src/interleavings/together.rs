@@ -5,7 +5,7 @@ use loom::thread;
 use crate::together::{Gate, StartBarrier};
 
 #[test]
-fn nobody_begins_alone() {
+fn start_begins_for_all_or_for_none() {
     loom::model(|| {
         let [mut first, mut second] = StartBarrier::new().tickets();
         let waiting = thread::spawn(move || {
@@ -29,7 +29,7 @@ fn nobody_begins_alone() {
 }
 
 #[test]
-fn of_two_reasons_at_once_all_hear_the_same() {
+fn simultaneous_refusals_are_heard_alike_by_all() {
     loom::model(|| {
         let [mut first, second, mut third] = StartBarrier::new().tickets();
         let leaving = thread::spawn(move || {

@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bill_of_this_machines_program_names_the_driver_and_its_needs() {
+    fn bill_names_the_driver_and_its_dependencies() {
         let workspace = Workspace::find().unwrap();
         let version = crate::release::version(&crate::metadata::of(&workspace).unwrap());
         let bill = Bill::of(&workspace, "x86_64-unknown-linux-gnu", &version).unwrap();

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn late_and_missing_commands_are_lost_and_only_late_ones_have_a_turnaround() {
+    fn late_commands_count_as_lost_but_have_a_turnaround() {
         let at = Duration::from_micros;
         let sent = [at(0), at(1000), at(2000), at(3000)];
         let arrived = [Some(at(40)), Some(at(2500)), None, Some(at(3060))];

@@ -108,7 +108,7 @@ fn steps<M: CurveState>(curve: &Curve<M>) -> impl Iterator<Item = (M, M)> {
 }
 
 #[test]
-fn joints_keep_their_limits_and_the_size_of_corners_on_random_paths() {
+fn joints_keep_limits_and_corner_sizes_on_random_paths() {
     let mut random = SmallRng::seed_from_u64(17);
     let model = Model::fr3();
     for case in 0..sample(40, 7) {
@@ -144,7 +144,7 @@ fn joints_keep_their_limits_and_the_size_of_corners_on_random_paths() {
 }
 
 #[test]
-fn poses_keep_the_limits_of_the_norms_and_the_size_of_corners_on_random_paths() {
+fn poses_keep_limits_and_corner_sizes_on_random_paths() {
     let mut random = SmallRng::seed_from_u64(18);
     let model = Model::fr3();
     for case in 0..sample(40, 7) {
@@ -176,7 +176,7 @@ fn poses_keep_the_limits_of_the_norms_and_the_size_of_corners_on_random_paths() 
 }
 
 #[test]
-fn a_path_of_one_straight_line_takes_as_long_as_the_plan_of_a_goal() {
+fn path_of_one_line_takes_as_long_as_the_plan_of_a_goal() {
     let model = Model::fr3();
     let goal = goal(model, 1.0);
     let [middle, there] = [0.1, 0.2].map(|by| READY + JointVector::repeat(by));
@@ -199,7 +199,7 @@ fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
 
 /// The generator of goals is the oracle with jerk limits: it finds the exact optimum of a line.
 #[test]
-fn a_line_that_is_gone_too_slowly_is_made_as_fast_as_the_plan_of_a_goal() {
+fn slow_line_is_retimed_to_the_pace_of_a_goals_plan() {
     let model = Model::fr3();
     for (by, jerk) in [
         (0.05, 1.0),
@@ -431,7 +431,7 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
 }
 
 #[test]
-fn a_preview_goes_all_along_the_path_in_its_time_and_refuses_what_is_refused() {
+fn preview_matches_the_path_in_time_and_refusals() {
     let (model, ee) = (Model::fr3(), EndEffector::default());
     let goal = goal(model, 1.0);
     let q: [f64; 7] = READY.into();

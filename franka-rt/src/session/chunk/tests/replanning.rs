@@ -121,7 +121,7 @@ fn farthest(seen: &[f64]) -> f64 {
 }
 
 #[test]
-fn what_the_arm_lags_behind_does_not_grow_from_chunk_to_chunk() {
+fn lag_does_not_grow_from_chunk_to_chunk() {
     // Half the acceleration of the default budget.
     for (axis, rhythm) in RHYTHMS
         .into_iter()
@@ -168,7 +168,7 @@ fn joints_that_lag_behind_do_not_swing_in_a_session() {
 
 /// Checks the figures of the book's chapter on chunks.
 #[test]
-fn what_asks_for_more_than_the_limits_is_overshot_by_20_to_60_mm() {
+fn chunks_beyond_the_limits_overshoot_as_the_book_says() {
     for rhythm in RHYTHMS {
         let seen = run(Axis::Along, rhythm, 6000, |_, _, t| sine(0.1, t));
         let most = farthest(&seen);

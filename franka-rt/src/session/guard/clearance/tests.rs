@@ -139,7 +139,7 @@ fn bent(margin: f64) -> JointVector {
 }
 
 #[test]
-fn what_could_not_stop_in_time_is_too_near_and_what_could_is_slow() {
+fn clearance_is_too_near_only_if_a_stop_comes_too_late() {
     let mut clearance = of(KeepOut::default());
     let mut ahead = |from: f64, to: f64| {
         let (now, end) = (bent(from), bent(to));
@@ -156,7 +156,7 @@ fn what_could_not_stop_in_time_is_too_near_and_what_could_is_slow() {
 }
 
 #[test]
-fn what_is_clear_is_not_looked_at_again_before_the_joints_have_turned() {
+fn clear_pose_is_rechecked_only_after_joints_turn() {
     let mut clearance = of(KeepOut::default());
     let still = JointVector::zeros();
     assert!(!is_clear(&clearance, &READY, &still));
