@@ -338,7 +338,7 @@ fn bad_goals_are_named_and_change_nothing() {
     assert_eq!(
         error,
         MotionError::Goal(GoalError::Budget {
-            what: "joint velocity",
+            what: "joint velocity [rad/s]",
             got: 3.0,
             least: 1e-6,
             most: 2.62

@@ -270,7 +270,7 @@ fn torque_limit_below_friction_is_named_as_the_hindrance() {
             let sticks = arm.friction.static_torque[limited.joint - 1];
             assert_eq!(limited.limit, 1.0);
             assert!(limited.asked > sticks, "{limited:?}");
-            let named = format!("the torque limit of joint {} leaves 1.0 N m", limited.joint);
+            let named = format!("the torque limit of joint {} is 1.0 N m", limited.joint);
             assert!(error.to_string().contains(&named), "{error}");
             assert_eq!(error.party(), Party::Caller);
         }
@@ -456,7 +456,10 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
         ..goal
     };
     for (refused, says) in [
-        (lead, "lead is 0 m, expected at least 0.000001"),
+        (
+            lead,
+            "lead (end effector) is 0 m, expected at least 0.000001 m",
+        ),
         (
             twice,
             "the quaternion of the target has the length 2, expected 1",
@@ -486,7 +489,7 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
             gains(11.0, 10.0),
             "torque cutoff frequency [Hz] is 10, expected between 20 and 1000",
         ),
-        (stretched, "joint 4: 0 rad"),
+        (stretched, "the target of joint 4 is 0 rad"),
     ] {
         let error = lockstep.submit(refused).expect_err(says);
         assert!(error.to_string().starts_with(says), "{error}");

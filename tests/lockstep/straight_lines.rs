@@ -95,7 +95,10 @@ fn line_into_the_arm_is_refused_but_joints_get_there() {
         else {
             panic!("{refused:?}");
         };
-        assert!(refused.to_string().contains("too near itself"), "{refused}");
+        assert!(
+            refused.to_string().contains("come too close to itself"),
+            "{refused}"
+        );
         lockstep.run(20);
         assert!(!lockstep.client.state.motion_running());
 

@@ -122,14 +122,14 @@ fn faults_of_joints_are_told_with_what_was_found_and_expected() {
         ),
         (
             with("xyz=\"0 -0.316 0\"", "xyz=\"0 -0.326 0\""),
-            "the frame of joint: joint3 is [",
+            "the frame of joint: joint3 is off by [",
         ),
         (
             with(
                 "rpy=\"1.5707963267948966 0 0\" xyz=\"0.0825",
                 "rpy=\"1.57 0 0\" xyz=\"0.0825",
             ),
-            "the frame of joint: joint4 is [",
+            "the frame of joint: joint4 is off by [",
         ),
         (
             with("xyz=\"0 -0.316 0\"", "xyz=\"0 -0.316\""),
@@ -140,11 +140,11 @@ fn faults_of_joints_are_told_with_what_was_found_and_expected() {
                 "xyz=\"0 0 0\" rpy=\"0 0 0\"/><parent link=\"base\"/>",
                 "xyz=\"0 0 0.1\"/><parent link=\"base\"/>",
             ),
-            "the frame of joint: joint1 is [",
+            "the frame of joint: joint1 is off by [",
         ),
         (
             with("xyz=\"0 0 0.107\"", "xyz=\"0 0 0.1\""),
-            "the frame of the flange, link: link8 is [",
+            "the frame of the flange, link: link8 is off by [",
         ),
     ] {
         let error = refused(&text).to_string();

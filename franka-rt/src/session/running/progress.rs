@@ -40,6 +40,14 @@ impl Progress {
         }
     }
 
+    /// Records that nothing holds the goal back at `now`, `message_id`. After a long pause, the time
+    /// counts from zero again.
+    pub(super) fn release(&mut self, now: u64) {
+        if now.saturating_sub(self.last) > PAUSE {
+            self.held = 0;
+        }
+    }
+
     /// True if the goal was held back for too long without coming nearer.
     pub(super) fn is_stalled(&self) -> bool {
         u128::from(self.held) >= STALL_TIMEOUT.as_millis()
@@ -94,6 +102,15 @@ mod tests {
         assert!(!progress.is_stalled());
         // Something touches it much later.
         progress.hold(0.1, 10 * most);
+        assert!(!progress.is_stalled());
+        // A stalled goal that nothing holds back any more may be pursued again.
+        for now in 10 * most + 1..12 * most {
+            progress.hold(0.1, now);
+        }
+        assert!(progress.is_stalled());
+        progress.release(12 * most + PAUSE - 1);
+        assert!(progress.is_stalled());
+        progress.release(12 * most + PAUSE);
         assert!(!progress.is_stalled());
     }
 }

@@ -125,8 +125,9 @@ impl RunningSession {
         let held = leashed || course || self.lags || self.route.hindrance().is_some();
         self.held_back = count(held, self.held_back);
         self.leashed = count(leashed, self.leashed);
-        if held {
-            self.watch_progress(now);
+        match held {
+            true => self.watch_progress(now),
+            false => self.progress.release(now),
         }
     }
 
