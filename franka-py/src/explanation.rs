@@ -62,7 +62,7 @@ impl Explanation {
         self.0.robot.python_name()
     }
 
-    /// Reason why the limits are constants, those of systems before 5.9; `None` if they are the
+    /// Reason why the limits are the constants for systems before 5.9; `None` if they are the
     /// robot's own.
     #[getter]
     fn fallback(&self) -> Option<String> {

@@ -60,7 +60,7 @@ def test_a_recording_is_explained(hit: tuple[Path, ControlError]) -> None:
     explanation = explain(recording)
     check(explanation, error, path.stem)
     assert explanation.cycles == len(recording.column("q"))
-    # The limits are those of the simulated robot's system.
+    # The explanation uses the limits of the simulated robot's system.
     assert explanation.fallback is None
     expected = recording.model().joint_limits.upper[0]
     assert expected == pytest.approx(2.9007 if path.stem == "fr3" else 2.8973, abs=1e-3)

@@ -13,12 +13,12 @@ pub struct RecordedModel {
     /// Limits and inertias of the robot's description, with the lengths that the driver used.
     pub model: Model,
     /// Reason why constants replace the description of a Franka Research 3; `None` if they do not.
-    /// A Franka Emika Robot describes nothing: its constants are those of its own library.
+    /// A Franka Emika Robot describes nothing: its constants equal the values of its own library.
     pub fallback: Option<ModelFallback>,
 }
 
-/// Reason why constants replace the description of a robot: the limits are then those of systems
-/// before 5.9.
+/// Reason why constants replace the description of a robot. The limits are then the limits of
+/// systems before 5.9.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -60,7 +60,7 @@ impl RecordedModel {
     }
 }
 
-/// Returns the label of a robot in names of files: its name, or else that of its kind of arm.
+/// Returns the label of a robot in names of files: its name, or else the name of its kind of arm.
 pub(crate) fn label(name: &str, kind: RobotKind) -> &str {
     match name {
         "" => arm(kind),

@@ -165,9 +165,8 @@ fn places(kind: RobotKind) {
         "{} of {all} on links 1 and 2",
         told.len()
     );
-    // A push is located among the friction and the ripple of the moving joints. As recorded, the
-    // ripple of joints 2 and 4 is 0.2 N m, twice what it was assumed to be: of many pushes 91 to 92
-    // in 100 are right. One push is a larger part of few.
+    // The friction and the ripple of the moving joints disturb the location of a push. Of many
+    // pushes, 91 to 92 % are located correctly. Of few pushes, one is a larger part.
     let (_, told) = of(3..=8);
     let right = told.iter().filter(right).count();
     let least = if franka_tests::thorough() { 90 } else { 85 };

@@ -32,8 +32,8 @@ struct Force {
     held: f64,
 }
 
-/// Forces on a hand that displaces an arm by `way`, `[m]`. Before that, the arm has `moved` along each
-/// axis and back, or holds its first pose.
+/// Forces on a hand that displaces an arm by `way`, `[m]`. Before that, the arm has `moved` along
+/// each axis and back, or holds its first pose.
 fn force(kind: RobotKind, seed: u64, gains: Gains, moved: bool, way: Vector3<f64>) -> Force {
     let distance = way.norm();
     let way = way / distance;

@@ -110,8 +110,8 @@ fn lags(lockstep: &mut Lockstep, known: Option<Identified>, declared: bool) -> [
     lags
 }
 
-/// Friction of each joint at the speed of the plan, `[N·m]`. There the Stribeck curve of joint 7 has
-/// not always fallen to the kinetic torque.
+/// Friction of each joint at the speed of the plan, `[N·m]`. At this speed the Stribeck curve of
+/// joint 7 has not always fallen to the kinetic torque.
 fn moving(friction: &Friction) -> JointVector {
     JointVector::from_fn(|i, _| {
         let (least, most) = (friction.kinetic_torque[i], friction.static_torque[i]);

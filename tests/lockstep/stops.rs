@@ -184,8 +184,8 @@ fn a_cancelled_motion_ends_in_no_reflex_while_a_hand_pushes_the_arm_away() {
     }
 }
 
-/// The longest time until a goal is resolved whose way hands undo again and again, `[ms]`: of a
-/// stall, after some progress, and of an arm that does not settle.
+/// The longest time until a goal is resolved while hands undo its progress again and again, `[ms]`.
+/// It contains a stall after some progress, and the time limit of an arm that does not settle.
 const UNDONE: u64 = 30_000;
 
 #[test]

@@ -2498,7 +2498,7 @@ class Explanation:
         """The robot, `fr3` or `fer`."""
     @property
     def fallback(self) -> str | None:
-        """Reason why the limits are constants, those of systems before 5.9; `None` if they are the
+        """Reason why the limits are the constants for systems before 5.9; `None` if they are the
         robot's own.
         """
     @property

@@ -117,7 +117,8 @@ class MotionReport(Value):
 
     line_deviation: float | None
     """Greatest distance of the measured end effector from the straight line to its target, m; ``None`` for a motion without a
-    line: to joint positions, through waypoints, of a control function, or one that has reacted."""
+    line. Motions to joint positions, through waypoints and by a control function have no line, nor has a motion after its
+    reaction."""
 
     compensation: NDArray[np.float64] | None
     """Compensation of friction and bias for each joint at the arrival, ``(7,)`` N m; ``None`` if another law computed the

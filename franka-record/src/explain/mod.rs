@@ -75,7 +75,7 @@ pub use timeline::{Moment, MomentKind};
 pub struct Explanation {
     /// Kind of the robot.
     pub robot: RobotKind,
-    /// Reason why the limits are constants and not those of the robot's description; `None` if
+    /// Reason why the limits are constants and not from the robot's description; `None` if
     /// they are the robot's own.
     pub fallback: Option<ModelFallback>,
     /// Time of the first cycle.

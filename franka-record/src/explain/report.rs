@@ -214,7 +214,7 @@ fn of(joint: Option<u8>) -> String {
 pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
 
 /// Text about limits without a description of the robot.
-const CONSTANTS: &str = "limits are constants, those of systems before 5.9";
+const CONSTANTS: &str = "limits are the constants for systems before 5.9";
 
 /// Largest number of moments in the report; older moments are omitted.
 const SHOWN: usize = 40;

@@ -44,14 +44,22 @@ pub struct Elasticity {
 /// A torque that depends on the motor's angle: `amplitude · sin(order · angle)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ripple {
-    /// Amplitude, `[N·m]`. Sources: the log of Gaz et al. and a recorded Franka Research 3, for joints
-    /// 1 to 7: 0.1 to 0.2, 0.17 to 0.22, 0.03 to 0.09, 0.16 to 0.2, 0.015 to 0.02 (5 and 6), 0.003.
+    /// Amplitude, `[N·m]`. Sources: the log of Gaz et al. and a recorded Franka Research 3.
+    ///
+    /// | joint | amplitude |
+    /// |---|---|
+    /// | 1 | 0.1 to 0.2 |
+    /// | 2 | 0.17 to 0.22 |
+    /// | 3 | 0.03 to 0.09 |
+    /// | 4 | 0.16 to 0.2 |
+    /// | 5, 6 | 0.015 to 0.02 |
+    /// | 7 | 0.003 |
     pub amplitude: JointVector,
     /// Periods per turn of the joint. Source: the same logs, 239.5 to 243 and 160.
     pub order: JointVector,
 }
 
-/// A torque on the link of each joint that the robot's model lacks, such as that of cables:
+/// A torque on the link of each joint that the robot's model lacks, such as the torque of cables:
 /// `sine · sin(angle) + cosine · cos(angle)`, to be subtracted.
 ///
 /// Source: the log of Gaz et al., in which such a term lowers the unexplained torque of joint 4

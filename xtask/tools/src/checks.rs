@@ -26,7 +26,7 @@ pub(crate) enum Check {
     Fmt,
     /// No imports in a circle between the modules of a crate.
     Circles,
-    /// Public names, and what the book says of them.
+    /// Public names, and their rows in the book.
     Names,
     /// Spelling, and the workflows.
     Texts,

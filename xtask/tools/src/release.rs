@@ -84,7 +84,7 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
         }
     }
     if !found.is_empty() {
-        bail!("what a release takes:\n{}", found.join("\n"));
+        bail!("a release is not possible:\n{}", found.join("\n"));
     }
     compare_with_last_release(workspace)
 }
