@@ -13,7 +13,8 @@ pub struct RecordedModel {
     /// Limits and inertias of the robot's description, with the lengths that the driver used.
     pub model: Model,
     /// Reason why constants replace the description of a Franka Research 3; `None` if they do not.
-    /// A Franka Emika Robot describes nothing: its constants equal the values of its own library.
+    /// A Franka Emika Robot describes nothing: its constants equal the values of the robot's
+    /// library.
     pub fallback: Option<ModelFallback>,
 }
 

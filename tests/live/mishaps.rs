@@ -1,8 +1,8 @@
 //! Networks that lose, delay or cut, between the simulator's sockets and the driver's.
 //!
 //! The networks delay by the robots' time, which waits for the client's answer to each state that
-//! reaches it. `tests/lockstep/mishaps.rs` tests each effect, its amount, and the limits up to which
-//! it is bridged.
+//! reaches it. `tests/lockstep/mishaps.rs` tests each effect, its amount, and the limits up to
+//! which it is bridged.
 
 use std::future::IntoFuture;
 use std::time::Duration;

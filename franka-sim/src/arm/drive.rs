@@ -10,8 +10,8 @@ pub struct Drive {
     pub rotor_inertia: JointVector,
     /// Gain of the inner loop that makes the torque between gear and link follow the command. The
     /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Sources: a gain of 2 turns the
-    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`; a fit to a recorded Franka
-    /// Research 3 is between 1.3 (joint 4) and more than 4 (wrist).
+    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`; a fit to a recorded
+    /// Franka Research 3 is between 1.3 (joint 4) and more than 4 (wrist).
     pub torque_loop_gain: f64,
     /// Time constant of the first-order lag with which the torque follows a command of the torque
     /// interface, `[s]`. No source is known. A force bandwidth of 10 Hz and the gains that run on

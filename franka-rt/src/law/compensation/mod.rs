@@ -320,8 +320,8 @@ const PUSHED: f64 = 5e-3;
 /// Greatest ratio of the breakaway torque of a joint to its learned friction.
 const FRICTION_SPREAD: f64 = 2.0;
 
-/// Largest breakaway torque of the joints of a realistic arm, `[N m]`: the product of the upper ends
-/// of the family's `static_friction` and `static_friction_scale`.
+/// Largest breakaway torque of the joints of a realistic arm, `[N m]`: the product of the upper
+/// ends of the family's `static_friction` and `static_friction_scale`.
 pub(crate) const STATIC_FRICTION: [f64; 7] = [1.52, 1.59, 1.31, 1.79, 1.45, 0.83, 0.69];
 
 /// Largest ratio of the torque that holds an unknown joint to its [`STATIC_FRICTION`]: its bias

@@ -40,8 +40,8 @@ impl Progress {
         }
     }
 
-    /// Records that nothing holds the goal back at `now`, `message_id`. After a long pause, the time
-    /// counts from zero again.
+    /// Records that nothing holds the goal back at `now`, `message_id`. After a long pause, the
+    /// time counts from zero again.
     pub(super) fn release(&mut self, now: u64) {
         if now.saturating_sub(self.last) > PAUSE {
             self.held = 0;

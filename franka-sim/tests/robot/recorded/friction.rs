@@ -31,8 +31,8 @@ const SIGN_VELOCITY: f64 = 0.03;
 /// Rows of the log over which noise is averaged.
 const AVERAGED: usize = 3;
 
-/// Friction at [`SPEEDS`] of each joint: the torque minus the torque of the links is fitted by Coulomb and
-/// viscous friction, inertia of the rotor and offset.
+/// Friction at [`SPEEDS`] of each joint: the torque minus the torque of the links is fitted by
+/// Coulomb and viscous friction, inertia of the rotor and offset.
 fn friction(runs: &[Vec<Row>]) -> [[f64; 7]; 2] {
     let model = Model::physically_consistent(RobotKind::Fr3);
     let load = Tool::hand().load;

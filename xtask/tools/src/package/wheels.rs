@@ -1,5 +1,6 @@
-//! `cargo xtask wheels`: wheels of the Python package, built by maturin with zig, for every platform
-//! that this machine can build for. This machine's wheel is imported by every installed Python.
+//! `cargo xtask wheels`: wheels of the Python package, built by maturin with zig, for every
+//! platform that this machine can build for. This machine's wheel is imported by every installed
+//! Python.
 
 use std::env;
 use std::fs;
