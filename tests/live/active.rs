@@ -127,7 +127,7 @@ fn until_it_ends(mut control: Active<Torques>) -> ActiveError {
             assert_eq!(control.read_once(), Err(again.clone()));
             let is_reflex = ended.control().is_some_and(|error| error.is_reflex());
             let recover = if is_reflex {
-                ", `recover` before the next"
+                " (call `recover` before the next motion)"
             } else {
                 ""
             };
