@@ -140,7 +140,7 @@ fn a_silent_socket_is_told_that_its_lease_is_lost() {
     assert!(
         lost["why"]
             .as_str()
-            .is_some_and(|why| why.contains("silent")),
+            .is_some_and(|why| why.contains("without a heartbeat")),
         "{lost}"
     );
     arm.rests();

@@ -30,7 +30,7 @@ fn a_connection_is_tested_or_two() {
         "--seconds",
         "0.5",
     ];
-    home.run(&test).failed(5, &["stays where it is"]);
+    home.run(&test).failed(5, &["keeps its position"]);
     let ran = home.run(&[&test[..], &["--yes"]].concat());
     assert!(
         ran.out.contains("verdict") && ran.out.contains("turnaround"),

@@ -147,7 +147,9 @@ fn ctrl_c_at_a_recovery_says_that_it_may_go_on() {
                 recovers
             })
         });
-        program.ended().failed(130, &["may still recover"]);
+        program
+            .ended()
+            .failed(130, &["may still complete the recovery"]);
         sim.rests(RobotMode::Idle);
     });
 }

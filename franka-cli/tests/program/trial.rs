@@ -116,7 +116,7 @@ fn a_trial_asks_before_each_step_and_replaces_no_file() {
     let robot = sim.address();
     let mut terminal = Terminal::run(&home, &trial(&robot, &[]));
     terminal.shows("[y/N]");
-    for text in ["trial, hold", "held where it is", "15 N"] {
+    for text in ["trial, hold", "holds its position", "15 N"] {
         terminal.shows(text);
     }
     terminal.types("y\n");

@@ -170,22 +170,25 @@ mod tests {
     #[test]
     fn out_of_range_request_is_refused_with_its_value() {
         for (text, got) in [
-            (r#"{"type":"take","name":"  "}"#, "got 2"),
+            (
+                r#"{"type":"take","name":"  "}"#,
+                "got a name of 2 characters",
+            ),
             (
                 r#"{"type":"begin","motion":{"kind":"ready"},"speed":0.2501}"#,
-                "a speed is 0.001 to 0.25 m/s, got 0.2501",
+                "is 0.2501 m/s, expected 0.001 to 0.25 m/s",
             ),
             (
                 r#"{"type":"begin","motion":{"kind":"joint","joint":8,"up":true},"speed":0.1}"#,
-                "a joint is 1 to 7, got 8",
+                "is 8, expected 1 to 7",
             ),
             (
                 r#"{"type":"preview","number":1,"motion":{"kind":"pose","position":[0,0,9],"orientation":[0,0,0,1]},"speed":0.1}"#,
-                "a coordinate is -2 to 2 m, got 9",
+                "is 9 m, expected -2 to 2 m",
             ),
             (
                 r#"{"type":"begin","motion":{"kind":"pose","position":[0,0,1],"orientation":[0,0,0,0]},"speed":0.1}"#,
-                "the length of a quaternion is 0.001 to 1000, got 0",
+                "is 0, expected 0.001 to 1000",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":0,"offset":[0,0,0],"force":[0,0,0]}}"#,
@@ -193,11 +196,11 @@ mod tests {
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,2,0],"force":[0,0,0]}}"#,
-                "-1 to 1 m, got 2",
+                "is 2 m, expected -1 to 1 m",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,0,0],"force":[0,0,-201]}}"#,
-                "got -201",
+                "is -201",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"network","conditions":{"loss":0.6,"burst":1,"delay_ms":0,"jitter_ms":0,"stalls_per_second":0,"stall_ms":0}}}"#,
@@ -205,36 +208,36 @@ mod tests {
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"cut","milliseconds":0}}"#,
-                "a cut is 1 to 10000 ms, got 0",
+                "is 0 ms, expected 1 to 10000 ms",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"object","width":0.081}}"#,
-                "0.08 m, got 0.081",
+                "is 0.081 m, expected 0.001 to 0.08 m",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"load","mass":-1}}"#,
-                "a load is 0 to 5 kg, got -1",
+                "is -1 kg, expected 0 to 5 kg",
             ),
             (
                 r#"{"type":"tune","tuning":{"end_effector":4.1,"joints":1,"damping":1,"force_cap":30,"compensation":true}}"#,
-                "0.1 to 4, got 4.1",
+                "is 4.1, expected 0.1 to 4",
             ),
             (
                 r#"{"type":"tune","tuning":{"end_effector":1,"joints":1,"damping":2,"force_cap":30,"compensation":true}}"#,
-                "0.5 to 1.3, got 2",
+                "is 2, expected 0.5 to 1.3",
             ),
             (
                 r#"{"type":"tune","tuning":{"end_effector":1,"joints":1,"damping":1,"force_cap":0,"compensation":true}}"#,
-                "5 to 60 N, got 0",
+                "is 0 N, expected 5 to 60 N",
             ),
-            (r#"{"type":"speed","speed":0}"#, "got 0"),
+            (r#"{"type":"speed","speed":0}"#, "is 0"),
             (
                 r#"{"type":"gripper","action":{"kind":"move","width":0.3,"speed":0.1}}"#,
-                "0 to 0.2 m, got 0.3",
+                "is 0.3 m, expected 0 to 0.2 m",
             ),
             (
                 r#"{"type":"gripper","action":{"kind":"grasp","width":0.03,"tolerance":0.01,"speed":0.1,"force":1000}}"#,
-                "1 to 140 N, got 1000",
+                "is 1000 N, expected 1 to 140 N",
             ),
         ] {
             let why = read(text).check().expect_err(text);

@@ -67,7 +67,7 @@ fn load_and_arm_can_change_but_object_needs_a_hand() {
     assert_eq!(arm, franka_sim::Arm::bad(served.robot.model().kind()));
     assert!((now - q).amax() < 0.05, "{now}");
     disturb(&mut viewer, json!({"kind": "object", "width": 0.04}));
-    viewer.event("no hand");
+    viewer.event("no Hand");
     viewer.wait_for_status(|it| it["simulation"]["object"] == Value::Null);
 }
 
@@ -89,7 +89,7 @@ fn virtual_time_pauses_and_resumes_without_disconnecting() {
         "{passed} ms"
     );
     disturb(&mut viewer, json!({"kind": "speed", "speed": 20}));
-    viewer.event("possible are");
+    viewer.event("expected 0 (a pause)");
     disturb(&mut viewer, json!({"kind": "speed", "speed": null}));
     viewer.wait_until("frame", |_| served.robot.state().message_id > before + 500);
 

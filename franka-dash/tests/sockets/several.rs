@@ -105,7 +105,7 @@ fn a_page_nested_under_a_path_without_a_slash_says_so() {
     let (status, text) = get("/wrong");
     assert_eq!(status, 404);
     assert!(
-        text.contains(r#"nest its router under "/wrong/", got "/wrong""#),
+        text.contains(r#"got the path "/wrong", expected "/wrong/""#),
         "{text}"
     );
     let (status, text) = get("/right/");

@@ -99,7 +99,7 @@ fn an_arm_that_moves_is_not_tared() {
     viewer.hold_until(&up, || served.height() > start + 0.005);
     // Refused at once while the arm moves up or brakes.
     tare(&mut viewer, true);
-    viewer.event("Tare: ");
+    viewer.event("Tare failed: ");
     viewer.send(json!({"type": "end"}));
     served.wait_for_rest();
     tare(&mut viewer, true);

@@ -226,7 +226,7 @@ mod tests {
             (
                 |state| *state = DeskState::default(),
                 Unknown,
-                "without a login",
+                "requires a login",
             ),
         ];
         for (change, verdict, text) in cases {

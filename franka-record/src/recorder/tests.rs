@@ -130,7 +130,12 @@ fn memory_is_bounded_while_a_disk_hangs() {
     let status = recorder.status();
     assert!(status.waiting < most, "{noted} notes: {status:?}");
     let error = status.black_box_error.expect("the disk hangs");
-    assert!(error.to_string().contains("the one before"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("the previous block is not written yet"),
+        "{error}"
+    );
     // Without a reader the pipe is broken, and the recording ends with the data written before.
     drop(reader);
     let error = recorder.finish_within(Duration::from_secs(60)).unwrap_err();

@@ -197,7 +197,10 @@ mod tests {
         let read = Cassette::read(&cassette.to_bytes().unwrap()).unwrap();
         assert_eq!(read.dropped, 2);
         let error = from_capture(&with_a_snap_length(&capture, 30)).unwrap_err();
-        assert!(error.to_string().contains("captured in part"), "{error}");
+        assert!(
+            error.to_string().contains("captured only in part"),
+            "{error}"
+        );
         for snapped in 0..200 {
             // An error is a valid result; a panic is not.
             let _ = from_capture(&with_a_snap_length(&capture, snapped));
