@@ -111,7 +111,7 @@ impl Robot {
 /// states. If the thread neither reads nor writes, the robot gets no commands and stops.
 ///
 /// **If that thread hangs** between two reads, the whole connection gets no states:
-/// [`Robot::state`] stands still and the loss of the link goes unseen. After the link timeout the
+/// [`Robot::state`] does not change, and nothing reports a lost link. After the link timeout the
 /// driver gives the motion up and asks the robot to stop. The next read or write then fails with
 /// [`MotionError::Stalled`]. Other motions are refused with [`MotionError::Busy`] until then, or
 /// until this value is dropped.

@@ -306,8 +306,8 @@ impl Arm {
     /// # Errors
     /// As for [`Self::set`]. [`MotionError::Held`] or [`MotionError::Braked`], once, if a guard
     /// gave up the previous chunk. [`GoalError::Late`](crate::error::GoalError::Late) if all points
-    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time is
-    /// of another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the
+    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time
+    /// comes from another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the
     /// observation of the previous chunk is newer.
     /// [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the
     /// control thread takes them up.

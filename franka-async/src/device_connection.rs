@@ -157,8 +157,8 @@ struct QueuedAction<D: Device> {
 /// Sender of requests to the task. Clones share the task.
 pub(crate) struct DeviceConnection<D: Device> {
     address: SocketAddr,
-    /// Unbounded, but in practice short: the task reads requests at once, and refuses those for
-    /// which the session has no place.
+    /// Unbounded, but in practice short: the task reads requests at once, and refuses requests that
+    /// do not fit into the session.
     calls: mpsc::UnboundedSender<QueuedAction<D>>,
     states: watch::Receiver<D::State>,
     closing: Closing,

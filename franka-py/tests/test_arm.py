@@ -213,12 +213,12 @@ def test_a_chunk_is_followed_to_its_end(sim: Sim) -> None:
             await arm.at_rest()
             np.testing.assert_allclose(robot.state().q, joints[-1], atol=5e-3)
             for wrong, text in [
-                (dict(points=positions), "either dt"),
+                (dict(points=positions), "dt and times, expected one"),
                 (dict(points=positions[:, :2], dt=0.1), r"positions \(N, 3\)"),
                 (dict(points=positions, times=[0.1, 0.2]), "a time for each point"),
                 (dict(points=joints, dt=0.1, joints=True, velocities=joints[:3]), "a row for each point"),
                 (dict(points=positions * np.nan, dt=0.1), "finite"),
-                (dict(points=positions, dt=-0.1), "from 0 on"),
+                (dict(points=positions, dt=-0.1), "expected a number of 0 or more"),
                 (dict(points=positions[:0], dt=0.1), "point"),
             ]:
                 with pytest.raises(ValueError, match=text):
@@ -321,7 +321,7 @@ def test_the_latest_target_is_set_from_anywhere(sim: Sim) -> None:
         del latest
         await following
         assert np.linalg.norm(robot.pose()[:3, 3] - start[:3, 3]) < NEAR
-        with pytest.raises(MotionError, match="ended before the first one came") as caught:
+        with pytest.raises(MotionError, match="ended before its first target") as caught:
             closed = Latest()
             closed.close()
             await robot.follow(closed)
@@ -399,7 +399,7 @@ def test_regions_are_kept_out_of(sim: Sim) -> None:
 def test_an_arm_that_ignores_its_commands_is_named(sim: Sim) -> None:
     async def main(robot: Robot) -> None:
         sim.freeze()
-        with pytest.raises(MotionError, match="ignored its commands"):
+        with pytest.raises(MotionError, match="stood still under commands"):
             await robot.move_by([0.0, 0.1, 0.0])
         sim.freeze(None)
         await robot.move_by([0.0, 0.05, 0.0])
@@ -415,7 +415,7 @@ def test_a_session_is_no_faster_than_its_cap(sim: Sim) -> None:
             await arm.move_by([0.0, 0.0, -0.1], speed=1.0)
             turned = robot.state().q
             turned[0] += 0.4
-            with pytest.raises(MotionError, match="faster than its speed cap"):
+            with pytest.raises(MotionError, match="exceeded its speed cap"):
                 await arm.move_joints(turned, speed=1.5)
         with pytest.raises(MotionError, match="speed cap"):
             await robot.engage(speed_cap=0.01)

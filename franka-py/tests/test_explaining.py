@@ -76,7 +76,7 @@ def test_a_recording_is_explained(hit: tuple[Path, ControlError]) -> None:
     assert (explanation.under_way, explanation.earlier) == (None, 0)
     # The motion had not ended then.
     cut = explain(recording.between(end=end - 1))
-    assert cut.cause is None and cut.under_way is not None and "was under way" in str(cut)
+    assert cut.cause is None and cut.under_way is not None and "was running" in str(cut)
 
 
 def test_an_error_is_explained_with_its_log(hit: tuple[Path, ControlError]) -> None:

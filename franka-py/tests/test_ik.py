@@ -85,7 +85,7 @@ def test_out_of_reach_is_an_error_alone_and_nan_among_others(function: str) -> N
     model = Model.fr3()
     reached, far = model.pose("flange", READY), model.pose("flange", READY)
     far[0, 3] = 2.0
-    with pytest.raises(ValueError, match=r"pose: the pose is out of reach: \d+\.\d mm"):
+    with pytest.raises(ValueError, match=r"pose: the pose is out of reach: the nearest pose found is \d+\.\d mm"):
         getattr(model, function)(far, READY)
     found = getattr(model, function)([reached, far], READY)
     assert np.isfinite(found[0]).all() and np.isnan(found[1]).all()

@@ -95,9 +95,9 @@ for _ in range(5):
 go_on.set()
 logging.getLogger("franka_async").removeHandler(hang)
 # The next report that finds a place tells.
-while not any("reports were dropped" in record.getMessage() for record in keep.records):
+while not any("log messages were dropped" in record.getMessage() for record in keep.records):
     connect()
-print(keep.wait("reports were dropped").levelname)
+print(keep.wait("log messages were dropped").levelname)
 """
     )
     assert out.strip() == "WARNING"

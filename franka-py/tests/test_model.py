@@ -196,7 +196,7 @@ def test_any_numbers_will_do() -> None:
         (lambda m: m.pose("ee", READY * np.nan), "q holds NaN, expected finite"),
         (lambda m: m.pose("ee", READY, np.eye(3)), r"F_T_EE has the shape \[3, 3\]"),
         (lambda m: m.pose("ee", READY, None, np.zeros((4, 4))), "EE_T_K is not a rigid"),
-        (lambda m: m.coriolis(np.zeros((3, 7)), np.zeros((2, 7))), "dq has 2 rows, expected 3, as q has"),
+        (lambda m: m.coriolis(np.zeros((3, 7)), np.zeros((2, 7))), "dq has 2 rows, expected 3 as in q"),
         (lambda m: m.mass(READY, np.eye(2), 1.0), r"I_total has the shape \[2, 2\], expected \(3, 3\)"),
         (lambda m: m.mass(READY, None, -1.0), "m_total is -1, expected a mass of 0 kg or more"),
         (lambda m: m.gravity(READY, 1.0, [0.0]), r"F_x_Ctotal has the shape \[1\], expected \(3,\)"),

@@ -115,7 +115,7 @@ def test_what_is_wrong_is_said(fr3: Robot, tmp_path: Path) -> None:
 
     with pytest.raises(ValueError, match="letters, digits"):
         recorder.attach(fr3, "left arm").wait()
-    with pytest.raises(ValueError, match="ring of 0 cycles"):
+    with pytest.raises(ValueError, match="ring of the reader has 0 cycles"):
         recorder.attach(fr3, capacity=0).wait()
     with pytest.raises(TypeError, match="gripper is Robot, expected a Gripper or a VacuumGripper"):
         recorder.attach_gripper(fr3)  # type: ignore[arg-type]

@@ -46,11 +46,11 @@ def test_what_cannot_be_replayed_is_refused(motion: RecordingFile, fr3: Robot, f
     robot = robots.pop(str(motion.robots[0].kind))
     [other] = robots.values()
     before = robot.state().q
-    with pytest.raises(ReplayError, match="the recording is of F.*, expected F") as kind:
+    with pytest.raises(ReplayError, match="the recorded robot is F.*, expected F") as kind:
         other.replay(motion).wait()
     assert (kind.value.kind, kind.value.party, kind.value.is_ready_for_more) == ("kind", "caller", True)
     assert isinstance(kind.value, MotionError)
-    with pytest.raises(ValueError, match="speed 2, expected 0.01 to 1"):
+    with pytest.raises(ValueError, match="the speed factor is 2, expected 0.01 to 1"):
         robot.replay(motion, speed=2.0).wait()
     with pytest.raises(ReplayError, match="0 cycles, expected 2 or more"):
         robot.replay(motion.between(end=0)).wait()

@@ -40,7 +40,7 @@ def test_what_cannot_be_is_refused_before_anything_is_sent() -> None:
     for options, text in [
         ({"realtime": "maybe"}, "'enforce' or 'ignore'"),
         ({"version": 7}, "5 or 10"),
-        ({"connect_timeout": -1.0}, "from 0 on"),
+        ({"connect_timeout": -1.0}, "connect_timeout is -1 s, expected"),
     ]:
         with pytest.raises(ValueError, match=text):
             Robot("127.0.0.1", **options)  # type: ignore[arg-type]

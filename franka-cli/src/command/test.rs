@@ -101,7 +101,7 @@ impl Communication {
         other: Option<&Moving>,
     ) -> anyhow::Result<(MotionReport, Option<MotionReport>)> {
         let what = format!(
-            "For {:.0} s the arm gets no torques except the robot's gravity compensation,\n\
+            "For {} s the arm gets no torques except the robot's gravity compensation,\n\
              and keeps its position. An undeclared load pulls it down.",
             self.seconds.as_secs_f64()
         );

@@ -15,7 +15,7 @@ pub(super) const GAP_MAX: u64 = 50;
 #[non_exhaustive]
 pub enum ReplayError {
     /// The recording comes from another kind of robot.
-    #[error("the recording is of a robot {got:?}, expected {expected:?}")]
+    #[error("the recorded robot is {got:?}, expected {expected:?}")]
     Kind {
         /// Kind of the recorded robot.
         got: RobotKind,

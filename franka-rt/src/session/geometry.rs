@@ -13,8 +13,9 @@ use super::tool::{end_effector_of, rigid};
 /// protocol 10 cause up to 0.5 µm. Other lengths cause 100 µm and more.
 pub const RESIDUAL_MAX: f64 = 2e-6;
 
-/// Distance from the end effector at which its rotation is measured, `[m]`.
-const LEVER: f64 = 0.1;
+/// Distance from the end effector at which its rotation is measured, `[m]`: it converts an angle to
+/// a distance.
+pub(super) const LEVER: f64 = 0.1;
 
 /// Returns the distance between the pose that `model` computes at the joint positions of `state`,
 /// and its `O_T_EE`, `[m]`. It is the greater of two values: the distance of the positions, and the

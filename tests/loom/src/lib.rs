@@ -16,8 +16,6 @@ mod state_wakeups;
 mod team;
 #[path = "../../../franka-rt/src/together.rs"]
 mod together;
-#[path = "../../../franka-rt/src/triple_buffer.rs"]
-mod triple_buffer;
 
 #[cfg(not(loom))]
 compile_error!("without cfg(loom) a test would explore a single interleaving");

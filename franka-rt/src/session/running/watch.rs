@@ -8,6 +8,7 @@ use franka_model::{JointVector, Model};
 use super::goals::Bearing;
 use super::{Drive, GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
+use crate::session::geometry::LEVER;
 use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, PoseError, Target};
 use crate::team::TeamStop;
@@ -251,6 +252,3 @@ impl RunningSession {
 
 /// Distance from the reference at which an arm that can move again does not leap, `[rad]`.
 const NEAR: f64 = 2e-3;
-
-/// Distance that counts as much as a turn by one radian, `[m]`.
-const LEVER: f64 = 0.1;
