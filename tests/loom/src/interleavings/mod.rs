@@ -12,8 +12,9 @@
 //!
 //! The queues are rtrb's, and goals enter by the crate `triple_buffer`. Neither is explored here:
 //! loom cannot see into a crate that is not built for it. rtrb 0.4 and `triple_buffer` 9.0 have no
-//! loom models. Their own tests are written for Miri, and rtrb's also for the thread sanitizer. Counters and histograms are relaxed on purpose: each number
-//! stands for itself, and nothing is concluded from two.
+//! loom models. Their own tests are written for Miri, and rtrb's also for the thread sanitizer.
+//! Counters and histograms are relaxed on purpose: each number stands for itself, and nothing is
+//! concluded from two.
 
 mod event_fd;
 mod handoff;
