@@ -182,8 +182,8 @@ impl Builder {
     }
 
     /// Sets how many of the last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum of 10
-    /// 000 covers ten seconds. With 0, the text of the error has no success rate. A larger number
+    /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum of
+    /// 10000 covers ten seconds. With 0, the text of the error has no success rate. A larger number
     /// is refused as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
     /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {

@@ -135,7 +135,7 @@ macro_rules! goal_options {
 
         /// Sets how far the arm may be pushed off its path. Beyond that, the motion is given up as
         /// [`Lapse::Displaced`](crate::error::Lapse::Displaced). The defaults are 30 cm and 0.5
-        /// rad, and 1 rad of a joint. Has no effect under
+        /// rad of the hand, or 1 rad of a joint. Has no effect under
         /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn deviation(mut self, deviation: crate::goal::Deviation) -> Self {
             self.options.tuning.deviation = Some(deviation);

@@ -17,7 +17,7 @@ use crate::robot::Pose;
 /// object, and the force with which two arms pull at each other.
 ///
 /// An arm that is held back, by an obstacle or by its own limits, delays the others. While it is 15
-/// mm behind its reference, all references halt on their line, with 2.5 m/s^2. Rotations count as
+/// mm behind its reference, all references halt on their line at 2.5 m/s^2. Rotations count as
 /// 0.2 m per radian. A reference that is more than 2 mm ahead of another reference halts until the
 /// other one has caught up. An arm that does not catch up within 5 s stops and ends as
 /// [`MotionError::TargetNotReached`]. The motions of the other arms then end with an error, too.
