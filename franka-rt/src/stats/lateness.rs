@@ -1,5 +1,8 @@
-//! Due times of states, and their lateness. A late state is answered like any other; a state that a
-//! newer one has overtaken is dropped in `exchange`.
+//! Due times of states, and their lateness. `meter` counts lost states, and commands that
+//! left after the next state was due.
+//!
+//! A late state is answered like any other. A state that a newer one has overtaken is dropped in
+//! `exchange`.
 
 use core::time::Duration;
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! Joint friction.
+//! Parameters of joint friction. `plant::drive::friction` computes the torque from them.
 
 use franka_model::{JointVector, RobotKind, joint_vector};
 

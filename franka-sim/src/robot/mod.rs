@@ -23,11 +23,12 @@ mod operation;
 mod publish;
 mod ratchet;
 mod recovery;
+mod reflex;
 mod robot_mode;
 mod session;
 mod shaking;
-mod supervision;
 mod touch;
+mod watch;
 
 pub use crate::connection::{Datagram, SessionError};
 pub use operation::Freeze;
@@ -59,8 +60,8 @@ use motion::ActiveMotion;
 pub(crate) use motion::Awaited;
 use operation::{Frozen, Guidance, Lock};
 use recovery::Recovery;
-use supervision::Watch;
 use touch::Touches;
+use watch::Watch;
 
 /// A simulated robot; see the [module](self).
 pub struct Robot {

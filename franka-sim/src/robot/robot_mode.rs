@@ -1,4 +1,4 @@
-//! Motion, reflex, user stop and recovery: the robot's mode and its reason.
+//! The robot's mode: motion, reflex, user stop and recovery. Reflexes begin in `reflex`.
 //!
 //! ```text
 //!            Move                    finish, StopMove
@@ -11,16 +11,13 @@
 use franka_model::Frame;
 use franka_proto::{
     CommandId, ControllerMode, Errors, MotionGeneratorMode, MoveGeneratorMode, MoveRequest,
-    MoveStatus, RecoveryStatus, Reply, RobotError, RobotMode, StopStatus,
+    MoveStatus, Reply, RobotError, RobotMode, StopStatus,
 };
 
 use super::motion::{ActiveMotion, Rules, Verdict};
-use super::supervision::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
-use crate::config::ErrorBits;
 use crate::generator::{ArmModel, Desired};
-use crate::signal::halves;
 
 impl Robot {
     pub(super) fn robot_mode(&self) -> RobotMode {
@@ -150,22 +147,6 @@ impl Robot {
         self.end_motion(MoveStatus::Aborted);
     }
 
-    /// Latches errors and stops the arm.
-    pub(super) fn reflex(&mut self, errors: Errors) {
-        let latched = match self.config.unpublished.error_bits {
-            ErrorBits::All => errors,
-            ErrorBits::First => errors.iter().take(1).collect(),
-        };
-        self.errors = self.errors.union(latched);
-        self.reflex_reason = self.errors;
-        self.end_motion(MoveStatus::ReflexAborted);
-        self.guide(false);
-        self.abort_recovery(RecoveryStatus::ReflexAborted);
-        if let Some((id, _)) = self.waiting.take() {
-            self.reply(id, Reply::Move(MoveStatus::CommandNotPossibleRejected));
-        }
-    }
-
     /// Ends the current motion, if any: sends the final reply and brakes the arm.
     pub(super) fn end_motion(&mut self, status: MoveStatus) {
         let Activity::Moving(motion) = &self.activity else {
@@ -223,71 +204,8 @@ impl Robot {
         }
     }
 
-    /// Checks on the arm and on contact with it.
-    pub(super) fn supervise(&mut self) {
-        let moving = self.is_moving();
-        let ddq = match &self.activity {
-            // Accelerations that external forces cause are not phases of the motion.
-            Activity::Moving(motion) if !motion.is_external() => self.desired.joints.ddq,
-            _ => self.measurement.ddq,
-        };
-        let accelerating = ddq.amax() > self.config.unpublished.accelerating;
-        let thresholds = &self.settings.thresholds;
-        let axes = self.config.unpublished.force_axes;
-        let mut errors = self
-            .estimate
-            .compare(thresholds, axes, accelerating, moving);
-        if moving && self.config.enforce_limits {
-            let sight = Sight {
-                q: &self.measurement.q,
-                dq: &self.measurement.dq,
-                torque: &self.measurement.torque,
-                pose: &self.dynamics.pose,
-            };
-            let seen = self.watch.violations(&sight, &self.config);
-            errors = errors.union(self.violations()).union(seen);
-        }
-        if self.is_guided_out() {
-            errors.insert(RobotError::JointMoveInWrongDirection);
-        }
-        if !errors.is_empty() {
-            self.reflex(errors);
-        }
-    }
-
-    fn violations(&self) -> Errors {
-        let limits = self.model.joint_limits();
-        let (q, dq) = (&self.measurement.q, &self.measurement.dq);
-        let (lower, upper) = limits.velocity_envelope(q, -VELOCITY_MARGIN);
-        let (linear, _) = halves(&(self.dynamics.jacobian * dq));
-        let torque = &self.measurement.torque;
-        let range = limits.torque * self.config.unpublished.sensor_range;
-        [
-            (self.is_outside(), RobotError::JointPositionLimitsViolation),
-            (
-                (0..7).any(|i| dq[i] > upper[i] || dq[i] < lower[i]),
-                RobotError::JointVelocityViolation,
-            ),
-            (
-                linear.norm() > self.model.cartesian_limits().translation.velocity,
-                RobotError::CartesianVelocityViolation,
-            ),
-            (
-                (0..7).any(|i| torque[i].abs() > range[i]),
-                RobotError::TauJRangeViolation,
-            ),
-            (
-                self.leaves_path(),
-                RobotError::MaxPathPoseDeviationViolation,
-            ),
-        ]
-        .into_iter()
-        .filter_map(|(violated, error)| violated.then_some(error))
-        .collect()
-    }
-
     /// True if the arm deviates from a generated motion by more than the client allowed.
-    fn leaves_path(&self) -> bool {
+    pub(super) fn leaves_path(&self) -> bool {
         match &self.activity {
             Activity::Moving(motion) if !motion.is_external() => {
                 self.deviates(&motion.request().maximum_path_deviation)
@@ -329,9 +247,3 @@ impl Robot {
         self.start_waiting(self.clock);
     }
 }
-
-// These values are not published for the robot. Unless noted otherwise, they are choices of this
-// simulator.
-
-/// Tolerance of measured velocities outside their envelope, `[rad/s]`.
-const VELOCITY_MARGIN: f64 = 0.1;

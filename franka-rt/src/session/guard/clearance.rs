@@ -1,5 +1,5 @@
-//! Clearance: the reference slows down towards the arm itself and towards keep-out regions, and
-//! stops before it is too near.
+//! Clearance: decides whether the reference may make its next step without coming too near to the
+//! arm itself or to a keep-out region. `obstacle_braking` then slows down or brakes the reference.
 //!
 //! The whole path to rest must stay clear. Before the reference makes a step, the brake after that
 //! step is planned. Its postures at rest and half way there are checked against the arm's shape. A

@@ -5,7 +5,7 @@
 //! | leash | `leash` |
 //! | deviation | `deviation` |
 //! | lead | `lead` |
-//! | clearance | `clearance`; slowing down and braking before an obstacle: `clear_course` |
+//! | clearance | `clearance`; slowing down and braking before an obstacle: `obstacle_braking` |
 //! | bounds of joints that follow a pose: velocity, position, acceleration | `joint_bounds` |
 //! | speed cap | `speed_cap` |
 //! | force cap | `force_cap` |
@@ -21,7 +21,6 @@
 
 pub(super) mod backstop;
 mod binding;
-pub(super) mod clear_course;
 pub(super) mod clearance;
 pub(super) mod deadman;
 pub(super) mod deviation;
@@ -29,6 +28,7 @@ pub(super) mod force_cap;
 pub(super) mod joint_bounds;
 pub(super) mod lead;
 pub(super) mod leash;
+pub(super) mod obstacle_braking;
 pub(super) mod speed_cap;
 pub(super) mod torque_clamp;
 pub(super) mod torque_rate;

@@ -33,10 +33,10 @@ use super::chunk::ChunkReader;
 use super::course::{Course, CourseStep};
 use super::effort::{Effort, Resistance};
 use super::goal::{Goal, OnArrival, Target};
-use super::guard::clear_course::ClearCourse;
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Displacement;
 use super::guard::leash::{self, Held, Leash};
+use super::guard::obstacle_braking::ObstacleBraking;
 use super::guard::speed_cap::SpeedCap;
 use super::guard::unresponsive::{Commanded, Unresponsive};
 use super::guard::watchdog::OnTimeout;
@@ -81,7 +81,7 @@ pub(super) struct RunningSession {
     since: u64,
     /// Aim of the reference: the goal's target, a target moved closer by the lead, or rest.
     aim: Bearing,
-    route: ClearCourse,
+    route: ObstacleBraking,
     reference: Reference,
     drive: Drive,
     displacement: Displacement,
@@ -206,7 +206,7 @@ impl RunningSession {
             drive,
             aim: Bearing::Followed(goal.target),
             // The state shows that a tool is mounted, but not its shape: the Hand is assumed.
-            route: ClearCourse::new(
+            route: ObstacleBraking::new(
                 Clearance::new(model, state.m_ee > 0.0, keep_out),
                 goal.budget,
             ),

@@ -24,7 +24,7 @@
 //! delay. The apparent rotor inertia is then `B/(1 + k)`, and disturbances of the rotor shrink by
 //! the same factor. The parameters of friction and ripple already include this reduction.
 
-mod contact;
+mod friction;
 #[cfg(test)]
 mod tests;
 
@@ -32,7 +32,7 @@ use franka_model::JointVector;
 
 use super::{External, Plant};
 use crate::arm::{Arm, Drive};
-use contact::{Contact, Tangent};
+use friction::{Contact, Tangent};
 
 /// Effect of the drives on the links in one step: `torque − (inertia + dt·damping) · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]

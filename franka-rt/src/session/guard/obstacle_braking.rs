@@ -26,7 +26,7 @@ const HINDERED: u32 = 250;
 
 /// Moves the reference along a course, and brakes it before any obstacle that is too near.
 #[derive(Debug)]
-pub(in crate::session) struct ClearCourse {
+pub(in crate::session) struct ObstacleBraking {
     pub(in crate::session) course: Course,
     clearance: Clearance,
     pace: Pace,
@@ -65,7 +65,7 @@ enum Pace {
 /// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
 const AT_REST: f64 = 1e-4;
 
-impl ClearCourse {
+impl ObstacleBraking {
     /// Returns the course of an arm at rest, which begins with this budget.
     pub(in crate::session) fn new(clearance: Clearance, budget: Budget) -> Self {
         Self {

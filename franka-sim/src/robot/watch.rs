@@ -1,5 +1,5 @@
-//! Supervision of a motion: self-collision, virtual walls, power, stability. Joint limits and
-//! contact are checked elsewhere.
+//! Supervision of a motion: self-collision, virtual walls, power, stability. The other checks are
+//! in `reflex`.
 
 use franka_model::JointVector;
 use franka_model::collision::Shape;
