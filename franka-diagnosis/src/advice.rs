@@ -91,7 +91,7 @@ impl Advice {
                 "Realtime::Enforce, and a dedicated processor for the control thread"
             }
             (Self::Thresholds, Goals) => {
-                "set_collision_behavior or a lower force_cap if the contact is intended; set_load and less acceleration if nothing was touched"
+                "a slower approach, or higher thresholds of set_collision_behavior, if the contact is intended; set_load and less acceleration if nothing was touched"
             }
             (Self::Thresholds, _) => {
                 "set_collision_behavior if the contact is intended; set_load and less acceleration if nothing was touched"

@@ -179,9 +179,8 @@ async fn silent_closing_and_stateless_servers_are_told_apart() {
     .await;
     assert_eq!(
         refused(closing).await.to_string(),
-        "libfranka: server closed connection (before the first answer: another client may be \
-         connected, or \
-         the address belongs to another device)"
+        "the connection was closed before the first answer: another client may be connected, or \
+         the address belongs to another device (libfranka: server closed connection)"
     );
     let stateless = server(|stream| async move {
         let stream = handshake(stream, Version::V10).await;

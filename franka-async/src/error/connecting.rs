@@ -100,7 +100,7 @@ pub enum ConnectError<P: Protocol = Version> {
     )]
     IncompatibleVersion(IncompatibleVersion<P>),
     /// The connection ended during the handshake. Who can act depends on the reason.
-    #[error("{reason}{}", likely(.reason))]
+    #[error("{}", closed(.reason))]
     ConnectionClosed {
         /// Cause of the end.
         reason: CloseReason,
@@ -166,6 +166,7 @@ impl<P: Protocol> ConnectError<P> {
             Self::Network { .. } => "connect-network",
             Self::NoAddress { .. } => "connect-no-address",
             Self::IncompatibleVersion(_) => "connect-incompatible-version",
+            Self::ConnectionClosed { reason } if likely_taken(reason) => "closed-by-peer",
             Self::ConnectionClosed { reason } => reason.entry(),
             Self::Datagram { .. } => "connect-datagram",
             Self::Violation(_) => "connect-violation",
@@ -223,19 +224,26 @@ pub struct Attempt<P: Protocol = Version> {
     pub error: ConnectError<P>,
 }
 
-/// Returns the usual cause of the end of a connection before the robot has answered.
-fn likely(reason: &CloseReason) -> &'static str {
-    match reason {
+/// True if the connection ended as a robot ends it that already has a client.
+fn likely_taken(reason: &CloseReason) -> bool {
+    matches!(
+        reason,
         CloseReason::ClosedByPeer
-        | CloseReason::Io {
-            kind: io::ErrorKind::ConnectionReset,
-            ..
-        } => {
-            " (before the first answer: another client may be connected, or the address belongs \
-             to another device)"
-        }
-        _ => "",
+            | CloseReason::Io {
+                kind: io::ErrorKind::ConnectionReset,
+                ..
+            }
+    )
+}
+
+fn closed(reason: &CloseReason) -> String {
+    if likely_taken(reason) {
+        return format!(
+            "the connection was closed before the first answer: another client may be connected, \
+             or the address belongs to another device ({reason})"
+        );
     }
+    reason.to_string()
 }
 
 fn list<P: Protocol>(attempts: &[Attempt<P>]) -> String {

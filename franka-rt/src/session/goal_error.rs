@@ -33,7 +33,8 @@ pub enum GoalError {
     Moves,
     /// A joint position is outside the joint's range.
     #[error(
-        "the target of joint {joint} is {got} rad, expected between {lower:.4} and {upper:.4} rad"
+        "the target of joint {joint} is {got} rad, expected between {lower:.4} and {upper:.4} rad{}",
+        degrees(*.got)
     )]
     OutOfRange {
         /// The joint, from 1.
@@ -230,9 +231,18 @@ impl GoalError {
 fn place(position: [f64; 3]) -> String {
     let [x, y, z] = position;
     if position.iter().any(|x| x.abs() > 10.0) {
-        return format!("({x:.3e}, {y:.3e}, {z:.3e}) m (expected metres)");
+        return format!("({x:?}, {y:?}, {z:?}) m (expected metres)");
     }
     format!("({x:.4}, {y:.4}, {z:.4}) m")
+}
+
+/// Returns a hint for a joint position that no joint reaches in radians.
+fn degrees(position: f64) -> &'static str {
+    if position.abs() > 2.0 * core::f64::consts::PI {
+        " (are these degrees?)"
+    } else {
+        ""
+    }
 }
 
 /// Reason why the arm cannot follow a straight line.
