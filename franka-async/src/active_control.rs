@@ -21,13 +21,13 @@ use crate::input::unserved;
 use crate::robot::Robot;
 
 impl Robot {
-    /// Begins control by torques from the caller's thread, and resolves when the motion runs. The
-    /// first command is due within a few milliseconds. Hand the result at once to the thread that
+    /// Begins torque control by a thread of the caller, and resolves when the motion runs. The
+    /// first command is due within a few milliseconds. Pass the result at once to the thread that
     /// reads and writes.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm. Otherwise, the reason why the
-    /// motion ended before it ran.
+    /// Returns [`MotionError::Busy`] if anything else controls the arm. Otherwise, returns the
+    /// reason why the motion ended before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -37,9 +37,9 @@ impl Robot {
         Active::begin(self, request).await
     }
 
-    /// Begins control by joint positions, for the given controller. With
-    /// [`MoveControllerMode::ExternalController`] every command also needs torques. The rest is as
-    /// for [`Self::active_torques`].
+    /// Begins control by joint positions, with the given controller. With
+    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Otherwise it is
+    /// like [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -53,7 +53,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by joint velocities; otherwise like [`Self::active_joint_positions`].
+    /// Begins control by joint velocities. Otherwise it is like [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -67,7 +67,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by poses of the end effector; otherwise like
+    /// Begins control by poses of the end effector. Otherwise it is like
     /// [`Self::active_joint_positions`].
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by twists of the end effector; otherwise like
+    /// Begins control by twists of the end effector. Otherwise it is like
     /// [`Self::active_joint_positions`].
     ///
     /// # Errors
@@ -106,19 +106,20 @@ impl Robot {
     }
 }
 
-/// A motion under active control. Send it to a thread, which then runs the control cycle. From the
-/// first [`read_once`](Self::read_once) until this value is dropped, only that thread receives
-/// states. If the thread neither reads nor writes, the robot gets no commands and stops.
+/// A motion under active control, in which a thread of the program runs the control cycle. Send
+/// this value to that thread. From the first [`read_once`](Self::read_once) until this value is
+/// dropped, only that thread receives states. If the thread neither reads nor writes, the robot
+/// receives no commands and stops.
 ///
-/// **If that thread hangs** between two reads, the whole connection gets no states:
-/// [`Robot::state`] does not change, and nothing reports a lost link. After the link timeout the
-/// driver gives the motion up and asks the robot to stop. The next read or write then fails with
-/// [`MotionError::Stalled`]. Other motions are refused with [`MotionError::Busy`] until then, or
-/// until this value is dropped.
+/// **If that thread hangs** between two reads, the whole connection receives no states:
+/// [`Robot::state`] does not change, and no lost link is reported. After the link timeout, the
+/// driver gives up the motion and asks the robot to stop. The next read or write then returns
+/// [`MotionError::Stalled`]. Until that call, or until this value is dropped, other motions are
+/// refused as [`MotionError::Busy`].
 ///
-/// Commands pass no filter and no limiter. All methods block; none may be called from async code.
-/// The driver raises only its own thread: the caller sets the real-time scheduling of the calling
-/// thread, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
+/// Commands are neither filtered nor limited. All methods block; do not call them from async code.
+/// The driver sets the real-time scheduling of its own thread only. For the calling thread, use
+/// [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
 /// **Dropping this value** before the last command stops the robot.
 #[derive(Debug)]
@@ -126,11 +127,11 @@ pub struct Active<C> {
     robot: Robot,
     id: GoalId,
     lender: Lender,
-    /// The borrowed cycle; `None` before the first read, and once the cycle was given back.
+    /// The borrowed cycle; `None` before the first read, and after the cycle was given back.
     lease: Option<Lease>,
     /// Receives the outcome; `None` once the motion has ended.
     outcome: Option<oneshot::Receiver<Outcome>>,
-    /// Cause of the end of the motion, unless the motion ended as asked.
+    /// Reason why the motion ended; `None` if it ended as asked.
     error: Option<MotionError>,
     /// `message_id` of the newest state read.
     previous: Option<u64>,
@@ -155,12 +156,13 @@ impl<C> Active<C> {
     }
 
     /// Waits for the next state of the motion. Returns the state, and the robot's time since the
-    /// previous state that was read: zero at first, and more than a millisecond after a loss.
+    /// previous state that was read. This time is zero at first, and more than a millisecond after
+    /// a loss.
     ///
     /// # Errors
-    /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link
-    /// timeout; [`ActiveError::Ended`] in later calls; [`ActiveError::Finished`] after the last
-    /// command.
+    /// Returns [`ActiveError::Motion`] if the robot has ended the motion or has been silent for the
+    /// link timeout, and [`ActiveError::Ended`] in later calls. Returns [`ActiveError::Finished`]
+    /// after the last command.
     pub fn read_once(&mut self) -> Result<(RobotState, Duration), ActiveError> {
         if self.outcome.is_none() {
             return Err(self.over());
@@ -168,8 +170,8 @@ impl<C> Active<C> {
         loop {
             let lease = self.lease()?;
             let turned = lease.turn();
-            // The cycle no longer runs the motion, or the thread has ended: the bridge has the
-            // cause.
+            // The cycle no longer runs the motion, or the thread has ended; the bridge has the
+            // reason.
             let is_over = turned.is_err() || lease.core().is_watching();
             let outcome = match self.given_up() {
                 None => is_over.then(|| self.end()),
@@ -188,7 +190,7 @@ impl<C> Active<C> {
         }
     }
 
-    /// Sends a command; the last one also waits until the robot has ended the motion.
+    /// Sends a command. After the last command, also waits until the robot has ended the motion.
     fn write(&mut self, next: Next<Command>) -> Result<Option<MotionReport>, ActiveError> {
         if self.outcome.is_none() {
             return Err(self.over());
@@ -213,8 +215,8 @@ impl<C> Active<C> {
         Ok(None)
     }
 
-    /// Returns the outcome if the motion was given up while nothing was read, and gives the cycle
-    /// back.
+    /// If the motion was given up while nothing was read, gives the cycle back and returns the
+    /// outcome.
     fn given_up(&mut self) -> Option<Outcome> {
         let outcome = self.outcome.as_mut()?.try_recv().ok()?;
         (self.lease, self.outcome) = (None, None);
@@ -227,7 +229,7 @@ impl<C> Active<C> {
         end
     }
 
-    /// Returns the error for a call after the end.
+    /// Returns the error for a call after the end of the motion.
     fn over(&self) -> ActiveError {
         self.error
             .clone()
@@ -266,11 +268,11 @@ impl<C> Active<C> {
 
 impl Active<Torques> {
     /// Sends torques for the newest state. After the last torques (`torques.finish()`), waits until
-    /// the robot has ended the motion and returns the report.
+    /// the robot has ended the motion, and returns the report.
     ///
     /// # Errors
-    /// [`ActiveError::Write`] for torques that cannot be sent; the motion continues.
-    /// [`ActiveError::Motion`] if the robot ended the motion otherwise than asked.
+    /// Returns [`ActiveError::Write`] if the torques cannot be sent; the motion continues. Returns
+    /// [`ActiveError::Motion`] if the robot ended the motion in another way than asked.
     pub fn write_once(
         &mut self,
         torques: impl Into<Next<Torques>>,
@@ -282,13 +284,13 @@ impl Active<Torques> {
 }
 
 impl<C: GeneratorCommand> Active<C> {
-    /// Sends a command to the motion generator for the newest state, under one of the robot's own
-    /// controllers. After the last command, waits until the robot has ended the motion and returns
-    /// the report.
+    /// Sends a command to the motion generator for the newest state; one of the robot's own
+    /// controllers follows it. After the last command, waits until the robot has ended the motion,
+    /// and returns the report.
     ///
     /// # Errors
-    /// As [`Active<Torques>::write_once`]. Also fails, with the vendor's text, if the motion
-    /// requires torques and none are given.
+    /// Returns the errors of [`Active<Torques>::write_once`]. Also returns an error, with the
+    /// vendor's text, if the motion requires torques.
     pub fn write_motion(
         &mut self,
         motion: impl Into<Next<C>>,
@@ -299,12 +301,13 @@ impl<C: GeneratorCommand> Active<C> {
         }))
     }
 
-    /// Sends a command to the motion generator together with torques, under an external controller.
-    /// If either is the last, waits until the robot has ended the motion and returns the report.
+    /// Sends a command to the motion generator together with torques, for an external controller.
+    /// If either is the last one, waits until the robot has ended the motion, and returns the
+    /// report.
     ///
     /// # Errors
-    /// As [`Self::write_motion`]; torques for a motion without torques are refused with the
-    /// vendor's text.
+    /// Returns the errors of [`Self::write_motion`]. If the motion takes no torques, they are
+    /// refused with the vendor's text.
     pub fn write_motion_and_torques(
         &mut self,
         motion: impl Into<Next<C>>,

@@ -25,8 +25,8 @@ use crate::robot::Robot;
 use crate::session::Session;
 use crate::user_value::UserValue;
 
-/// Options of a session of target control; see [`Robot::engage`]. By default the session holds the
-/// arm with the gains of each kind of goal and the default budget.
+/// Options of a session of target control; see [`Robot::engage`]. By default, the session uses the
+/// default gains for each kind of goal, and the default budget.
 #[derive(Debug, Default)]
 #[must_use = "options do nothing until `Robot::engage` takes them"]
 pub struct Engage {
@@ -37,32 +37,34 @@ pub struct Engage {
 impl Engage {
     goal_options!();
 
-    /// Keeps the arm out of these regions, in the base frame; none by default. The reference slows
-    /// down on its way to a region and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before
-    /// the region. A goal that a region blocks is given up as
-    /// [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream waits for other targets. An arm
-    /// inside a region may leave it. Links and the Franka Hand are kept out, no other tool.
-    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
-    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
+    /// Keeps the arm out of these regions, given in the base frame; by default, there are none. The
+    /// reference slows down on its way to a region, and stops at a distance of
+    /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) from it. A goal that a region blocks is given
+    /// up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it waits
+    /// for other targets. An arm inside a region may leave it. The links of the arm and the Franka
+    /// Hand are kept out, but no other tool. The session is refused as
+    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) if there are more than
+    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers or negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
         self
     }
 
-    /// Limits the speed of all joints, the flange and the end effector, `[m/s]`, 0.1 to 3; by
-    /// default only the limits of the goals hold. On the way to a pose the reference is slowed to
-    /// 94 % of the cap, and to 0.03 m/s below the cap at least. The arm may still be faster if its
-    /// goal moves the joints, or if something pushes the arm. The goal is then given up as
-    /// [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes.
-    /// [`GoalError::Number`](crate::error::GoalError::Number) refuses other numbers.
+    /// Limits the speed of all joints, the flange and the end effector, `[m/s]`, from 0.1 to 3. By
+    /// default, only the limits of the goals apply. On the way to a pose, the speed of the
+    /// reference stays below 94 % of the cap, and at least 0.03 m/s below the cap. The arm may
+    /// still be faster if its goal moves the joints, or if something pushes the arm. The goal is
+    /// then given up as [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes. Other
+    /// numbers are refused as [`GoalError::Number`](crate::error::GoalError::Number).
     pub fn speed_cap(mut self, speed: f64) -> Self {
         self.engagement.speed_cap = Some(speed);
         self
     }
 
-    /// Binds the session to a deadman. While the deadman is silent, and once it is dropped, the arm
-    /// brakes and holds, and every goal resolves as [`MotionError::Held`]. The silence that the
-    /// deadman allows must be 10 ms or more. See [`Deadman::new`](crate::goal::Deadman::new).
+    /// Binds the session to a deadman. While the time of the deadman has run out, and after the
+    /// deadman was dropped, the arm brakes and holds, and every goal resolves as
+    /// [`MotionError::Held`]. The time of the deadman must be 10 ms or more. See
+    /// [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
         self
@@ -74,18 +76,19 @@ impl Engage {
         self
     }
 
-    /// Sets the backend that turns setpoints into torques; by default the session's own law.
-    /// [`Backend`] lists the guards of each backend, [`Setpoints`](crate::goal::Setpoints) the
-    /// goals of each kind of setpoint. Other goals are refused as
+    /// Sets the backend that turns setpoints into torques; by default, the driver's own control
+    /// law. [`Backend`] lists the guards of each backend, and [`Setpoints`](crate::goal::Setpoints)
+    /// lists the goals that each kind of setpoint accepts. Other goals are refused as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self
     }
 
-    /// Calls `function` in every cycle, on the real-time thread, once the command has left, with
-    /// the record and the state. The function must not lock, allocate, print or wait. After a panic
-    /// it is not called again. For records outside the thread see [`Robot::records`].
+    /// Calls `function` with the record and the state of every cycle, on the real-time thread,
+    /// after the command was sent. The function must not lock, allocate, print or wait. A function
+    /// that panicked is not called again. To receive records outside that thread, use
+    /// [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         let mut function = UserValue::new("an observer", function);
         let observer = Observer::new(move |record, state| (*function)(record, state));
@@ -94,12 +97,13 @@ impl Engage {
     }
 }
 
-/// A session of target control: the session holds the arm and moves it from goal to goal of any
-/// kind without a stop in between. Made by [`Robot::engage`].
+/// A session of target control, which holds the arm and moves it between goals of any kind without
+/// stopping. [`Robot::engage`] begins one.
 ///
-/// A cheap handle: clones share the session, and awaited motions are handles, too. Dropping the
-/// last handle brakes the arm and ends the session, in the background. [`Self::disengage`] does so
-/// and can be awaited. [`Robot::stop`] and a reflex end it, too. Later calls return the reason.
+/// This is a cheap handle: clones share the session, and a motion that is being awaited counts as a
+/// handle. Dropping the last handle brakes the arm and ends the session, in the background.
+/// [`Self::disengage`] does so and can be awaited. [`Robot::stop`] and a reflex end the session,
+/// too. Later calls return the reason why it ended.
 ///
 /// While a session controls the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
@@ -111,11 +115,12 @@ pub struct Arm {
 
 impl Robot {
     /// Begins a session of target control that holds the arm where it is, and resolves when the
-    /// session has begun. A dropped motion or session first brakes and releases the arm.
+    /// session has begun. If an earlier motion or session was dropped, it first brakes and releases
+    /// the arm.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains
-    /// or limits that are not accepted, or the robot's refusal.
+    /// Returns [`MotionError::Busy`] if anything else controls the arm, [`MotionError::Goal`] if
+    /// gains or limits are not accepted, and otherwise the robot's refusal.
     ///
     /// # Cancel safety
     /// Dropping the future ends the session, in the background.
@@ -163,25 +168,26 @@ impl Arm {
         self.session.robot()
     }
 
-    /// Returns a motion to a pose or to joint positions; see [`Robot::move_to`]. It resolves when
-    /// the arm has arrived and rests, held. Dropping the motion brakes and holds the arm.
+    /// Returns a motion to a pose or to joint positions; see [`Robot::move_to`]. The motion
+    /// resolves when the arm has arrived and rests; the session then holds the arm. Dropping the
+    /// motion brakes and holds the arm.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::within(&self.session, destination.into())
     }
 
-    /// Returns a motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
+    /// Returns a motion of the joints to `q`, `[rad]`. Otherwise it is like [`Self::move_to`].
     pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
         self.move_to(q.into())
     }
 
-    /// Returns a motion of the end effector by `offset` from the present target, or from the arm;
-    /// otherwise like [`Self::move_to`].
+    /// Returns a motion of the end effector by `offset` from the present target, or from the arm.
+    /// Otherwise it is like [`Self::move_to`].
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
 
     /// Returns a motion through several poses or joint positions, without stops at waypoints that
-    /// are [rounded](Waypoint::blend). Otherwise like [`Self::move_to`]; see
+    /// are [rounded](Waypoint::blend). Otherwise it is like [`Self::move_to`]; see
     /// [`Robot::move_through`].
     pub fn move_through<W: Into<Waypoint>>(
         &self,
@@ -190,34 +196,37 @@ impl Arm {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// Returns a motion that brakes the arm at any time, and resolves when the arm rests.
+    /// Returns a motion that brakes the arm and resolves when the arm rests. It may begin at any
+    /// time.
     pub fn hold(&self) -> Motion {
         self.move_to(Target::Rest)
     }
 
     /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
-    /// Returns as soon as the session has accepted the goal. For goals at the program's own rate.
+    /// Returns as soon as the session has accepted the goal. Use it in loops that set goals at
+    /// their own rate.
     ///
-    /// The arm follows a target with a velocity without a lag. Without new targets, this target
-    /// keeps moving for [`Target::MOVES_ON_MS`].
+    /// If the target includes a velocity, the arm follows it without lag. If no new target comes,
+    /// this target keeps moving for [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a
-    /// [deadman](Engage::deadman) holds the arm, and the cause of the end of the session.
+    /// Returns [`MotionError::Goal`] if the goal is not accepted, [`MotionError::Held`] if a
+    /// [deadman](Engage::deadman) holds the arm, and otherwise the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once the future is polled, the goal still takes effect.
+    /// Once the future has been polled, the goal takes effect even if the future is dropped.
     pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         self.take(destination.into()).await
     }
 
-    /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at
-    /// their own rate. If goals come faster than the session accepts them, only the newest one
-    /// counts. This call checks the goal. Later refusals are only logged. They concern goals for
-    /// another [`Backend`], and an offset before the previous goal was accepted.
+    /// Sets a goal as [`Self::set`] does, without waiting for an answer. Use it in plain threads,
+    /// in callbacks, and in loops with their own rate. If goals come faster than the session
+    /// accepts them, only the newest one counts. This call checks the goal. Later refusals are only
+    /// logged: a goal for another [`Backend`], or an offset that was set before the previous goal
+    /// was accepted.
     ///
     /// # Errors
-    /// As for [`Self::set`].
+    /// Returns the errors of [`Self::set`].
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
         self.session.check_goal()?;
@@ -237,15 +246,15 @@ impl Arm {
         Ok(())
     }
 
-    /// Returns the target that the arm moves to or is held at: the last one accepted. This is
-    /// [`Target::Rest`] along a chunk, at the start of a session and where a goal was given up.
-    /// `None` once the session has ended.
+    /// Returns the last accepted target, to which the arm moves or at which it is held. Returns
+    /// [`Target::Rest`] while the arm follows a chunk, at the start of a session, and after a goal
+    /// was given up. Returns `None` once the session has ended.
     pub fn target(&self) -> Option<Target> {
         let ended = self.session.has_ended();
         self.session.link().course.target().filter(|_| !ended)
     }
 
-    /// Returns the reference of this millisecond; `None` once the session has ended.
+    /// Returns the reference of the current cycle; `None` once the session has ended.
     pub fn reference(&self) -> Option<Reference> {
         let ended = self.session.has_ended();
         self.robot().reference().filter(|_| !ended)
@@ -253,20 +262,19 @@ impl Arm {
 
     /// Waits until the arm rests at the last accepted target, or where that target was given up.
     /// The arm is at rest if for 250 ms the reference has not moved and no joint has moved by more
-    /// than half a milliradian. The law has then compensated the friction. For goals that are
-    /// [set](Self::set); after an awaited motion the arm rests anyway.
+    /// than half a milliradian. By then, the control law has compensated for the friction. Use it
+    /// after [`Self::set`]; after an awaited motion, the arm rests anyway.
     ///
     /// The wait has no time limit. It may last while the arm is pushed, is blocked by an obstacle,
-    /// or follows a stream. Where that may take indefinitely, await it within
-    /// `tokio::time::timeout`.
+    /// or follows a stream. If you need a limit, use `tokio::time::timeout`.
     ///
     /// # Errors
-    /// The cause of the end of the session.
+    /// Returns the reason why the session ended.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn at_rest(&self) -> Result<(), MotionError> {
-        // The bridge accepts earlier goals first, however long its task is delayed.
+        // The bridge accepts earlier goals first, even if its task is delayed.
         self.session.ask(|taken| Input::Await { taken }).await?;
         let link = self.session.link();
         let mut states = self.robot().states();
@@ -297,23 +305,23 @@ impl Arm {
         }
     }
 
-    /// Follows a chunk of points with times, as a policy predicts them, from now on. Returns as
+    /// Begins to follow a chunk: a list of points with times, as a policy predicts them. Returns as
     /// soon as the chunk is accepted. If another chunk is running, the new one continues from it:
     /// see [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the
-    /// observation. The arm keeps its limits for any points. It rests at the last point unless
-    /// another chunk or goal comes.
+    /// observation. The arm stays within its limits, regardless of the points. It rests at the last
+    /// point unless another chunk or goal follows.
     ///
     /// # Errors
-    /// As for [`Self::set`]. [`MotionError::Held`] or [`MotionError::Braked`], once, if a guard
-    /// gave up the previous chunk. [`GoalError::Late`](crate::error::GoalError::Late) if all points
-    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time
-    /// comes from another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the
-    /// observation of the previous chunk is newer.
-    /// [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the
-    /// control thread takes them up.
+    /// Returns the errors of [`Self::set`], and: [`MotionError::Held`] or [`MotionError::Braked`]
+    /// in the first call after a guard gave up the previous chunk.
+    /// [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed.
+    /// [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time comes from
+    /// another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation
+    /// of the previous chunk is newer. [`GoalError::Chunks`](crate::error::GoalError::Chunks) if
+    /// chunks come faster than the control thread takes them up.
     ///
     /// # Cancel safety
-    /// As [`Self::set`].
+    /// Once the future has been polled, the chunk takes effect even if the future is dropped.
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
         self.send_chunk(self.goal(chunk.target()), chunk).await
     }
@@ -332,22 +340,22 @@ impl Arm {
             .await
     }
 
-    /// Lets a hand guide the arm once the arm rests. No spring acts along the axes that are `free`,
-    /// nor at the elbow if it is free; the other axes stay where they are. Guiding lasts until the
+    /// Lets a person guide the arm by hand once the arm rests. No spring acts along the axes that
+    /// are `free`, or at the elbow if it is free; the other axes are held. Guiding lasts until the
     /// next goal; [`Self::hold`] ends it. Returns as soon as the request is accepted. Declare the
-    /// load, or the load pulls the arm down.
+    /// load first, because an undeclared load pulls the arm down.
     ///
     /// # Errors
-    /// As [`Self::set`].
+    /// Returns the errors of [`Self::set`].
     ///
     /// # Cancel safety
-    /// As [`Self::set`].
+    /// Once the future has been polled, guiding begins even if the future is dropped.
     pub async fn guide(&self, free: Free) -> Result<(), MotionError> {
         self.take(Target::Guide(free).into()).await
     }
 
-    /// Follows the newest of the targets in `targets`, poses or joint positions, until the sender
-    /// is dropped, and then stops at the last target. See [`Robot::follow`].
+    /// Follows the newest target in `targets` (poses or joint positions) until the sender is
+    /// dropped, and then stops at the last target. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -355,9 +363,9 @@ impl Arm {
         self.follow_targets(watched(targets))
     }
 
-    /// Follows the newest of the targets that a stream yields, poses or joint positions, until the
-    /// stream ends, and then stops at the last target. Targets that come while another one is being
-    /// accepted are skipped, up to 256 at once. This works for a stream that is always ready, too.
+    /// Follows the newest target that a stream yields (poses or joint positions) until the stream
+    /// ends, and then stops at the last target. While one target is being accepted, up to 256 newer
+    /// targets are skipped at once. This works for a stream that is always ready, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -369,16 +377,16 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
-    /// Retunes the current and later goals of the session, and leaves options that are `None` as
-    /// they are. Options of a single motion take precedence. Gains, force cap and leash change over
-    /// 0.3 s, so that neither the reference nor the torques step.
+    /// Changes the tuning of the current goal and of later goals of the session. Options that are
+    /// `None` stay as they are. Options of a single motion take precedence. Gains, force cap and
+    /// leash change over 0.3 s, so that neither the reference nor the torques step.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for values out of their bounds, which change nothing. Otherwise, the
-    /// cause of the end of the session.
+    /// Returns [`MotionError::Goal`] if a value is out of its bounds; nothing changes then.
+    /// Otherwise, returns the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once the future is polled, the change still takes effect.
+    /// Once the future has been polled, the change takes effect even if the future is dropped.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
         let (id, kept) = (self.session.id(), self.session.tuning().clone());
         let tuning = Box::new(tuning);
@@ -397,21 +405,21 @@ impl Arm {
     /// disengaged, too.
     ///
     /// # Errors
-    /// [`MotionError`] if the session ended otherwise: by a reflex, or [`MotionError::Stopped`] by
-    /// [`Robot::stop`].
+    /// Returns [`MotionError`] if the session ended in another way: by a reflex, or by
+    /// [`Robot::stop`] ([`MotionError::Stopped`]).
     ///
     /// # Cancel safety
-    /// Once the future is polled, the session still ends.
+    /// Once the future has been polled, the session ends even if the future is dropped.
     pub async fn disengage(self) -> Result<MotionReport, MotionError> {
         let id = self.session.id();
         self.robot().send(Input::Disengage { id });
         self.ended().await
     }
 
-    /// Resolves when the session has ended, with its outcome.
+    /// Resolves with the outcome of the session when it has ended.
     ///
     /// # Errors
-    /// As [`Self::disengage`].
+    /// Returns the errors of [`Self::disengage`].
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
@@ -426,30 +434,30 @@ impl Arm {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }
 
-    /// Returns the pose of the reference of the end effector.
+    /// Returns the reference pose of the end effector.
     ///
     /// # Errors
-    /// The cause of the end of the session.
+    /// Returns the reason why the session ended.
     pub(crate) fn held_pose(&self) -> Result<Isometry3<f64>, MotionError> {
         self.session.check()?;
         let reference = self.reference().ok_or(MotionError::Disengaged)?;
         Ok(reference.pose)
     }
 
-    /// Returns the name of the current goal; `None` once the session has ended.
+    /// Returns the identifier of the current goal; `None` once the session has ended.
     #[cfg(feature = "record")]
     pub(crate) fn heading(&self) -> Option<franka_rt::session::GoalId> {
         let ended = self.session.has_ended();
         self.session.link().course.goal().filter(|_| !ended)
     }
 
-    /// Returns the reason why the session takes no goals; `None` while it does.
+    /// Returns the reason why the session accepts no goals; `None` while it accepts them.
     #[cfg(feature = "record")]
     pub(crate) fn session_error(&self) -> Option<MotionError> {
         self.session.check().err()
     }
 
-    /// Returns a goal that is set and then held.
+    /// Returns a goal whose target is held on arrival.
     pub(crate) fn goal(&self, target: Target) -> Goal {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
@@ -481,14 +489,14 @@ impl Arm {
 /// Cycles after which an accepted goal moves the reference, with one to spare.
 const TAKEN_UP: u64 = 3;
 
-/// Time without motion after which the arm counts as resting, `[ms]`: as for arrivals of motions.
+/// Time without motion after which the arm counts as resting, `[ms]`; the same as for arrivals of
+/// motions.
 const SETTLED: u64 = 250;
 
 /// Joint velocity below which the reference counts as resting, `[rad/s]`.
 const REFERENCE_REST: f64 = 1e-3;
 
-/// Distance of a joint from its position at the start of the wait beyond which it has moved,
-/// `[rad]`.
+/// A joint that is further than this from its position at the start of the wait has moved, `[rad]`.
 const MOVED: f64 = 5e-4;
 
 impl fmt::Debug for Arm {

@@ -1,5 +1,5 @@
-//! Blocking versions for programs without async: [`Wait::wait`] instead of `.await`, and
-//! [`WaitEach::wait_each`] for streams.
+//! Blocking calls for programs without async: [`Wait::wait`] replaces `.await`, and
+//! [`WaitEach::wait_each`] iterates over streams.
 //!
 //! ```no_run
 //! use franka_async::blocking::Wait;
@@ -31,8 +31,8 @@
 //! | `set`, of an [`Arm`](crate::Arm) | `try_set`, which never waits |
 //! | `state`, `pose`, `target`, `reference`, `stats`; [`Deadman`](crate::goal::Deadman) | the same: none of them waits |
 //!
-//! Two motions at a time need two threads, as they need two tasks with async. So do a motion and
-//! the sender of its targets:
+//! Two motions at the same time need two threads, just as they need two tasks in async code. A
+//! motion and the sender of its targets also need two threads:
 //!
 //! ```no_run
 //! use franka_async::blocking::{Wait, WaitEach, targets};
@@ -53,8 +53,8 @@
 //! # }
 //! ```
 //!
-//! The tasks of all connections of the process run on one thread in the background. The first wait
-//! starts this thread.
+//! The tasks of all connections of the process run on one background thread. The first wait starts
+//! this thread.
 
 use std::future::IntoFuture;
 use std::sync::OnceLock;
@@ -66,38 +66,38 @@ use tokio::sync::watch;
 
 use crate::world;
 
-/// Waits for a future on the calling thread. For everything in this crate that can be awaited.
+/// Waits for a future on the calling thread, for everything in this crate that can be awaited.
 pub trait Wait: IntoFuture + Sized {
     /// Waits until the future resolves.
     ///
     /// # Panics
-    /// On a thread that runs async tasks, because the wait would block them: use `.await` there.
-    /// Also if the system cannot start the background thread.
+    /// Panics on a thread that runs async tasks, because the wait would block them: use `.await`
+    /// there. Also panics if the system cannot start the background thread.
     fn wait(self) -> Self::Output {
         background().block_on(self.into_future())
     }
 
-    /// Waits for `timeout` at most. After that the future is dropped and this returns `None`.
-    /// Dropping the future of a motion brakes the arm.
+    /// Waits until the future resolves, for at most `timeout`. After `timeout`, drops the future
+    /// and returns `None`. Dropping the future of a motion brakes the arm.
     ///
     /// # Panics
-    /// As [`Self::wait`].
+    /// Panics as [`Self::wait`] does.
     fn wait_for(self, timeout: Duration) -> Option<Self::Output> {
         let future = self.into_future();
-        // The timer begins within the runtime.
+        // The timer must begin within the runtime.
         background().block_on(async move { world::timeout(timeout, future).await.ok() })
     }
 }
 
 impl<F: IntoFuture> Wait for F {}
 
-/// Iterates over a stream on the calling thread. Implemented for every stream of this crate.
+/// Iterates over a stream on the calling thread, for every stream of this crate.
 pub trait WaitEach: Stream + Unpin + Sized {
-    /// Returns an iterator that waits, for each item, until the stream yields it; it ends where the
-    /// stream ends.
+    /// Returns an iterator over the items of the stream. Each step waits for the next item, and the
+    /// iterator ends with the stream.
     ///
     /// # Panics
-    /// [`Iterator::next`] panics as [`Wait::wait`].
+    /// [`Iterator::next`] panics as [`Wait::wait`] does.
     fn wait_each(self) -> Each<Self> {
         Each(self)
     }
@@ -105,7 +105,7 @@ pub trait WaitEach: Stream + Unpin + Sized {
 
 impl<S: Stream + Unpin> WaitEach for S {}
 
-/// The items of a stream, on the calling thread: see [`WaitEach::wait_each`].
+/// Iterator over the items of a stream: see [`WaitEach::wait_each`].
 #[derive(Debug)]
 pub struct Each<S>(S);
 
@@ -117,22 +117,22 @@ impl<S: Stream + Unpin> Iterator for Each<S> {
     }
 }
 
-/// Sends the newest target to the motion that follows the channel. Dropping the sender ends the
-/// motion at the last target.
+/// Sender of targets: a motion that follows the channel reads the newest one. Dropping the sender
+/// ends the motion at the last target.
 #[derive(Debug)]
 pub struct Targets<T>(watch::Sender<T>);
 
 impl<T> Targets<T> {
-    /// Replaces the target, even if no motion has read it yet. Never waits. Returns true while the
-    /// receiving end exists: a motion follows the channel, or may do so later.
+    /// Replaces the target, even if no motion has read it yet. This never waits. Returns true while
+    /// the receiver exists, even if no motion follows it yet.
     pub fn send(&self, target: T) -> bool {
         self.0.send(target).is_ok()
     }
 }
 
-/// Returns a sender of targets and a channel with the newest target, at first `first`.
-/// [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) accept that
-/// channel.
+/// Returns a sender of targets, and a channel that contains the newest target, at first `first`.
+/// Pass the channel to [`Robot::follow`](crate::Robot::follow) or
+/// [`Arm::follow`](crate::Arm::follow).
 pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
     let (sender, receiver) = watch::channel(first);
     (Targets(sender), receiver)

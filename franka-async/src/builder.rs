@@ -17,19 +17,19 @@ use crate::geometry_check::GeometryCheck;
 use crate::robot::Robot;
 use crate::user_value::UserValue;
 
-/// Protocol versions to accept.
+/// The protocol versions that the driver accepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum VersionPolicy {
-    /// Announce the newest version. If the robot refuses it and names an older version that this
-    /// driver knows, announce that version.
+    /// Announces the newest version. If the robot refuses it and names an older version that this
+    /// driver knows, announces that version.
     #[default]
     Negotiate,
-    /// Announce this version and no other.
+    /// Announces this version and no other.
     Exact(Version),
 }
 
-/// Options of a connection. Made by [`Robot::builder`].
+/// Options of a connection, made by [`Robot::builder`].
 #[derive(Clone, Debug)]
 #[must_use = "a builder does nothing until `connect` is awaited"]
 pub struct Builder {
@@ -49,7 +49,7 @@ pub struct Builder {
     pub(crate) cancellation: CancellationToken,
 }
 
-/// Question to the program before a recovery.
+/// A question to the program before a recovery.
 #[derive(Clone)]
 pub(crate) struct Ask(pub(crate) Arc<dyn Fn(&Reflex) -> bool + Send + Sync>);
 
@@ -60,7 +60,7 @@ impl fmt::Debug for Ask {
 }
 
 impl Robot {
-    /// Options of a connection to the robot at `endpoint`.
+    /// Returns the options of a connection to the robot at `endpoint`.
     pub fn builder(endpoint: impl Into<Endpoint>) -> Builder {
         Builder::new(endpoint.into())
     }
@@ -91,124 +91,126 @@ impl Builder {
         self
     }
 
-    /// Sets whether connecting fails if the operating system refuses the control thread its
-    /// requests: `SCHED_FIFO` on a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default;
-    /// [`Realtime::Ignore`] suits simulators.
+    /// Sets whether connecting fails if the operating system refuses what the control thread
+    /// requests: `SCHED_FIFO` on a `PREEMPT_RT` kernel. The default is [`Realtime::Enforce`]; use
+    /// [`Realtime::Ignore`] for simulators.
     pub fn realtime(mut self, realtime: Realtime) -> Self {
         self.scheduling.realtime = realtime;
         self
     }
 
-    /// Sets the `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by
-    /// default. A number that the system refuses is an error under [`Realtime::Enforce`] and
-    /// ignored under [`Realtime::Ignore`].
+    /// Sets the `SCHED_FIFO` priority of the control thread, 1 to 99; by default, the highest
+    /// priority of the system. If the system refuses the priority, this is an error under
+    /// [`Realtime::Enforce`], and is ignored under [`Realtime::Ignore`].
     pub fn priority(mut self, priority: i32) -> Self {
         self.scheduling.priority = Some(priority);
         self
     }
 
-    /// Sets the processor of the control thread; any processor by default.
+    /// Sets the processor on which the control thread runs; by default, any processor.
     pub fn cpu(mut self, cpu: usize) -> Self {
         self.scheduling.cpu = Some(cpu);
         self
     }
 
-    /// Locks the pages of the process into memory; off by default.
+    /// Sets whether the pages of the process are locked into memory; off by default.
     pub fn lock_memory(mut self, lock: bool) -> Self {
         self.scheduling.lock_memory = lock;
         self
     }
 
-    /// Sets the protocol versions to accept; negotiated by default.
+    /// Sets which protocol versions are accepted; by default, the version is negotiated.
     pub fn version(mut self, versions: VersionPolicy) -> Self {
         self.versions = versions;
         self
     }
 
-    /// Sets the time that each step of connecting may take; 1 s by default. The steps are: finding
-    /// the host, the TCP connection to each of its addresses, the handshake, the first state, the
-    /// description, and the states whose poses are compared with the model.
+    /// Sets the time limit for each step of connecting; 1 s by default. The steps are: resolving
+    /// the host name, the TCP connection to each of its addresses, the handshake, the first state,
+    /// the description, and the states whose poses are compared with the model.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
     }
 
-    /// Sets how many bytes of the control thread's stack get their pages before the first cycle:
-    /// 512 KiB by default, 64 MiB at most. The whole stack is larger by a reserve. Control
-    /// functions that use much stack need more. A size out of range is refused as
+    /// Sets how many bytes of the control thread's stack are paged in before the first cycle: 512
+    /// KiB by default, 64 MiB at most. The whole stack is larger than this by a reserve. Control
+    /// functions that use much stack need a larger value. A size out of range is refused as
     /// [`ConnectError::Realtime`](crate::error::ConnectError::Realtime).
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
     }
 
-    /// Polls the network card for `duration` before each wait for a state, by `SO_BUSY_POLL`: 1 to
-    /// 900 us, in whole microseconds; not at all by default. The kernel requires `CAP_NET_ADMIN`. A
-    /// refusal is an error under [`Realtime::Enforce`] and ignored under [`Realtime::Ignore`];
-    /// [`Robot::granted`] reports it.
+    /// Makes the control thread poll the network card for `duration` before each wait for a state
+    /// (`SO_BUSY_POLL`). The range is 1 to 900 us, in whole microseconds; by default, it does not
+    /// poll. The kernel requires `CAP_NET_ADMIN`. If the kernel refuses it, this is an error under
+    /// [`Realtime::Enforce`], and is ignored under [`Realtime::Ignore`]; [`Robot::granted`] reports
+    /// it.
     pub fn busy_poll(mut self, duration: Duration) -> Self {
         self.scheduling.busy_poll = Some(duration);
         self
     }
 
-    /// Sets the silence of the robot after which a running motion fails with `LinkLost`: 20 ms to
-    /// 10 s, 1 s by default. Longer timeouts are for a simulated robot on a busy host, which may
-    /// delay the robot for as long. Other values are refused as
+    /// Sets how long the robot may be silent before a running motion fails as `LinkLost`: 20 ms to
+    /// 10 s, by default 1 s. Use longer timeouts only for a simulated robot on a busy host, whose
+    /// states may come that late. Other values are refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). Detection may take
-    /// up to a quarter longer. A motion that no state shows within 5 s fails in any case.
+    /// up to a quarter longer than the timeout. A motion that no state shows within 5 s fails
+    /// regardless of this timeout.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
     }
 
-    /// Sets whether to compute with the vendor's published constants in any case; off by default.
-    /// By default the driver asks a Franka Research 3 for its description and keeps the limits in
-    /// it. Use the constants for a robot whose description this driver refuses, once you know that
-    /// its arm has them. A Franka Emika Robot has no description.
+    /// Sets whether the driver always computes with the vendor's published constants; off by
+    /// default. By default, the driver asks a Franka Research 3 for its description, and stays
+    /// within the limits in it. Use the constants for a robot whose description this driver
+    /// refuses, once you know that they fit its arm. A Franka Emika Robot sends no description.
     pub fn nominal_model(mut self, nominal: bool) -> Self {
         self.nominal_model = nominal;
         self
     }
 
-    /// Connects to a robot whose reported poses disagree with its model, for any of the known
-    /// [lengths](crate::model::geometry::Lengths::KNOWN). Off by default: such a robot is refused
-    /// as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals move the arm to
-    /// poses as the robot reports them, in simulation with errors of up to 1 mm and 3 mrad. Inverse
-    /// kinematics, clearances and previews are wrong by the error of the geometry.
-    /// [`Robot::geometry_check`] returns that error, and a warning (`tracing`) states it.
+    /// Sets whether to connect to a robot whose reported poses disagree with its model for all
+    /// known [lengths](crate::model::geometry::Lengths::KNOWN). This is off by default: such a
+    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals
+    /// then move the arm to poses as the robot reports them; in simulation, the errors were up to 1
+    /// mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by the geometric error.
+    /// [`Robot::geometry_check`] returns this error, and a warning (`tracing`) states it.
     pub fn accept_geometry_error(mut self, accept: bool) -> Self {
         self.accept_geometry_error = accept;
         self
     }
 
-    /// Sets how many of the last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum of
-    /// 10000 covers ten seconds. With 0, the text of the error has no success rate. A larger number
-    /// is refused as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
-    /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
+    /// Sets how many of the last cycles an error contains when the robot ends a motion: see
+    /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum is
+    /// 10000, which covers ten seconds. With 0, the text of the error contains no success rate. A
+    /// larger number is refused as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
+    /// [`Robot::records`](crate::Robot::records) yields the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
     }
 
-    /// Begins with an earlier result of [`Robot::identify`] for this arm, so that the first motion
-    /// is compensated like later ones. Of the identified load, only the part counts that is not
-    /// declared when that motion begins. By default nothing is known. An arm of another kind and
-    /// implausible numbers are refused as
+    /// Sets an earlier result of [`Robot::identify`] for this arm, so that the first motion is
+    /// compensated like later motions. Only the part of the identified load counts that is not
+    /// declared when that motion begins. By default, nothing is known. A result of another kind of
+    /// arm, or with implausible numbers, is refused as
     /// [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
         self
     }
 
-    /// Supervises the robot: reconnects when the connection is lost, and recovers the robot from
-    /// reflexes, as the policy states. Handles stay valid across connections. [`Robot::events`] and
-    /// [`Robot::health`] report reconnects and recoveries. No earlier motion resumes. A failed
-    /// [`connect`](Self::connect) is not repeated.
+    /// Supervises the robot: reconnects after the connection was lost, and recovers the robot from
+    /// reflexes as the policy states. Handles stay valid across connections. [`Robot::events`] and
+    /// [`Robot::health`] report reconnects and recoveries. Earlier motions do not resume. If
+    /// [`connect`](Self::connect) fails, it is not repeated.
     ///
-    /// The settings of this program (load, frames, thresholds, impedance, guiding mode, filters)
-    /// are sent again after each reconnect, once the robot is idle. The driver compares them with
-    /// the robot's states where these show them. Motions begin after that. If the robot does not
+    /// After each reconnect, once the robot is idle, the driver sends the settings of this program
+    /// again (load, frames, thresholds, impedance, guiding mode, filters). It compares them with
+    /// the robot's states, if the states show them. Motions begin after that. If the robot does not
     /// accept a setting, motions are refused as
     /// [`Unready::NotConfigured`](crate::error::Unready::NotConfigured) until it does; see
     /// [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
@@ -217,13 +219,14 @@ impl Builder {
         self
     }
 
-    /// Asks `agrees` before each recovery that the policy allows. The argument is the reflex and,
-    /// if it ended a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose).
-    /// Implies [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a
-    /// thread for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its
-    /// time: only the recovery waits for the answer, and a runtime that is dropped. An answer that
-    /// comes too late has no effect: see [`Robot::agree`]. A function that panics does not agree.
-    /// Without [`Self::supervise`], connecting fails as
+    /// Asks `agrees` before each recovery that the policy allows. The argument contains the reflex.
+    /// If the reflex ended a motion of this program, it also contains the log and the
+    /// [diagnosis](crate::diagnosis::Diagnose). Implies
+    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a thread
+    /// for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)). Only the recovery waits
+    /// for the answer, and a runtime that is dropped. An answer that comes too late has no effect:
+    /// see [`Robot::agree`]. If the function panics, it does not agree. Without
+    /// [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(
         mut self,
@@ -234,10 +237,10 @@ impl Builder {
         self
     }
 
-    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the
-    /// motion, closes. For programs that end all their tasks by one token. Also await `shutdown`,
-    /// to know when the connection has ended. The token does not end connecting itself: drop its
-    /// future to give it up.
+    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does. Use it in
+    /// programs that end all their tasks with one token. To know when the connection has ended,
+    /// also await `shutdown`. The token does not cancel `connect` itself; to do so, drop its
+    /// future.
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self

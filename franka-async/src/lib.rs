@@ -2,10 +2,10 @@
 //! real-time thread.
 //!
 //! A program sets goals at its own rate. A separate thread, one per robot, answers the robot every
-//! millisecond. No task of the runtime is on that path, so a busy or blocked program delays new
-//! goals and nothing else. This page is all that a first program needs. The book (`docs/src` of the
-//! repository) shows where to start. Its first chapters have whole programs: a service with a queue
-//! of jobs, a policy at 10 Hz, a guarded move, a script.
+//! millisecond. This thread does not depend on the runtime, so a busy or blocked program only
+//! delays new goals. This page is all that a first program needs. The book (`docs/src` in the
+//! repository) begins with whole programs: a service with a job queue, a policy at 10 Hz, a guarded
+//! move, and a script.
 //!
 //! # Connect
 //!
@@ -31,14 +31,14 @@
 //! }
 //! ```
 //!
-//! The address is a host name or an IP address, as any string. A [`Robot`] is a cheap handle: clone
-//! it into every task and request. Dropping the last handle brakes the arm and closes the
-//! connection. [`Robot::shutdown`] does the same and waits for the end. If the program is killed,
-//! the robot stops on its own. A robot needs a host with a real-time kernel; most hosts of a
-//! simulator have none, and connecting then fails.
+//! The address is a host name or an IP address. A [`Robot`] is a handle that is cheap to clone:
+//! give each task or request its own clone. Dropping the last handle brakes the arm and closes the
+//! connection. [`Robot::shutdown`] does the same and waits until the connection is closed. If the
+//! program is killed, the robot stops by itself. By default, connecting fails on a host without a
+//! real-time kernel. A real robot needs such a kernel; a simulated robot does not.
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` connects without such a kernel.
-//! Every error of this crate converts into [`Error`]; `anyhow` prints its text when `main` returns
-//! it.
+//! Every error of this crate converts into [`Error`]; if `main` returns one through `anyhow`, the
+//! program prints its text.
 //!
 //! # Move
 //!
@@ -55,7 +55,8 @@
 //! # }
 //! ```
 //!
-//! Options set speed and compliance, and a motion passes through several places without a stop:
+//! Options set the speed and the compliance. A motion can pass through several places without
+//! stopping:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -72,29 +73,31 @@
 //! ```
 //!
 //! Units are metres, radians, seconds and newtons. A [`Pose`] is the pose of the end effector in
-//! the frame of the base, as an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is measured.
-//! [`mod@pose`] makes poses from quaternions and arrays.
+//! the base frame, as an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] returns the measured
+//! pose. The module [`mod@pose`] converts quaternions and arrays into poses.
 //!
-//! To reach a pose, the end effector moves on a straight line. To reach joint positions, all joints
-//! move at once. An [`Offset`] starts at the target of the current motion, or at the arm if no
-//! motion is under way. A target out of reach is refused before anything moves. Motions use 20 % of
-//! the robot's limits; `speed(0.5)` halves that.
+//! To reach a pose, the end effector moves in a straight line. To reach joint positions, all joints
+//! move at the same time. An [`Offset`] is added to the target of the current motion, or to the
+//! pose of the arm if no motion is under way. A target out of reach is refused before anything
+//! moves. By default, a motion uses 20 % of the robot's limits; `speed(0.5)` halves that.
 //!
 //! # What a motion is
 //!
-//! `move_to` returns a [`Motion`]. It has options, and **nothing is sent before it is awaited**.
-//! After that:
+//! `move_to` returns a [`Motion`]. Its methods set options, and **nothing is sent before it is
+//! awaited**. After that:
 //!
-//! * it resolves as `Ok` when the arm has arrived and rests, held by the robot itself, and
-//!   otherwise as a [`MotionError`] with the reason;
-//! * **dropping the future brakes the arm** within the robot's limits: it is still moving when
-//!   `drop` returns, and rests about a quarter of a second later. This stops the arm at a time
-//!   limit, when another branch wins a `select!`, and when the client of a request has gone;
-//! * a newer motion of the same robot takes over without a stop, and the older motion resolves as
-//!   [`MotionError::Superseded`].
+//! * it resolves as `Ok` when the arm has arrived and rests, held by the robot's own controller.
+//!   Otherwise it resolves as a [`MotionError`] that states the reason;
+//! * **dropping the future brakes the arm** within the robot's limits: the arm still moves when
+//!   `drop` returns, and rests about a quarter of a second later. Therefore the arm stops when a
+//!   time limit expires, when another branch wins a `select!`, and when the client of a request
+//!   disconnects;
+//! * a newer motion of the same robot takes over without stopping the arm, and the older motion
+//!   resolves as [`MotionError::Superseded`].
 //!
-//! Put a motion that should outlive its caller into a separate task, or [detach](Motion::detach)
-//! it, which only logs its outcome. The motion's handle pauses or cancels it:
+//! If a motion should outlive its caller, spawn it as a task or [detach](Motion::detach) it. The
+//! outcome of a detached motion is only logged. A handle of the motion reports progress, and pauses
+//! or cancels the motion:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -114,7 +117,7 @@
 //! # }
 //! ```
 //!
-//! A queue of jobs is a task that awaits one motion after the other. Any task may send it jobs:
+//! For a queue of jobs, let one task await one motion after another. Any task may send jobs to it:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -135,8 +138,8 @@
 //! # }
 //! ```
 //!
-//! Between two motions the robot holds the arm with its own controller. An [`Arm`] keeps it under
-//! this crate's control, and moves from goal to goal without a stop:
+//! Between two motions the robot holds the arm with its own controller. An [`Arm`] stays under this
+//! crate's control instead, and moves from goal to goal without stopping:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -152,8 +155,8 @@
 //!
 //! # States
 //!
-//! [`Robot::state`] is the newest state, in motion or not. [`Robot::states`] waits for changes, and
-//! [`Robot::state_stream`] has each of the thousand states per second.
+//! [`Robot::state`] returns the newest state, whether the arm moves or not. [`Robot::states`] waits
+//! for changes, and [`Robot::state_stream`] yields every one of the thousand states per second.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -167,7 +170,8 @@
 //!
 //! # Follow a policy
 //!
-//! Targets come at any rate, through a `watch`. The arm follows the newest one, smoothly, at 1 kHz:
+//! The program sends targets at any rate, through a `watch` channel. The arm follows the newest
+//! target smoothly, at 1 kHz:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -197,11 +201,11 @@
 //! # }
 //! ```
 //!
-//! When the stream ends, the motion resolves as `Ok` at the last target. The control thread counts
-//! the time of the watchdog: it brakes the arm even if the program hangs, and the motion resolves
-//! as [`MotionError::Braked`]. A target may be a [`Pose`], joint positions, or either with its
-//! velocity as a pair, `(pose, twist)` or `(q, dq)`. With the velocity, the arm does not lag behind
-//! the target. For policies that predict several steps at once, use [`Arm::chunk`].
+//! When the sender is dropped, the motion ends at the last target and resolves as `Ok`. The
+//! watchdog runs on the control thread: it brakes the arm even if the program hangs, and the motion
+//! resolves as [`MotionError::Braked`]. A target is a [`Pose`] or joint positions. A pair
+//! `(pose, twist)` or `(q, dq)` adds the velocity of the target. With a velocity, the arm does not
+//! lag behind the target. For policies that predict several steps at once, use [`Arm::chunk`].
 //!
 //! # Move until contact
 //!
@@ -225,18 +229,19 @@
 //! # }
 //! ```
 //!
-//! The control thread checks the condition in every cycle. `force_z` is the external force along z
-//! of the base, in either direction. `relative` counts from the beginning of the motion; the 200 ms
-//! leave out the torques of the start. `contact` has the time and the place. Without a contact the
-//! motion arrives, and `reacted` is `None`. `touched.then(pose)` moves elsewhere at once instead of
+//! The control thread checks the condition in every cycle. `force_z` compares the external force
+//! along z of the base, in either direction. `relative` subtracts the force at the start of the
+//! motion. `elapsed` ignores the first 200 ms, because starting the motion causes torques.
+//! `contact` contains the time and the place of the contact. Without a contact, the arm arrives and
+//! `reacted` is `None`. `touched.then(pose)` makes the arm move elsewhere at once instead of
 //! stopping. See [`condition`] for other conditions.
 //!
 //! # Errors and recovery
 //!
-//! A robot that stops itself (a *reflex*, for instance by a collision) accepts no motion before it
-//! has been recovered. The error has the log of the last cycles, and its diagnosis names what to
-//! change. [`MotionError::party`] names where to act: in this program, on its computer, in the
-//! network, at the robot, or in the code of one side.
+//! A robot that has stopped itself (a *reflex*, for example because of a collision) accepts no
+//! motion until it has been recovered. The error contains a log of the last cycles, and its
+//! diagnosis suggests what to change. [`MotionError::party`] returns where to act: in this program,
+//! on its computer, in the network, at the robot, or in the code of either side.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -252,8 +257,8 @@
 //! # }
 //! ```
 //!
-//! A supervised robot reconnects when the link was lost, and recovers as its policy states. Its
-//! motions still end, and the program decides on the next one:
+//! A supervised robot reconnects after the link was lost, and recovers from reflexes as its policy
+//! states. A motion under way still ends, and the program decides what to do next:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -272,7 +277,7 @@
 //!
 //! # Without async
 //!
-//! With the feature `blocking`, use `.wait()` instead of `.await`, on any thread and without a
+//! With the feature `blocking`, call `.wait()` instead of `.await`, on any thread and without a
 //! runtime:
 //!
 //! ```no_run
@@ -295,8 +300,8 @@
 //!
 //! # Test without a robot
 //!
-//! `franka-sim` simulates a robot on sockets, in the process of the test. Its arm sticks, flexes
-//! and lags as in published measurements of real arms.
+//! The crate `franka-sim` simulates a robot, with real sockets, inside the process of the test. The
+//! simulated arm has friction, flexibility and delays like those published for real arms.
 //!
 //! ```
 //! use std::time::Duration;
@@ -319,8 +324,8 @@
 //! }
 //! ```
 //!
-//! The program `franka-sim` is the same simulator for programs outside of a test: start it, and
-//! connect to `127.0.0.1`, with `Realtime::Ignore` as above.
+//! Outside of tests, start the program `franka-sim`, which is the same simulator. Connect to
+//! `127.0.0.1`, with `Realtime::Ignore` as above.
 //!
 //! # Where to go next
 //!
@@ -362,14 +367,14 @@
 //! # Cancel safety
 //!
 //! Every future of this crate may be dropped at any point. The robot still carries out a request
-//! that was sent; its answer is then discarded. Dropping a motion brakes it. Methods that differ
-//! state this in their own section.
+//! that was already sent; its answer is discarded. Dropping a motion brakes the arm. Methods with
+//! other rules state them in their own section.
 //!
 //! # What it does not do
 //!
-//! The crate neither reconnects nor recovers without
-//! [`Builder::supervise`](connection::Builder::supervise), and moves nothing without a call. It is
-//! no safety function. It has not been run against a real arm yet.
+//! Without [`Builder::supervise`](connection::Builder::supervise), the crate neither reconnects nor
+//! recovers. It moves nothing unless the program asks for it. It is no safety function. It has not
+//! been run against a real arm yet.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
@@ -480,7 +485,8 @@ pub use nalgebra;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Checks what programs rely on: handles may move to any thread, futures to any worker.
+/// Checks that handles may move to any thread, and futures to any worker, because programs rely on
+/// it.
 const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}
     const fn spawned<T: Send + 'static>() {}
@@ -514,7 +520,7 @@ mod tests {
     #[test]
     fn futures_may_run_on_any_worker() {
         fn sent<T: Send>(_: T) {}
-        // Compiled, not called: there is no robot.
+        // This is compiled but never called, because there is no robot.
         let _: fn(&Robot, connection::Builder) = |robot, builder| {
             sent(builder.connect());
             sent(robot.stop());

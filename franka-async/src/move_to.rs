@@ -1,5 +1,5 @@
 //! Motions to one target. [`Moving`] is the future of these motions, of followed targets and of
-//! control functions. See `cancel` for the effect of dropping it.
+//! control functions. The module `cancel` describes the effect of dropping it.
 
 use std::future::IntoFuture;
 use std::pin::Pin;
@@ -24,11 +24,11 @@ use crate::progress::Progress;
 use crate::robot::Robot;
 use crate::session::Session;
 
-/// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
+/// A motion that has not begun: nothing is sent until it is awaited or detached. A clone is a
 /// separate motion, with its own [`handle`](Self::handle) and without the
 /// [`start_with`](Self::start_with) of the original.
 ///
-/// `.await` takes it as it is. Functions that take a future, such as `tokio::spawn`,
+/// A motion can be awaited as it is. Functions that take a future, such as `tokio::spawn`,
 /// `tokio::time::timeout` and `block_on`, need its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
@@ -47,25 +47,26 @@ pub struct Motion {
 impl Robot {
     /// Returns a motion to a pose of the end effector in the base frame, or to joint positions,
     /// `[rad]`. A motion to a pose that begins at rest is a straight line and a rotation about one
-    /// axis. The arm is compliant on the way, see [`Motion::stiffness`]. In a motion to joint
+    /// axis. The arm is compliant on the way: see [`Motion::stiffness`]. In a motion to joint
     /// positions, all joints arrive together.
     ///
     /// The task that awaits the motion plans the line to a pose, usually in a millisecond. If the
-    /// line would bring joints to the ends of their ranges, or the arm too close to itself, the
-    /// elbow moves to a posture that avoids this. If no such posture exists, nothing moves, and the
-    /// motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). The error names
-    /// joint positions that reach the pose. With [`Motion::joint_fallback`] the joints move there
-    /// instead.
+    /// line would bring joints to the ends of their ranges, or parts of the arm too close together,
+    /// the elbow moves to a posture that avoids this. If no such posture exists, nothing moves, and
+    /// the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). The error
+    /// names joint positions that reach the pose. With [`Motion::joint_fallback`] the joints move
+    /// there instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
 
     /// Returns a motion through several poses, or several joint positions, to the last of them. The
-    /// arm moves as fast as the limits allow, on straight lines, and without a stop at corners that
-    /// are [rounded](Waypoint::blend). The motion has one outcome. A waypoint out of reach, or a
-    /// line between two poses that the arm cannot follow, is refused before anything moves, as
-    /// [`MotionError::Path`]. If the arm is held back, the path waits: no waypoint is left out.
-    /// Planning takes tens of milliseconds of the connection's task.
+    /// arm moves as fast as the limits allow, in straight lines, and does not stop at corners that
+    /// are [rounded](Waypoint::blend). The whole motion has one outcome. If a waypoint is out of
+    /// reach, or if the arm cannot follow a line between two poses, the motion is refused as
+    /// [`MotionError::Path`] before anything moves. If something holds the arm back, the path
+    /// waits: no waypoint is left out. Planning takes the task of the connection tens of
+    /// milliseconds.
     ///
     /// ```no_run
     /// # use franka_async::{Error, Robot};
@@ -91,9 +92,10 @@ impl Robot {
         self.move_to(q.into())
     }
 
-    /// Returns a motion of the end effector by `offset` from its place, or from the target if a
-    /// motion is under way. Otherwise like [`Self::move_to`]. [Engage](Self::engage) the arm for
-    /// several such motions in a row: the arm moves a little whenever it is released.
+    /// Returns a motion of the end effector by `offset`, from the target if a motion is under way,
+    /// and otherwise from the measured pose. Otherwise it is like [`Self::move_to`]. For several
+    /// such motions in a row, [engage](Self::engage) the arm, because the arm moves a little
+    /// whenever it is released.
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -114,7 +116,7 @@ impl Motion {
         }
     }
 
-    /// Returns a motion within a session, which holds the arm at the target.
+    /// Returns a motion within a session; the session then holds the arm at the target.
     pub(crate) fn within(session: &Arc<Session>, destination: Destination) -> Self {
         Self {
             session: Some(session.clone()),
@@ -123,7 +125,7 @@ impl Motion {
         }
     }
 
-    /// Leads the motion through `waypoints` to the last of them.
+    /// Makes the motion pass through `waypoints` to the last of them.
     pub(crate) fn along<W: Into<Waypoint>>(self, waypoints: impl IntoIterator<Item = W>) -> Self {
         let path: Arc<[Waypoint]> = waypoints.into_iter().map(Into::into).collect();
         let last = path.last().map(|last| Destination::Target(*last.target()));
@@ -136,29 +138,30 @@ impl Motion {
 
     goal_options!(target);
 
-    /// Moves the joints to the pose, as [`Robot::move_joints`] does, if the arm cannot follow the
-    /// straight line of [`Robot::move_to`]. The end effector then moves along a curve: mind
-    /// obstacles near the line. [`Self::preview`] shows the path. If the joints have no path
-    /// either, the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). In
-    /// a session that commands poses to the robot's own controller, it is refused as
+    /// Makes the joints move to the pose, as in [`Robot::move_joints`], if the arm cannot follow
+    /// the straight line of [`Robot::move_to`]. The end effector then moves along a curve, so check
+    /// for obstacles near the line. [`Self::preview`] shows the path. If the joints have no path to
+    /// the pose either, the motion is refused as
+    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine). In a session that commands poses to
+    /// the robot's own controller, it is refused as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     ///
-    /// Has no effect on motions that are not planned in this way: through waypoints, of joints, and
+    /// This option has no effect on motions through waypoints, on motions of joints, and on motions
     /// with a [condition](Self::until).
     pub fn joint_fallback(mut self) -> Self {
         self.joint_fallback = true;
         self
     }
 
-    /// Begins together with the motions of other robots. The robot starts the motion, and holds the
-    /// arm until all motions with a ticket of the same
+    /// Makes the motion begin together with the motions of other robots. The robot starts the
+    /// motion, and holds the arm until all motions with a ticket of the same
     /// [`StartBarrier`](crate::motion::StartBarrier) are ready. Then they begin within a
     /// millisecond of each other. Such a motion supersedes nothing: it is refused as
-    /// [`MotionError::Busy`] while anything controls the arm. If not all motions become ready, it
-    /// resolves as [`MotionError::Start`], and the arm has not moved.
+    /// [`MotionError::Busy`] if anything controls the arm. If not all motions become ready, the
+    /// motion resolves as [`MotionError::Start`], and the arm has not moved.
     ///
     /// # Cancel safety
-    /// A motion that is dropped, stopped or superseded before the start releases the others, which
+    /// If a motion is dropped, stopped or superseded before the start, the others are released and
     /// resolve as [`MotionError::Start`].
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
@@ -171,8 +174,8 @@ impl Motion {
         self
     }
 
-    /// Makes the target a pose of an object in the hand. `grasp` is the object's pose in the frame
-    /// of the end effector.
+    /// Makes the destination a pose of an object in the hand. `grasp` is the object's pose in the
+    /// frame of the end effector.
     pub(crate) fn of_object(mut self, grasp: Isometry3<f64>) -> Self {
         self.options.grasp = Some(grasp);
         self
@@ -183,8 +186,8 @@ impl Motion {
     }
 
     /// Begins the motion without a future: the motion continues, and its outcome is only logged. A
-    /// detached motion is no handle: dropping the last handle of its session or robot still brakes
-    /// it.
+    /// detached motion does not count as a handle: dropping the last handle of its session or robot
+    /// brakes it.
     pub fn detach(mut self) {
         match self.begin() {
             Ok(mut motion) => {
@@ -195,19 +198,19 @@ impl Motion {
         }
     }
 
-    /// Returns a handle that reports the progress of the motion from elsewhere, and pauses or
-    /// brakes it.
+    /// Returns a handle with which any task can watch, pause or brake the motion.
     pub fn handle(&self) -> MotionHandle {
         MotionHandle(self.canceller.clone())
     }
 
-    /// Returns the preview of the motion if it began now, or the error with which it would be
+    /// Returns a preview of the motion as if it began now, or the error with which it would be
     /// refused. Nothing moves, and nothing is sent. The preview treats a motion to one target as a
-    /// path with one waypoint, which is exact if the motion begins at rest. [`Preview::blocked`]
-    /// reports whether the arm would come too near itself or a keep-out region. Takes milliseconds.
+    /// path with one waypoint; this is exact if the motion begins at rest. [`Preview::blocked`]
+    /// reports whether the arm would come too close to itself or to a keep-out region. The call
+    /// takes milliseconds.
     ///
     /// # Errors
-    /// [`MotionError::Path`] and [`MotionError::Goal`].
+    /// Returns [`MotionError::Path`] or [`MotionError::Goal`] if the motion would be refused.
     #[expect(
         clippy::disallowed_methods,
         reason = "in the caller's own thread, and no task of a connection calls it"
@@ -241,7 +244,7 @@ impl Motion {
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
-    /// Returns the motion's options, completed by the options of its session.
+    /// Returns the options of the motion, completed by the options of its session.
     fn pursued(&self) -> GoalOptions {
         let session = self.session.as_ref();
         self.options
@@ -269,7 +272,7 @@ impl Motion {
     }
 }
 
-/// Searches the straight line of a motion to a pose, from the arm's present place: see
+/// Plans the straight line of a motion to a pose, from the arm's present place: see
 /// [`Goal::plan_line`].
 fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
     let (NewMotion::Goal { goal, .. }, Some(destination), None) =
@@ -325,9 +328,9 @@ impl IntoFuture for Motion {
     }
 }
 
-/// Access to a motion from elsewhere: its progress, and pausing or braking it. Clones are for the
-/// same motion. A handle of a motion is no handle of the robot or the session, and does not keep
-/// the motion going.
+/// Handle of a motion for other tasks: it reports progress, and pauses or brakes the motion. Clones
+/// control the same motion. It does not count as a handle of the robot or the session, and does not
+/// keep the motion going.
 #[derive(Clone, Debug)]
 pub struct MotionHandle(Canceller);
 
@@ -337,12 +340,13 @@ impl MotionHandle {
         self.0.cancel();
     }
 
-    /// Stops the motion on its way until [`Self::resume`], within its limits, and on its line if it
-    /// follows one. The arm is held there meanwhile. A motion that has not begun is then held at
-    /// its start. Has no effect after the end of the motion and once a newer goal has come.
+    /// Makes the arm stop on its way until [`Self::resume`], within the limits of the motion, and
+    /// on its line if it follows one. Meanwhile the arm is held there. If the motion has not begun,
+    /// it is held at its start. A pause has no effect after the end of the motion, or once a newer
+    /// goal has come.
     ///
-    /// The pause counts in the [duration](franka_rt::lifecycle::MotionReport::duration) of the
-    /// motion, in its [`Progress::elapsed`], and in every time limit that the program sets.
+    /// The pause is part of the [duration](franka_rt::lifecycle::MotionReport::duration) of the
+    /// motion, of its [`Progress::elapsed`], and of every time limit that the program sets.
     pub fn pause(&self) {
         self.0.set_paused(true);
     }
@@ -359,14 +363,15 @@ impl MotionHandle {
 }
 
 /// A motion as a future. The motion begins with the first poll. The future resolves when the arm
-/// has arrived, rests, and is no longer controlled, or with the reason why the motion ended before.
+/// has arrived, rests, and is no longer controlled. If the motion ended earlier, it resolves with
+/// the reason.
 ///
 /// # Cancel safety
-/// Dropping the future brakes the arm, in the background: within the robot's limits and about a
+/// Dropping the future brakes the arm in the background, within the robot's limits and in about a
 /// quarter of a second.
 ///
 /// # Panics
-/// When polled after it has resolved, as futures may.
+/// Panics if polled after it has resolved, as futures may.
 #[derive(Debug)]
 #[must_use = "futures do nothing unless polled"]
 pub struct Moving {
@@ -380,14 +385,14 @@ pub struct Moving {
 
 #[derive(Debug)]
 enum Stage {
-    /// The motion, or the error of options that are not accepted.
+    /// The motion, or the error if its options are not accepted.
     Ready(Result<Box<Beginning>, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
 
 impl Moving {
-    /// Returns `motion` of this robot, named as the canceller, as a future.
+    /// Returns the future of `motion` of this robot; the canceller has the same goal.
     pub(crate) fn new(
         robot: Robot,
         canceller: Canceller,

@@ -6,7 +6,8 @@ use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance}
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
-/// Options of one goal or of many. An option that is `None` has the default for the kind of goal.
+/// Options of one or more goals. For an option that is `None`, the default for the kind of goal
+/// applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GoalOptions {
     pub(crate) tuning: Tuning,
@@ -15,14 +16,15 @@ pub(crate) struct GoalOptions {
     pub(crate) tolerance: Option<Tolerance>,
     pub(crate) settling: Option<Settling>,
     pub(crate) reaction: Option<Reaction>,
-    /// The joint motion of a team that the goal is part of.
+    /// The team's joint motion that the goal is part of.
     pub(crate) round: Option<Round>,
-    /// Pose of the object in the hand that the goal is for, in the frame of the end effector.
+    /// Pose of the object in the hand, in the frame of the end effector, if the goal is a pose of
+    /// that object.
     pub(crate) grasp: Option<Isometry3<f64>>,
 }
 
 impl GoalOptions {
-    /// Returns these options, completed by the tuning of a session.
+    /// Returns these options, completed by the tuning of the session.
     pub(crate) fn within(self, session: Option<Tuning>) -> Self {
         Self {
             tuning: self.tuning.or(session.unwrap_or_default()),
@@ -33,7 +35,7 @@ impl GoalOptions {
     /// Returns the goal with these options, for a robot of this model.
     ///
     /// # Errors
-    /// [`GoalError::Speed`].
+    /// Returns [`GoalError::Speed`] if the speed is not accepted.
     pub(crate) fn apply(&self, goal: Goal, model: &Model) -> Result<Goal, GoalError> {
         let goal = self.tuning.apply(goal);
         let softened = |stiffness| goal.gains.with_cartesian_stiffness(stiffness);
@@ -52,7 +54,7 @@ impl GoalOptions {
     /// Returns the tuning that a session keeps: the speed becomes part of its budget.
     ///
     /// # Errors
-    /// [`GoalError::Speed`].
+    /// Returns [`GoalError::Speed`] if the speed is not accepted.
     pub(crate) fn session_tuning(&self, model: &Model) -> Result<Tuning, GoalError> {
         let mut tuning = self.tuning;
         if self.speed.is_some() {
@@ -72,50 +74,50 @@ impl GoalOptions {
     }
 }
 
-/// Defines setters for a type with the field `options: GoalOptions`. With `target`, also the
-/// setters of a type that has one target or one stream of them.
+/// Defines setters for a type with the field `options: GoalOptions`. With `target`, it also defines
+/// the setters of a type that has one target or one stream of targets.
 macro_rules! goal_options {
     () => {
-        /// Follows the same paths `factor` times as fast as the limits allow. Velocities scale with
-        /// `factor`, accelerations with its square, jerks with its cube. A factor that is not
-        /// positive, or raises a limit above the robot's, is refused as
+        /// Makes the arm follow the same paths `factor` times as fast as the limits allow.
+        /// Velocities scale with `factor`, accelerations with its square, and jerks with its cube.
+        /// A factor that is not positive, or that raises a limit above the robot's, is refused as
         /// [`GoalError::Speed`](crate::error::GoalError::Speed) when the motion begins.
         pub fn speed(mut self, factor: f64) -> Self {
             self.options.speed = Some(factor);
             self
         }
 
-        /// Replaces the limits, which [`Self::speed`] then scales; by default the limits of
-        /// [`Budget::of`](crate::goal::Budget::of), or of the session.
+        /// Replaces the limits, which [`Self::speed`] then scales. By default, the limits of
+        /// [`Budget::of`](crate::goal::Budget::of) apply, or those of the session.
         pub fn limits(mut self, budget: crate::goal::Budget) -> Self {
             self.options.tuning.budget = Some(budget);
             self
         }
 
-        /// Replaces the law and all gains. The default is the gains of the session, or
+        /// Replaces the control law and all gains. By default, the gains of the session apply, or
         /// [`Gains::cartesian`](crate::goal::Gains::cartesian) for poses and
         /// [`Gains::joint`](crate::goal::Gains::joint) for joint positions. For a stream, the kind
-        /// of the first target decides. [`Gains::law`](crate::goal::Gains::law) selects the law.
-        /// Under [`Law::OperationalSpace`](crate::goal::Law::OperationalSpace) the springs at the
-        /// end effector move the arm, and gains without such springs are refused.
+        /// of the first target selects the default. [`Gains::law`](crate::goal::Gains::law) selects
+        /// the law. Under [`Law::OperationalSpace`](crate::goal::Law::OperationalSpace), springs at
+        /// the end effector move the arm, so gains without such springs are refused.
         pub fn gains(mut self, gains: crate::goal::Gains) -> Self {
             self.options.tuning.gains = Some(gains);
             self
         }
 
-        /// Bounds the force with which springs and dampers press at the end effector, `[N]`,
+        /// Limits the force of the springs and dampers at the end effector, `[N]`, to a value
         /// between 5 and 200. The default is the cap of the session, or
-        /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). An undeclared
-        /// load counts: if its weight exceeds the cap, the arm sinks and the motion does not
-        /// arrive. [`Backend::RobotController`](crate::goal::Backend::RobotController) cannot bound
-        /// the force, so the option is refused there.
+        /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). The weight of an
+        /// undeclared load counts: if it exceeds the cap, the arm sinks and the motion does not
+        /// arrive. [`Backend::RobotController`](crate::goal::Backend::RobotController) cannot limit
+        /// the force, so it refuses this option.
         pub fn force_cap(mut self, newtons: f64) -> Self {
             self.options.tuning.force_cap = Some(crate::goal::ForceCap::Newtons(newtons));
             self
         }
 
-        /// Removes the force cap, unless [`Self::force_cap`] sets one, before or after. The
-        /// springs' largest deflection still bounds their force.
+        /// Removes the force cap, unless [`Self::force_cap`] is called before or after this. The
+        /// largest deflection of the springs still limits their force.
         pub fn without_force_cap(mut self) -> Self {
             let cap = &mut self.options.tuning.force_cap;
             *cap = cap.or(Some(crate::goal::ForceCap::Off));
@@ -124,30 +126,31 @@ macro_rules! goal_options {
 
         /// Sets how far the reference may be ahead of the arm, between
         /// [`Leash::LEAST`](crate::goal::Leash::LEAST) and
-        /// [`Leash::MOST`](crate::goal::Leash::MOST). The defaults are 25 mm and 0.15 rad, and 0.1
-        /// rad of each joint. If the arm is blocked, its springs are stretched by this distance at
-        /// most. Has no effect under
+        /// [`Leash::MOST`](crate::goal::Leash::MOST). The defaults are 25 mm and 0.15 rad for the
+        /// end effector, and 0.1 rad for each joint. If the arm is blocked, its springs are
+        /// stretched by this distance at most. This option has no effect under
         /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn leash(mut self, leash: crate::goal::Leash) -> Self {
             self.options.tuning.leash = Some(leash);
             self
         }
 
-        /// Sets how far the arm may be pushed off its path. Beyond that, the motion is given up as
-        /// [`Lapse::Displaced`](crate::error::Lapse::Displaced). The defaults are 30 cm and 0.5
-        /// rad of the hand, or 1 rad of a joint. Has no effect under
-        /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
+        /// Sets how far the arm may be pushed off its path. If the arm is pushed further, the
+        /// motion is given up as [`Lapse::Displaced`](crate::error::Lapse::Displaced). The defaults
+        /// are 30 cm and 0.5 rad for the hand, and 1 rad for a joint. This option has no effect
+        /// under [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn deviation(mut self, deviation: crate::goal::Deviation) -> Self {
             self.options.tuning.deviation = Some(deviation);
             self
         }
 
-        /// Sets the posture, joint positions in `[rad]`, for the null space of the end effector's
-        /// pose. The arm approaches the posture while it moves to poses and holds them. The elbow
-        /// uses at most half of the joints' budget, and an awaited motion arrives when the elbow
-        /// rests, too. By default the elbow stays near its position at the start of the motion or
-        /// session. An engaged arm keeps its posture until another one is set. Positions out of
-        /// range are refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// Sets the posture that the arm approaches while it moves to poses and holds them: joint
+        /// positions, `[rad]`. The posture acts in the null space, so it does not change the pose
+        /// of the end effector. The elbow uses at most half of the joints' budget, and an awaited
+        /// motion arrives only when the elbow rests, too. By default, the elbow stays near its
+        /// position at the start of the motion or session. An engaged arm keeps its posture until
+        /// another one is set. Positions out of range are refused as
+        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self
@@ -156,37 +159,38 @@ macro_rules! goal_options {
     (target) => {
         goal_options!();
 
-        /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
-        /// axes. It replaces the stiffness of the gains, regardless of the order of the calls. The
-        /// damping ratios stay.
+        /// Sets the stiffness at the end effector along and about the base axes: x, y, z in
+        /// `[N/m]`, then rotations about them in `[N m/rad]`. It replaces the stiffness of the
+        /// gains, regardless of the order of the calls. The damping ratios do not change.
         pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
             self.options.stiffness = Some(stiffness);
             self
         }
 
-        /// Sets the distance to the target that counts as arrived; for a stream, the distance to
-        /// its last target. The default is the accuracy of the law, or of the robot's controller,
-        /// on an arm with friction: [`Tolerance::of`](crate::goal::Tolerance::of) and
+        /// Sets the distance from the target at which the arm has arrived; for a stream, the
+        /// distance from its last target. The default is the accuracy of the control law, or of the
+        /// robot's controller, on an arm with friction: see
+        /// [`Tolerance::of`](crate::goal::Tolerance::of) and
         /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
             self
         }
 
-        /// Sets how long the arm must rest at the target until it has arrived, and the time limit
-        /// for the whole wait; by default 250 ms and 5 s.
+        /// Sets how long the arm must rest at the target before it has arrived, and the time limit
+        /// for this wait. The defaults are 250 ms and 5 s.
         pub fn settling(mut self, settling: crate::goal::Settling) -> Self {
             self.options.settling = Some(settling);
             self
         }
 
-        /// Ends the motion early when a condition becomes true before the arrival. The arm then
-        /// stops as quickly as the jerk limit allows. With a
-        /// [`Reaction`](crate::condition::Reaction) that has another target, the arm brakes and
-        /// moves there. The control thread checks the condition in every cycle, until the motion
-        /// has ended, and acts in the next cycle. Replaces an earlier condition.
+        /// Ends the motion early if a condition becomes true before the arrival. The arm then stops
+        /// as quickly as the jerk limit allows. If a [`Reaction`](crate::condition::Reaction) has
+        /// another target, the arm brakes and moves there. The control thread checks the condition
+        /// in every cycle until the motion has ended, and acts in the next cycle. This replaces an
+        /// earlier condition.
         ///
-        /// Arrival and reaction both resolve as `Ok`:
+        /// Both an arrival and a reaction resolve as `Ok`:
         /// [`MotionReport::reacted`](crate::MotionReport::reacted) distinguishes them. See
         /// [`condition`](crate::condition) for the quantities that can be compared.
         ///

@@ -1,4 +1,4 @@
-//! Parameters of the robot, and recovery: requests with one answer.
+//! Sets parameters of the robot and recovers it: each request has one answer.
 //!
 //! The robot accepts parameters between motions and refuses them during a motion.
 
@@ -23,39 +23,40 @@ use crate::supervisor::Supervisor;
 use crate::thresholds::Thresholds;
 use crate::world::timeout;
 
-/// Time for an answer that the robot gives at once.
+/// Time limit for requests that the robot answers at once.
 const ANSWER: Duration = Duration::from_secs(5);
 
-/// Time for a recovery, which opens and closes brakes.
+/// Time limit for a recovery, which opens and closes brakes.
 const RECOVERY: Duration = Duration::from_secs(30);
 
-/// Silence allowed to a robot during a recovery, in addition to the link timeout.
+/// Time for which a robot may be silent during a recovery, in addition to the link timeout.
 const SILENT: Duration = Duration::from_secs(3);
 
 /// Payload of both arms, `[kg]`. Source: the vendor's data sheets.
 const PAYLOAD: f64 = 3.0;
 
-/// Time after the answer in which states are searched for the new value, `[ms]`.
+/// Time after the answer in which a state must show the new value, `[ms]`.
 const SHOWN_MS: u64 = 200;
 
-/// Time to wait for these states, if none come.
+/// Time limit for the wait for these states, if none come.
 const SHOWN_WITHIN: Duration = Duration::from_secs(5);
 
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
-    /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
-    /// [`insensitive`](CollisionBehavior::insensitive), or values of your own. A goal whose force
-    /// cap exceeds them begins with a warning (`tracing`). Below about 10 N, the friction of an
+    /// (upper). Use [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
+    /// [`insensitive`](CollisionBehavior::insensitive), or your own values. A goal whose force cap
+    /// exceeds these forces begins with a warning (`tracing`). Below about 10 N, the friction of an
     /// untouched arm alone can trigger a reflex.
     ///
     /// The vendor documents no range. The simulator refuses negative and non-finite values.
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// Returns [`CommandError`] if the robot refuses the request or does not answer.
     ///
     /// # Cancel safety
-    /// Once the future is polled, the robot may still carry the request out. The driver of a
-    /// [supervised](crate::connection::Builder::supervise) robot counts the value as set.
+    /// If the future is dropped after it was polled, the robot may still carry out the request. The
+    /// driver of a [supervised](crate::connection::Builder::supervise) robot then counts the value
+    /// as set.
     pub async fn set_collision_behavior(
         &self,
         behavior: CollisionBehavior,
@@ -67,7 +68,7 @@ impl Robot {
     /// in [0, 14250].
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// See [`Self::set_collision_behavior`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -76,10 +77,10 @@ impl Robot {
     }
 
     /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame:
-    /// x y z in [10, 3000] N/m, roll pitch yaw in [1, 300] N m/rad.
+    /// x, y and z in [10, 3000] N/m; roll, pitch and yaw in [1, 300] N m/rad.
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// See [`Self::set_collision_behavior`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -87,10 +88,11 @@ impl Robot {
         self.set(Request::SetCartesianImpedance(stiffness)).await
     }
 
-    /// Sets which directions are free in hand guiding: x y z, roll pitch yaw, and the elbow.
+    /// Sets the directions in which a hand can guide the arm: x, y, z, roll, pitch, yaw, and the
+    /// elbow.
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// See [`Self::set_collision_behavior`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -108,7 +110,8 @@ impl Robot {
     /// The vendor documents no range. The simulator refuses a frame more than 2 m away.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::LinkLost`] if the robot answers but no states come.
+    /// Returns [`CommandError`]; [`CommandError::LinkLost`] if the robot answers but sends no
+    /// states.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -117,11 +120,11 @@ impl Robot {
         self.set(Request::SetEEToK(frame)).await
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Range and resolution
-    /// are as for [`Self::set_k`].
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. The range and the
+    /// resolution are as for [`Self::set_k`].
     ///
     /// # Errors
-    /// As for [`Self::set_k`].
+    /// See [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -130,18 +133,18 @@ impl Robot {
         self.set(Request::SetNEToEE(frame)).await
     }
 
-    /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
-    /// `[m]`, inertia about that centre `[kg m^2]`, column-major. Resolves when a state shows the
-    /// load.
+    /// Declares the load beyond the end effector: its mass `[kg]`, its centre of mass in the flange
+    /// frame `[m]`, and its inertia about that centre `[kg m^2]`, column-major. Resolves when a
+    /// state shows the load.
     ///
-    /// A load that is impossible for a rigid body is refused before it is sent. It has a mass below
-    /// 0, an inertia that is not symmetric, or a principal moment below 0 or above the sum of the
-    /// others. The vendor documents no range. The simulator also refuses more than 10 kg and a
-    /// centre more than 1 m away. It refuses a principal moment above 1 kg m^2. Its configuration
-    /// can change these bounds.
+    /// A load that is impossible for a rigid body is refused before it is sent. Such a load has a
+    /// negative mass, an asymmetric inertia, or a principal moment that is negative or above the
+    /// sum of the others. The vendor documents no range. The simulator also refuses a mass above 10
+    /// kg and a centre more than 1 m away. It refuses a principal moment above 1 kg m^2. Its
+    /// configuration can change these bounds.
     ///
     /// # Errors
-    /// As for [`Self::set_k`].
+    /// See [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -158,13 +161,14 @@ impl Robot {
     }
 
     /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot accepts
-    /// motions again. Without an error, succeeds and does nothing. May take as long as the brakes
-    /// do, 30 s at most.
+    /// motions again. If the robot has no error, this succeeds and does nothing. The recovery takes
+    /// as long as the brakes do, at most 30 s.
     ///
     /// # Errors
-    /// [`CommandError`]; a refusal that names manual recovery must be solved at the robot.
-    /// [`CommandError::LinkLost`] if the robot answers but no states come. Also if answers and
-    /// states both stay away for three seconds more than the link timeout.
+    /// Returns [`CommandError`]. If a refusal names manual recovery, a person must recover the
+    /// robot on site. Returns [`CommandError::LinkLost`] if the robot answers but sends no states.
+    /// Also returns it if answers and states both stay away for three seconds more than the link
+    /// timeout.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -180,23 +184,23 @@ impl Robot {
         }
     }
 
-    /// Returns the robot's description of itself, URDF. Protocol 10 only.
+    /// Returns the robot's description of itself, as URDF. Protocol 10 only.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
     ///
     /// # Cancel safety
-    /// Only the answer is lost.
+    /// If the future is dropped, only the answer is lost.
     pub async fn urdf(&self) -> Result<String, CommandError> {
         urdf(&self.channel(), ANSWER).await
     }
 
     /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz. The
-    /// upper end switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
-    /// vendor: filter in this program instead.
+    /// value 1000 Hz switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by
+    /// the vendor: filter in this program instead.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -208,10 +212,10 @@ impl Robot {
     /// Protocol 5 only (Franka Emika Robot).
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
+    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
     ///
     /// # Cancel safety
-    /// Only the answer is lost.
+    /// If the future is dropped, only the answer is lost.
     pub async fn virtual_wall(&self, id: i32) -> Result<VirtualWall, CommandError> {
         let request = Request::GetCartesianLimit { id };
         match self.channel().call(request, ANSWER).await? {
@@ -220,7 +224,7 @@ impl Robot {
         }
     }
 
-    /// Sets a value at the robot, and waits for a state that shows it, if states have the value.
+    /// Sets a value at the robot and waits for a state that shows it, if states contain this value.
     /// The answer may come before such a state; a motion that begins in between would compute with
     /// the old tool.
     async fn set(&self, request: Request) -> Result<(), CommandError> {
@@ -255,8 +259,8 @@ impl Robot {
     }
 }
 
-/// A setting that was sent to the robot. Dropping this value gives the supervisor the answer, also
-/// if the future of the call is dropped.
+/// A setting that was sent to the robot. Dropping it reports the answer to the supervisor, even if
+/// the future of the call was dropped.
 struct Declared<'a> {
     supervisor: &'a Supervisor,
     id: SettingId,
@@ -269,8 +273,8 @@ impl Drop for Declared<'_> {
     }
 }
 
-/// Resources for sending settings again over one connection. The last handle of the robot still
-/// closes the connection, even during a request.
+/// Resources for sending settings again over one connection. They do not keep the robot open:
+/// dropping its last handle closes the connection, even during a request.
 pub(crate) struct Again {
     supervisor: Arc<Supervisor>,
     setting: Arc<Mutex<()>>,
@@ -317,7 +321,7 @@ impl Again {
     }
 }
 
-/// Returns the meaning of an error for a setting.
+/// Converts an error into the answer to a setting.
 fn answer_of(error: &CommandError) -> Answer {
     let text = error.to_string();
     match error {
@@ -409,7 +413,8 @@ fn parts(request: &Request) -> Vec<(&'static str, &[f64])> {
     }
 }
 
-/// Returns the reason why a rigid body cannot have this load, which is finite; `None` if it can.
+/// Returns the reason why no rigid body can have this load, whose numbers are finite; `None` if one
+/// can.
 fn impossible(load: &Load) -> Option<String> {
     if load.m_load < 0.0 {
         return Some(format!("m_load is {} kg, expected 0 or more", load.m_load));
@@ -501,8 +506,8 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
     CommandError::InvalidArgument { refusal, why }
 }
 
-/// Returns the difference between the value that was set and the value in a state. `None` for
-/// values that states do not have.
+/// Returns the difference between the value that was set and the value in a state, as a text.
+/// Returns `None` if they are equal, or if states do not contain the value.
 fn difference(request: &Request, state: &RobotState) -> Option<String> {
     let text = |got: &dyn Debug, set: &dyn Debug| {
         format!("the robot accepted the setting, but its states show {got:?}, expected {set:?}")

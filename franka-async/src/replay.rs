@@ -1,10 +1,10 @@
-//! Recorded motions as targets of an arm: [`Arm::replay`], [`Robot::replay`].
+//! Replays of recorded motions: [`Arm::replay`], [`Robot::replay`].
 //!
 //! ```text
 //! Recording::open --cycles--> Samples --ReplayPlan::new--> plan --Arm::replay--> ReplayReport
 //! ```
 //!
-//! [`ReplayPlan`] decides which targets are followed or refused, before anything moves.
+//! [`ReplayPlan`] decides, before anything moves, which targets are followed and which are refused.
 
 use std::time::Duration;
 
@@ -25,7 +25,7 @@ use crate::robot::Robot;
 pub struct ReplayReport {
     /// Time from the first target to the last.
     pub duration: Duration,
-    /// Largest distance of a joint from its recorded position in each state, `[rad]`.
+    /// Largest distance of any joint from its recorded position, in each state, `[rad]`.
     pub joints: Spread,
     /// Distance of the end effector from its recorded position, `[m]`.
     pub position: Spread,
@@ -38,16 +38,17 @@ pub struct ReplayReport {
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayFailure {
-    /// The recorded motion does not suit this arm. Nothing has moved.
+    /// This arm cannot replay the recorded motion. Nothing has moved.
     #[error(transparent)]
     Refused(#[from] ReplayError),
     /// The motion to the first target, or the session, ended early.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The arm did not move as in the recording: something holds it, or a guard has braked it.
+    /// The arm did not move as in the recording, because something holds it or a guard has braked
+    /// it.
     #[error("{distance} {after:.3?} after the begin of the replay, expected {most} at most")]
     Off {
-        /// Time in the replay.
+        /// Time since the start of the replay.
         after: Duration,
         /// Measured distance.
         distance: String,
@@ -57,8 +58,8 @@ pub enum ReplayFailure {
 }
 
 impl Robot {
-    /// Moves to the first target of a recorded motion, replays the motion, and releases the arm.
-    /// Begins a session with the defaults, and calls [`Arm::replay`] in it.
+    /// Moves to the first target of a recorded motion, replays the motion, and releases the arm. It
+    /// begins a session with the defaults and calls [`Arm::replay`].
     ///
     /// ```no_run
     /// # async fn run(
@@ -72,8 +73,8 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// As [`Arm::replay`], and [`ReplayFailure::Motion`] if the session does not begin, or ends
-    /// with an error.
+    /// Returns the errors of [`Arm::replay`], and [`ReplayFailure::Motion`] if the session does not
+    /// begin or ends with an error.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm and ends the session, in the background.
@@ -87,21 +88,22 @@ impl Robot {
 }
 
 impl Arm {
-    /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, slower by the
-    /// [speed of the plan](ReplayPlan::speed). Then the arm follows the targets at their times,
-    /// with all guards of the session and the limits of the [plan](ReplayPlan::budget). Resolves
-    /// when the arm rests at the last target, with the distance to the position of the recorded
-    /// arm.
+    /// Moves to the first target of a recorded motion, as [`Arm::move_joints`] does, but at its
+    /// speed times the [speed of the plan](ReplayPlan::speed). Then the arm follows the targets at
+    /// their times, with all guards of the session and the limits of the
+    /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last target. The report
+    /// contains the distances from the recorded positions.
     ///
-    /// The replay ends as [`ReplayFailure::Off`] once a joint is further than
-    /// [`ReplayPlan::JOINTS_OFF_MAX`] from its recorded position. A replay by poses compares the
-    /// end effector instead, with [`ReplayPlan::POSITION_OFF_MAX`]. Any other goal of the session
-    /// ends the replay as [`MotionError::Superseded`]; [`Robot::stop`] ends it with the same error
-    /// or as [`MotionError::Stopped`].
+    /// If a joint is further than [`ReplayPlan::JOINTS_OFF_MAX`] from its recorded position, the
+    /// replay ends as [`ReplayFailure::Off`]. A replay by poses checks the end effector instead,
+    /// with [`ReplayPlan::POSITION_OFF_MAX`]. Any other goal of the session ends the replay as
+    /// [`MotionError::Superseded`]; [`Robot::stop`] ends it with the same error or as
+    /// [`MotionError::Stopped`].
     ///
     /// # Errors
-    /// [`ReplayFailure::Refused`] before anything moves. Otherwise as above, or the error of the
-    /// motion to the first target or of the session.
+    /// Returns [`ReplayFailure::Refused`] if the arm cannot replay the motion; nothing has moved
+    /// then. Otherwise returns one of the errors above, or the error of the motion to the first
+    /// target or of the session.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, and the session holds it.
@@ -118,7 +120,7 @@ impl Arm {
         while newest < course.end(plan) {
             if let Some(chunk) = course.due(plan, model, newest)? {
                 let goal = self.goal_within(chunk.target(), plan.budget());
-                // Note the goal before it is sent. Otherwise, if the future is dropped meanwhile,
+                // Note the goal before sending it. Otherwise, if the future is dropped in between,
                 // the arm would follow the chunk to its end.
                 braking.goal.get_or_insert(goal.id);
                 if let Err(error) = self.send_chunk(goal, chunk).await {
@@ -161,8 +163,8 @@ impl Arm {
         })
     }
 
-    /// Returns the reason why a replay has ended: the cause of the end of the session if it has
-    /// ended, otherwise `error`. A session refuses goals only when it is about to end.
+    /// Returns the reason why a replay ended: that of the session if the session has ended,
+    /// otherwise `error`. A session refuses goals only when it is about to end.
     fn over(&self, error: MotionError) -> MotionError {
         match (self.session_error(), error) {
             (Some(ended), _) => ended,
@@ -185,10 +187,10 @@ fn over(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Disengaged)
 }
 
-/// Brakes a replay that does not finish; the session then holds the arm.
+/// Brakes a replay that did not finish; the session then holds the arm.
 struct BrakeOnDrop<'a> {
     arm: &'a Arm,
-    /// The goal of its chunks; `None` before the first one, and once there is nothing to brake.
+    /// Goal of the chunks; `None` before the first chunk, and when nothing is left to brake.
     goal: Option<GoalId>,
     /// True if the session is known to have accepted the first chunk.
     is_taken: bool,
@@ -206,7 +208,7 @@ impl<'a> BrakeOnDrop<'a> {
 
 impl Drop for BrakeOnDrop<'_> {
     fn drop(&mut self) {
-        // Once the goal's name was there, another name means that another goal has taken over.
+        // Once the session had this goal, another goal means that the other one has taken over.
         let goes_on = !self.is_taken || self.goal == self.arm.heading();
         if self.goal.is_some()
             && goes_on

@@ -1,4 +1,4 @@
-//! The handle that programs hold.
+//! The handle of a connected robot.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -37,16 +37,16 @@ pub type Pose = nalgebra::Isometry3<f64>;
 
 /// A connected robot.
 ///
-/// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes
-/// the current one. Dropping the last handle brakes the arm, ends the motion and closes the
-/// connection, in the background. [`Robot::shutdown`] does the same and can be awaited. Motions in
-/// progress are handles, too.
+/// This is a cheap handle: all clones share one connection, and any task or thread may use them. A
+/// newer motion supersedes the current one. Dropping the last handle brakes the arm, ends the
+/// motion and closes the connection, in the background. [`Robot::shutdown`] does the same and can
+/// be awaited. A motion in progress counts as a handle.
 ///
-/// When a connection is lost, everything that belongs to it ends, control thread included. The
+/// When a connection is lost, everything that belongs to it ends, including the control thread. The
 /// remaining handles then report the reason. Handles of a
 /// [supervised](crate::connection::Builder::supervise) robot continue with the next connection. If
-/// the runtime ends first, the arm is not braked: the robot misses its commands and stops with a
-/// reflex. Await [`Robot::shutdown`] before the program ends.
+/// the runtime ends first, the driver does not brake the arm: the robot receives no more commands
+/// and stops with a reflex. Await [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]
@@ -61,11 +61,11 @@ struct Shared {
     /// The newest connection.
     link: RwLock<Arc<Link>>,
     supervisor: Arc<Supervisor>,
-    /// Lock that is held until a setting has its place among the requests, so that no older setting
+    /// This lock is held until a setting has its place among the requests, so that no older setting
     /// overtakes it.
     setting: Arc<Mutex<()>>,
-    /// Sender to the task that reconnects; `None` without such a task. Closed when the task has
-    /// ended.
+    /// Sender to the task that reconnects; `None` without such a task. It is closed when the task
+    /// has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
     /// Runtime of that task and of the bridges.
     runtime: Runtime,
@@ -108,17 +108,18 @@ impl Robot {
         }
     }
 
-    /// Returns the newest state, which may be old: [`Self::health`] reports a silent robot.
+    /// Returns the newest state. The state may be old: [`Self::health`] reports a silent robot.
     pub fn state(&self) -> RobotState {
         self.link().newest.state()
     }
 
-    /// Returns the newest state as it changes, in motion or not. Ends when the connection does. For
-    /// a supervised robot the stream continues with the next connection, and ends when no further
-    /// one will come. For every state, see [`Self::state_stream`] and [`Self::read`].
+    /// Returns a receiver that waits for newer states, whether the arm moves or not. It ends with
+    /// the connection. For a supervised robot it continues with the next connection, and ends when
+    /// there will be no other one. To receive every state, use [`Self::state_stream`] or
+    /// [`Self::read`].
     ///
-    /// The stream begins with the newest state at the call. As long as a [`States`] exists, a task
-    /// is woken for every state; drop it when it is no longer needed.
+    /// The receiver begins with the state that is newest at the call. As long as a [`States`]
+    /// exists, a task is woken for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
         let link = self.link();
         let closing = match &self.shared.shutdowns {
@@ -128,22 +129,24 @@ impl Robot {
         States::new(link.newest.changes(), closing.clone())
     }
 
-    /// Returns the records of every cycle of the control thread, one per state, with its inputs and
-    /// outputs. The first records may be of cycles up to 50 ms ago. A listener that lags more than
-    /// two seconds behind receives the number of missed records. Closes when the connection does.
+    /// Returns a channel of records: one for every cycle of the control thread, with its inputs and
+    /// outputs. The first records may be up to 50 ms old. A receiver that falls more than two
+    /// seconds behind gets the number of records that it missed. The channel closes with the
+    /// connection.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.link().subscriptions().records()
     }
 
-    /// Returns every cycle of the control thread from now on, with record, whole state and time of
-    /// receipt. For a recorder, on a separate thread: no task passes the cycles on, so a busy
-    /// runtime loses none of them. The ring holds `capacity` cycles, usually
-    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY). Cycles that do
-    /// not fit are counted ([`CycleReader::lost`]). Ends with the connection. The call takes a few
-    /// milliseconds to get the memory of the ring.
+    /// Returns a reader of every cycle of the control thread from now on, with the record, the
+    /// whole state and the time of receipt. Use it in a recorder with its own thread: the cycles
+    /// pass through no task, so a busy runtime loses none of them. The ring buffer holds `capacity`
+    /// cycles, usually [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY).
+    /// [`CycleReader::lost`] counts the cycles that did not fit. The reader ends with the
+    /// connection. The call takes a few milliseconds to allocate the buffer.
     ///
     /// # Errors
-    /// [`AttachError`] for a capacity out of range, for too many readers, and without a connection.
+    /// Returns [`AttachError`] if `capacity` is out of range, if there are too many readers, or if
+    /// there is no connection.
     pub fn cycles(&self, capacity: usize) -> Result<CycleReader, AttachError> {
         let link = self.link();
         if link.has_ended() {
@@ -160,13 +163,14 @@ impl Robot {
     }
 
     /// Returns the pose of the end effector at the joint positions `q`, `[rad]`, with the end
-    /// effector of the newest state. An end effector that is not a rigid transformation counts as
-    /// the flange.
+    /// effector of the newest state. If that end effector is not a rigid transformation, the flange
+    /// is used instead.
     pub fn pose_at(&self, q: [f64; 7]) -> Pose {
         pose_at(self.model(), &self.state(), q)
     }
 
-    /// Returns the reference of target control; `None` while target control moves nothing.
+    /// Returns the reference of target control: the commanded motion of the newest cycle. Returns
+    /// `None` while target control moves nothing.
     pub fn reference(&self) -> Option<Reference> {
         let newest = self.link().course.reference()?;
         Some(Reference {
@@ -179,13 +183,13 @@ impl Robot {
         })
     }
 
-    /// Returns the model of the connected arm, which control computes with. A Franka Research 3
-    /// describes itself. Its masses and limits come from the description ([`Robot::urdf`]), unless
-    /// the feature `urdf` is off or
+    /// Returns the model of the connected arm, with which the driver computes. A Franka Research 3
+    /// sends a description of itself ([`Robot::urdf`]). The masses and limits come from this
+    /// description, unless the feature `urdf` is off or
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
-    /// Emika Robot has no description. Its model, [`Model::fer`], has the constants with which its
-    /// own library is known to compute. In both models, the lengths of upper arm and forearm are
-    /// the lengths with which the robot computes its poses: see [`Self::geometry_check`].
+    /// Emika Robot sends none. Its model, [`Model::fer`], contains the constants with which its own
+    /// library is known to compute. In both models, the lengths of the upper arm and the forearm
+    /// are the ones with which the robot computes its poses: see [`Self::geometry_check`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }
@@ -196,16 +200,16 @@ impl Robot {
         self.link().geometry
     }
 
-    /// Returns [`Self::model`] for control functions: it accepts states with their end effector and
-    /// load.
+    /// Returns [`Self::model`] in a form for control functions, which takes the end effector and
+    /// the load from a state.
     pub fn state_model(&self) -> StateModel {
         StateModel::new(self.shared.model.clone(), self.shared.version)
     }
 
-    /// Returns the stability margin of `gains`: the distance to the first oscillation of an arm
-    /// like this in its present state. A motion whose gains have less than [`Margin::WANTED`]
-    /// begins with a warning (`tracing`). `None` for gains that are out of their bounds, and if the
-    /// robot's tool is not a rigid body.
+    /// Returns the stability margin of `gains`: how far an arm of this model, in its present state,
+    /// is from oscillating. A motion whose gains have less than [`Margin::WANTED`] begins with a
+    /// warning (`tracing`). Returns `None` if the gains are out of bounds, or if the robot's tool
+    /// is not a rigid body.
     pub fn margin(&self, gains: &Gains) -> Option<Margin> {
         Margin::of(gains, self.model(), &self.state(), self.version())
     }
@@ -220,50 +224,52 @@ impl Robot {
         self.link().address
     }
 
-    /// Returns the lease of the arm, for services whose clients move it. The lease outlives
-    /// connections.
+    /// Returns the lease of the arm, with which a service lets one client at a time move the arm.
+    /// The lease outlives connections.
     pub fn lease(&self) -> &Lease {
         &self.shared.lease
     }
 
-    /// Returns the counters and histograms of the control thread, its worst cycle and the current
-    /// motion, live. The thread itself writes them, so they are up to date even if the runtime is
+    /// Returns live statistics of the control thread: counters, histograms, the worst cycle and the
+    /// current motion. The thread itself writes them, so they are up to date even if the runtime is
     /// busy. Each connection has its own thread and counters.
     pub fn stats(&self) -> Arc<Stats> {
         self.link().stats.clone()
     }
 
-    /// Returns the grants of the operating system to the control thread, and its refusals under
+    /// Returns what the operating system granted to the control thread, and what it refused under
     /// [`Realtime::Ignore`](crate::Realtime).
     pub fn granted(&self) -> Arc<Granted> {
         self.link().granted.clone()
     }
 
-    /// Brakes everything that moves. Resolves when the motion has ended and a state shows the arm
-    /// at rest and no motion of the robot; at once if nothing moves. The motion itself resolves as
-    /// [`MotionError::Stopped`] as soon as the stop is accepted, while the arm still brakes.
+    /// Brakes everything that moves. Resolves when the motion has ended and a state shows that the
+    /// arm rests and that the robot runs no motion. Resolves at once if nothing moves. The motion
+    /// itself resolves as [`MotionError::Stopped`] as soon as the stop is accepted, while the arm
+    /// still brakes.
     ///
-    /// Stops of several callers share one braking and its outcome. If a motion was given up and the
-    /// robot still shows it, each call sends the robot another stop request. A stop does not last:
-    /// a motion that another task begins later moves the arm again. The stop then resolves as
-    /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
-    /// lasts.
+    /// If several callers stop the arm, it brakes once, and all callers get the same outcome. If
+    /// the driver has given up a motion that the robot still shows, each call sends another stop
+    /// request. A stop does not last: a motion that another task begins later moves the arm again.
+    /// If this happens before the arm was seen to rest, the stop resolves as
+    /// [`MotionError::Superseded`]. For a stop that lasts, use [`Self::latch_stop`].
     ///
-    /// If hands keep the arm in motion, the robot stops it: the driver sends the stop request after
-    /// two seconds. The robot has four seconds to end the motion, and two more to show an arm at
-    /// rest. Therefore a stop resolves within eight seconds, mostly within half a second, while the
-    /// link stays up.
+    /// If a person keeps the arm moving by hand, the driver sends the robot a stop request after
+    /// two seconds. The robot then has four seconds to end the motion, and two more to show an arm
+    /// at rest. Therefore a stop resolves within eight seconds while the link stays up, and usually
+    /// within half a second.
     ///
     /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
-    /// meanwhile, the stop waits for the next connection, 10 s at most, and stops the robot there.
+    /// meanwhile, the stop waits up to 10 s for the next connection and then stops the robot.
     ///
     /// # Errors
-    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex.
-    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds.
-    /// [`MotionError::NotAtRest`] if the robot shows no motion and the arm moves, guided by a hand.
-    /// [`MotionError::Superseded`], see above. [`MotionError::LinkLost`] if the robot has been
-    /// silent for the link timeout, and [`MotionError::ConnectionClosed`] if there is no
-    /// connection: in both cases it is unknown whether the arm rests.
+    /// Returns [`MotionError`] if the motion ended in another way, for example by a reflex:
+    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds,
+    /// [`MotionError::NotAtRest`] if the robot shows no motion but the arm moves, guided by hand,
+    /// and [`MotionError::Superseded`] if another motion began (see above). Returns
+    /// [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
+    /// [`MotionError::ConnectionClosed`] if there is no connection. In both cases it is unknown
+    /// whether the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the stop still brakes the arm if the future is dropped, but does not wait for
@@ -283,7 +289,7 @@ impl Robot {
     /// ends.
     ///
     /// # Errors
-    /// As [`Self::stop`], except [`MotionError::Superseded`].
+    /// Returns the errors of [`Self::stop`], except [`MotionError::Superseded`].
     ///
     /// # Cancel safety
     /// Once polled, the stop is latched and the arm is braked even if the future is dropped.
@@ -291,8 +297,8 @@ impl Robot {
         self.brake(true).await
     }
 
-    /// Releases a [latched](Self::latch_stop) stop: motions are admitted again. Releasing moves
-    /// nothing. Returns true if a stop was latched.
+    /// Releases a [latched](Self::latch_stop) stop, so that motions are accepted again. The arm
+    /// does not move. Returns true if a stop was latched.
     pub fn release_stop(&self) -> bool {
         self.shared.supervisor.release_stop()
     }
@@ -315,7 +321,8 @@ impl Robot {
             if !connected.await.unwrap_or(false) {
                 break;
             }
-            // Does not latch, and never releases what another call has latched.
+            // This call does not latch the stop, and never releases a stop that another call has
+            // latched.
             outcome = self.brake_once(false).await;
         }
         outcome
@@ -341,8 +348,8 @@ impl Robot {
         }
     }
 
-    /// Brakes, ends the motion, ends the control thread and closes the connection. Every other
-    /// handle is then closed. Call [`Self::stop`] before, if you need to know whether the arm
+    /// Brakes the arm, ends the motion and the control thread, and closes the connection. Every
+    /// other handle is then closed. Call [`Self::stop`] first if you need to know whether the arm
     /// rests.
     ///
     /// # Cancel safety
@@ -374,27 +381,27 @@ impl Robot {
         }
     }
 
-    /// Returns the events of the robot from now on: connections lost and made, reflexes with their
-    /// diagnosis, recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no
-    /// connection and no further one will come. A robot that is not supervised has events, too.
-    /// Changes that only a state shows are noticed within 50 ms.
+    /// Returns the events of the robot from now on. They report connections lost and made, reflexes
+    /// with their diagnosis, recoveries, the user stop, guiding, brakes, motions and loads. The
+    /// stream ends when there is no connection and will be no other one. A robot that is not
+    /// supervised reports events, too. Changes that only a state shows are noticed within 50 ms.
     pub fn events(&self) -> Events {
         self.shared.supervisor.events()
     }
 
-    /// Returns the health of the robot, as it changes: whether it accepts motions, why not, and how
-    /// long reconnecting and recovering took. Ends as [`Self::events`] does.
+    /// Returns a receiver of the robot's health: whether it accepts motions, why not, and how long
+    /// reconnecting and recovering took. It ends as [`Self::events`] does.
     pub fn health(&self) -> States<Health> {
         let supervisor = &self.shared.supervisor;
         States::new(supervisor.health(), supervisor.closing().clone())
     }
 
-    /// Approves or rejects the recovery from the reflex of this number, for a
-    /// [`Policy`](crate::supervision::Policy) that asks first. Returns true if the answer was
-    /// awaited. Otherwise nothing happens: the robot has left the reflex, or another error has
-    /// come. The number is in the event, and in [`Health::reflex`].
+    /// Approves or rejects the recovery from the reflex with this number, if the
+    /// [`Policy`](crate::supervision::Policy) asks before a recovery. Returns true if the
+    /// supervisor was waiting for the answer. Otherwise nothing happens, because the robot has left
+    /// the reflex or has another error. The number is in the event, and in [`Health::reflex`].
     ///
-    /// Nothing moves. [`Self::recover`] also recovers a robot, under any policy.
+    /// The answer moves nothing. [`Self::recover`] also recovers a robot, under any policy.
     pub fn agree(&self, reflex: u64, agreed: bool) -> bool {
         self.shared.supervisor.agree(reflex, agreed)
     }
@@ -438,7 +445,7 @@ impl Robot {
         self.link().channel.clone()
     }
 
-    /// Returns a name for a goal that was never used before.
+    /// Returns an identifier that no earlier goal of this robot has.
     pub(crate) fn next_goal(&self) -> GoalId {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
@@ -455,7 +462,7 @@ impl Robot {
         outcome
     }
 
-    /// Cancels the motion of this name.
+    /// Cancels the motion with this identifier.
     pub(crate) fn cancel(&self, goal: GoalId) {
         self.send(Input::Cancel {
             goal,
@@ -463,15 +470,15 @@ impl Robot {
         });
     }
 
-    /// Sends to the bridge of the newest connection, or to the motion that waits for a connection.
-    /// Returns the newest connection.
+    /// Sends `input` to the bridge of the newest connection, or to the motion that waits for a
+    /// connection. Returns the newest connection.
     pub(crate) fn send(&self, input: Input) -> Arc<Link> {
         self.shared.supervisor.pass(input, || self.link())
     }
 }
 
-/// Waits until there is a connection to the robot with states. First pauses, so that a connection
-/// that was just lost is shown as lost. Returns false if there is no connection before `end`.
+/// Waits until the robot is connected and sends states. First pauses, so that a connection that was
+/// just lost is shown as lost. Returns false if this is not so before `end`.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
     world::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);
@@ -488,7 +495,7 @@ const RECONNECTED_WITHIN: Duration = Duration::from_secs(10);
 /// Time in which the bridge reports a silent robot: it checks every 50 ms.
 const SHOWN_WITHIN: Duration = Duration::from_millis(100);
 
-/// A reference to a robot that is not a handle of it.
+/// A weak reference to a robot, which does not keep the connection open.
 #[derive(Clone)]
 pub(crate) struct WeakRobot(Weak<Shared>);
 

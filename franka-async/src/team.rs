@@ -1,5 +1,5 @@
-//! Several arms that move together: motions with a common start, one stop, one outcome for each
-//! arm.
+//! Several arms that move together: motions with a common start, one stop for all, and one outcome
+//! for each arm.
 //!
 //! ```text
 //!             +-- Arm 0 --> session, real-time thread 0 <--+
@@ -8,10 +8,10 @@
 //! ```
 //!
 //! The real-time threads of the arms share one atomic word, which each thread reads once in each
-//! cycle. Therefore the arms begin within a millisecond of each other. A fault of one arm brakes
-//! the others within two of their cycles after its thread has seen the fault, even while the
-//! runtime is busy. [`MemberFault`] lists the faults. An arm that arrives, or whose
-//! [condition](crate::condition) became true, has no fault.
+//! cycle. Therefore the arms begin within a millisecond of each other. If one arm has a fault, the
+//! others brake within two of their cycles after the thread of that arm has seen the fault, even
+//! while the runtime is busy. [`MemberFault`] lists the faults. It is no fault if an arm arrives,
+//! or if its [condition](crate::condition) becomes true.
 //!
 //! ```no_run
 //! use franka_async::team::Team;
@@ -53,31 +53,31 @@ use crate::robot::Robot;
 /// Outcome of the motion of one member.
 type Outcome = Result<MotionReport, MotionError>;
 
-/// `N` arms with a session each and one stop for all. Members count from 0, in the order in which
-/// they were given.
+/// `N` arms with one session each, and one stop for all. Members are numbered from 0, in the order
+/// in which they were given.
 ///
-/// The [`arms`](Self::arms) can also be moved alone. Such a motion does not wait for other arms,
-/// and its end does not affect them. But every motion of a member, joint or not, brakes when the
-/// session of another member ends otherwise than by [`Arm::disengage`], or when the team is
-/// stopped. A motion that comes after that begins as usual.
+/// The [`arms`](Self::arms) can also be moved alone. Such a motion does not wait for the other
+/// arms, and its end does not affect them. But every motion of a member, joint or not, brakes when
+/// the team is stopped. It also brakes when the session of another member ends in any way other
+/// than [`Arm::disengage`]. A motion that begins later is not affected.
 ///
-/// Dropping the team brakes all arms and ends their sessions, in the background, unless other
-/// handles of the arms are left.
+/// Dropping the team brakes all arms and ends their sessions in the background, unless other
+/// handles of the arms exist.
 #[derive(Debug)]
 #[must_use = "dropping the team brakes its arms"]
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,
-    /// Lock that is held while the goals of a joint motion are sent, so that all arms get the goals
+    /// This lock is held while the goals of a joint motion are sent, so that all arms get the goals
     /// of two motions in the same order.
     submission: Arc<Mutex<()>>,
 }
 
-/// Caller, robot or link: an arm did not join its team.
+/// Error of the caller, the robot or the link: an arm did not join its team.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("member {member} of the team: {error}")]
 pub struct NotEngaged {
-    /// Member whose arm could not be engaged.
+    /// Number of the member whose arm could not be engaged.
     pub member: usize,
     /// Reason why the arm could not be engaged.
     #[source]
@@ -91,11 +91,11 @@ impl From<NotEngaged> for Error {
 }
 
 impl<const N: usize> Team<N> {
-    /// Begins a session for each robot, as [`Robot::engage`] does; resolves when all sessions have
-    /// begun. If one session does not begin, the others end.
+    /// Begins a session for each robot, as [`Robot::engage`] does, and resolves when all sessions
+    /// have begun. If one session does not begin, the others end.
     ///
     /// # Errors
-    /// [`NotEngaged`] with the first member that did not begin, and the reason.
+    /// Returns [`NotEngaged`] with the first member whose session did not begin, and the reason.
     ///
     /// # Cancel safety
     /// Dropping the future ends all sessions, in the background.
@@ -103,15 +103,15 @@ impl<const N: usize> Team<N> {
         Self::engage_tolerating(SILENCE, robots).await
     }
 
-    /// As [`Self::engage`], with this silence of a robot, instead of [`SILENCE`], after which the
-    /// other robots brake. For simulators on a machine that is busy with other things. A robot
-    /// stops on its own after 20 ms without commands.
+    /// Engages the arms as [`Self::engage`] does, but sets the silence of a robot after which the
+    /// other robots brake; the default is [`SILENCE`]. Use this for simulators on a busy machine. A
+    /// real robot stops by itself after 20 ms without commands.
     ///
     /// # Errors
-    /// As [`Self::engage`].
+    /// Returns the errors of [`Self::engage`].
     ///
     /// # Cancel safety
-    /// As [`Self::engage`].
+    /// See [`Self::engage`].
     pub async fn engage_tolerating(
         silence: Duration,
         robots: [(&Robot, Engage); N],
@@ -138,8 +138,8 @@ impl<const N: usize> Team<N> {
         &self.arms
     }
 
-    /// Returns a motion of all arms, each to its destination; see [`Arm::move_to`]. For other
-    /// options see [`Self::run`].
+    /// Returns a motion of all arms, each to its own destination; see [`Arm::move_to`]. For other
+    /// options, use [`Self::run`].
     pub fn move_to<D: Into<Destination>>(&self, destinations: [D; N]) -> TeamMotion<N> {
         let mut destinations = destinations.into_iter();
         self.run(|_, arm| {
@@ -148,17 +148,18 @@ impl<const N: usize> Team<N> {
         })
     }
 
-    /// Returns a motion of all arms; `motion` returns the motion of each member, made by its arm.
-    /// All begin together, when the goals of all are there; until then, an arm that moves
-    /// continues. If some members follow targets and others do not, convert each motion `into` a
-    /// [`MemberMotion`].
+    /// Returns a motion of all arms. `motion` is called for each member with its arm, and returns
+    /// the motion of that member. All motions begin together, once the goals of all have arrived;
+    /// until then, an arm that moves continues. If some members follow targets and others do not,
+    /// convert each motion `into` a [`MemberMotion`].
     ///
     /// If one member has a fault, the others brake and resolve as [`MotionError::Braked`] with
-    /// [`Lapse::Team`](crate::error::Lapse::Team), which names the member with the fault. All arms
-    /// hold where they stop. If one motion is refused or cancelled before the start, no arm begins.
+    /// [`Lapse::Team`](crate::error::Lapse::Team), which names the faulty member. All arms are held
+    /// where they stop. If one motion is refused or cancelled before the start, no arm begins its
+    /// motion.
     ///
     /// # Panics
-    /// If a motion was not made by the arm that was given for it.
+    /// Panics if a motion was made by another arm than the one given for it.
     pub fn run<M: Into<MemberMotion>>(
         &self,
         mut motion: impl FnMut(usize, &Arm) -> M,
@@ -179,17 +180,17 @@ impl<const N: usize> Team<N> {
         }
     }
 
-    /// Brakes all arms, each within two of its cycles, also while the runtime is busy: the
+    /// Brakes all arms, each within two of its cycles, even while the runtime is busy, because the
     /// real-time threads see the stop directly. Motions resolve as [`MotionError::Braked`] with
     /// [`TeamStop::Requested`]. The sessions continue and hold the arms.
     ///
-    /// No newer motion hides the stop. A joint motion that begins before every arm has seen the
-    /// stop does not start, and resolves in the same way.
+    /// A newer motion does not cancel the stop. A joint motion that begins before every arm has
+    /// seen the stop does not start, and resolves in the same way.
     pub fn stop(&self) {
         self.coordinator.stop();
     }
 
-    /// Brakes all arms as [`Self::stop`] does, ends their sessions and latches the stop of each
+    /// Brakes all arms as [`Self::stop`] does, ends their sessions, and latches the stop of each
     /// robot: see [`Robot::latch_stop`]. Until the stop is released, joint motions and motions of
     /// single arms are refused. Returns the outcome of the stop of each arm.
     ///
@@ -214,8 +215,8 @@ impl<const N: usize> Team<N> {
         Stopper(self.coordinator.clone())
     }
 
-    /// Returns the reason why the newest joint motion, or a later motion, has stopped; `None`
-    /// without a stop.
+    /// Returns the reason why the newest joint motion, or a motion after it, was stopped; `None` if
+    /// none was stopped.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
     }
@@ -224,19 +225,19 @@ impl<const N: usize> Team<N> {
     /// with the outcome of each: see [`Arm::disengage`].
     ///
     /// # Cancel safety
-    /// Once the future is polled, the sessions still end.
+    /// Once the future has been polled, the sessions end even if the future is dropped.
     pub async fn disengage(self) -> [Outcome; N] {
         let ended = join_all(self.arms.map(Arm::disengage)).await;
         ended.try_into().expect("one for each arm")
     }
 }
 
-/// Stops a team. A stopper is no handle of the sessions.
+/// A handle that stops a team. It does not keep the sessions open.
 #[derive(Clone, Debug)]
 pub struct Stopper(Coordinator);
 
 impl Stopper {
-    /// See [`Team::stop`]. Never waits, and may be called on any thread.
+    /// Stops the team: see [`Team::stop`]. This never waits, and may be called on any thread.
     pub fn stop(&self) {
         self.0.stop();
     }
@@ -249,8 +250,8 @@ impl Stopper {
 pub enum MemberMotion {
     /// The member moves to one target.
     Motion(Motion),
-    /// The member follows a stream of targets. It is ready for the start when the first target is
-    /// there.
+    /// The member follows a stream of targets. It is ready for the start when the first target has
+    /// come.
     Follow(Follow),
 }
 
@@ -286,7 +287,8 @@ impl MemberMotion {
 }
 
 /// A motion of all arms of a team as a future. The motion begins with the first poll. The future
-/// resolves when the motions of all members have ended, with one outcome for each, in their order.
+/// resolves when the motions of all members have ended, with the outcomes in the order of the
+/// members.
 ///
 /// A newer joint motion supersedes this one. Motions of members that are under way continue until
 /// the newer joint motion begins.
@@ -296,7 +298,7 @@ impl MemberMotion {
 /// where they stop. Dropping it before the first poll has no effect.
 ///
 /// # Panics
-/// When polled after it has resolved, as futures may.
+/// Panics if polled after it has resolved, as futures may.
 #[must_use = "futures do nothing unless polled"]
 pub struct TeamMotion<const N: usize> {
     coordinator: Coordinator,
@@ -324,7 +326,7 @@ impl<const N: usize> Future for TeamMotion<N> {
         } = &mut *self;
         let (round, mut members, _first) = match std::mem::replace(stage, Stage::Over) {
             Stage::Ready(motions) => {
-                // No panic can leave the submission half done.
+                // A panic cannot leave the submission half done.
                 let first = submission.lock().unwrap_or_else(PoisonError::into_inner);
                 let round = coordinator.begin();
                 let members = motions.map(|motion| Err(motion.begin(round)));

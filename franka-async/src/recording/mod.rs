@@ -1,4 +1,5 @@
-//! Recordings of robots: every cycle, the requests and their results, in files that viewers open.
+//! Recordings of robots: every cycle, and the requests with their results, in files that viewers
+//! can open.
 //!
 //! ```text
 //! control thread --ring--------------+
@@ -20,8 +21,8 @@
 //! # }
 //! ```
 //!
-//! No task of a runtime handles a cycle on its way into the file, and the recorder cannot delay a
-//! cycle. Cycles without room are dropped and counted, and the count is recorded.
+//! The cycles pass through no task on their way into the file, and the recorder cannot delay a
+//! cycle. Cycles that find no room are dropped and counted, and the count is recorded.
 
 mod entries;
 mod words;
@@ -55,12 +56,12 @@ use crate::team::Team;
 use crate::vacuum::VacuumGripper;
 use entries::{EntryQueue, Recorded};
 
-/// Records robots to files, or the last seconds before an incident, or both.
+/// Records robots to files, or keeps only the last seconds before an incident, or both.
 ///
-/// A recorder records the robots that are [attached](Self::attach), until it is finished or dropped
-/// or the robots are gone. It records a supervised robot after a reconnect, too. Dropping the
-/// recorder ends the recording in the background, perhaps without the newest events. A motion under
-/// way continues.
+/// A recorder records the [attached](Self::attach) robots until it is finished or dropped, or the
+/// robots are gone. It continues with a supervised robot after a reconnect. Dropping the recorder
+/// ends the recording in the background, and the newest events may be lost. Motions under way
+/// continue.
 #[derive(Debug)]
 pub struct Recorder {
     entries: EntryQueue,
@@ -71,13 +72,13 @@ pub struct Recorder {
 /// Options for the recording of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
-    /// Name of the robot in the recording: letters, digits, `-` and `_`. Empty by default, which is
-    /// enough for the only robot of a recording.
+    /// Name of the robot in the recording: letters, digits, `-` and `_`. It is empty by default,
+    /// which is enough if the recording has only one robot.
     pub name: String,
-    /// True if the metadata has the robot's network address; off by default, because recordings are
-    /// often passed on.
+    /// True if the metadata contains the robot's network address. It is false by default, because
+    /// recordings are often passed on.
     pub with_address: bool,
-    /// Number of cycles that may wait for the recorder; 4 s of cycles by default.
+    /// Number of cycles that may wait for the recorder; by default, the cycles of 4 s.
     pub capacity: usize,
 }
 
@@ -101,7 +102,7 @@ impl Track {
     }
 }
 
-/// Caller or host: a robot or an end effector is not recorded.
+/// Error of the caller or the host: a robot or an end effector is not recorded.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
@@ -111,13 +112,13 @@ pub enum TrackError {
     /// The recorder does not accept the robot or the end effector.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// An end effector belongs to a robot that is not attached.
+    /// The robot of an end effector is not attached.
     #[error("no robot named {name:?} is attached to the recorder: attach the robot first")]
     Unknown {
         /// The name that was given.
         name: String,
     },
-    /// The robot has a recorded end effector of this kind already.
+    /// The recording already has an end effector of this kind for the robot.
     #[error("this end effector is already recorded with the robot {name:?}")]
     Attached {
         /// The robot's name.
@@ -129,40 +130,40 @@ impl Recorder {
     /// Begins a recording in a new file at `path`.
     ///
     /// # Errors
-    /// [`RecordError`]: the file exists already, its folder is missing or read-only, an option is
-    /// out of range, or no thread can be started.
+    /// Returns [`RecordError`] if the file already exists, if its folder is missing or read-only,
+    /// if an option is out of range, or if no thread can be started.
     pub fn to_file(path: impl AsRef<Path>, options: RecordOptions) -> Result<Self, RecordError> {
         Self::around(recorder::Recorder::to_file(path, options)?)
     }
 
-    /// Keeps the last seconds in memory only, and writes them to a file when a motion ends by a
-    /// reflex, by a lost link or by a guard.
+    /// Keeps only the last seconds, in memory, and writes them to a file when a reflex, a lost link
+    /// or a guard ends a motion.
     ///
     /// # Errors
-    /// As [`Self::to_file`].
+    /// Returns the errors of [`Self::to_file`].
     pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
         Self::around(recorder::Recorder::black_box(black_box)?)
     }
 
-    /// Returns a recorder that writes no file and serves the content of a recording to Foxglove:
-    /// see [`Self::serve`]. Also returns the address of the server.
+    /// Returns a recorder that writes no file, and instead serves the recording to Foxglove: see
+    /// [`Self::serve`]. Also returns the address of the server.
     ///
     /// # Errors
-    /// As [`Self::serve`].
+    /// Returns the errors of [`Self::serve`].
     #[cfg(feature = "foxglove")]
     pub fn live(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
         let (inner, address) = recorder::Recorder::live(live)?;
         Ok((Self::around(inner)?, address))
     }
 
-    /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
-    /// connection", "Foxglove WebSocket"). Returns the address of the server. A viewer that is too
-    /// slow loses messages; the recording loses none because of it. Blocks until the server
-    /// listens.
+    /// Serves the channels of the recording to Foxglove ("Open connection", "Foxglove WebSocket"),
+    /// from now until the recording ends. Returns the address of the server. A viewer that is too
+    /// slow loses messages, but the recording loses none because of it. This call blocks until the
+    /// server listens.
     ///
     /// # Errors
-    /// [`RecordError::Live`] if the server cannot listen there, [`RecordError::Option`] for an
-    /// option out of range, [`RecordError::Ended`].
+    /// Returns [`RecordError::Live`] if the server cannot listen there, [`RecordError::Option`] if
+    /// an option is out of range, and [`RecordError::Ended`] if the recording has ended.
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
         self.inner.serve(live)
@@ -176,18 +177,19 @@ impl Recorder {
         })
     }
 
-    /// Records this robot from now on. The recording has every cycle, goals and their ends, with
-    /// the diagnosis of a reflex, events of the supervision, and requests from all of the robot's
-    /// handles. The description of a Franka Research 3 is requested and attached to the file.
+    /// Records this robot from now on. The recording contains every cycle, the goals and their
+    /// ends, the diagnosis of a reflex, the events of the supervision, and the requests from all
+    /// handles of the robot. A Franka Research 3 is asked for its description, which is attached to
+    /// the file.
     ///
     /// # Errors
-    /// [`TrackError`]: the recording has a robot of that name, the recording has ended, or the
-    /// robot has no connection or its full number of readers.
+    /// Returns [`TrackError`] if the recording already has a robot of that name, if it has ended,
+    /// or if the robot has no connection or no free place for a reader.
     ///
     /// # Cancel safety
     /// Nothing is recorded if the future is dropped.
     pub async fn attach(&self, robot: &Robot, track: Track) -> Result<(), TrackError> {
-        // Without a description the recording lacks only the arm in viewers.
+        // Without a description, only the arm in viewers is missing.
         let urdf = match robot.model().kind() {
             RobotKind::Fer => Ok(String::new()),
             _ => robot.urdf().await,
@@ -204,8 +206,8 @@ impl Recorder {
         };
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         self.entries.with(|tracks| {
-            // Entries of this id wait until the lock is free. An entry announces each connection
-            // that is made after this line.
+            // Entries with this identifier wait until the lock is free. Each connection that is
+            // made after this line is announced by an entry.
             let capacity = Some(track.capacity);
             self.entries
                 .read(&robot.supervisor().journal(), id, capacity);
@@ -220,13 +222,13 @@ impl Recorder {
         })
     }
 
-    /// Records the arms of a team, each as [`Self::attach`] does, and the member number of each.
+    /// Records the arms of a team, each as [`Self::attach`] does, with the member number of each.
     ///
     /// # Errors
-    /// As [`Self::attach`]. Members before the failed one are attached.
+    /// Returns the errors of [`Self::attach`]. Members before the one that failed stay attached.
     ///
     /// # Cancel safety
-    /// Dropping the future leaves members attached.
+    /// If the future is dropped, some members may be attached.
     pub async fn attach_team<const N: usize>(
         &self,
         team: &Team<N>,
@@ -243,17 +245,19 @@ impl Recorder {
         Ok(())
     }
 
-    /// Records a Franka Hand with the robot of this name: its states, the newest one at once, and
-    /// actions when they have ended.
+    /// Records a Franka Hand as part of the robot with this name. The recording contains the newest
+    /// state, all later states, and each action when it has ended.
     ///
     /// # Errors
-    /// [`TrackError::Unknown`], [`TrackError::Attached`].
+    /// Returns [`TrackError::Unknown`] if no such robot is attached, and [`TrackError::Attached`]
+    /// if the robot already has a recorded Hand.
     pub fn attach_gripper(&self, gripper: &Gripper, robot: &str) -> Result<(), TrackError> {
         let state = What::HandState(gripper.state());
         self.attach_device(gripper.journal(), state, robot)
     }
 
-    /// Records a vacuum gripper with the robot of this name, as [`Self::attach_gripper`] does.
+    /// Records a vacuum gripper as part of the robot with this name, as [`Self::attach_gripper`]
+    /// does.
     ///
     /// # Errors
     /// [`TrackError::Unknown`], [`TrackError::Attached`].
@@ -279,16 +283,16 @@ impl Recorder {
             .ok_or_else(|| TrackError::Attached { name: robot.into() })
     }
 
-    /// Records a remark, for all robots.
+    /// Records a remark that applies to all robots.
     pub fn note(&self, text: impl Into<String>) {
         let note = words::note(Level::Info, "program", text.into());
         self.entries.tell(None, &note);
     }
 
-    /// Records that an episode begins: its name, and its task.
+    /// Records that an episode begins, with its name and its task.
     ///
     /// # Errors
-    /// [`EpisodeError`], by [`Episode::check`]: nothing is recorded then.
+    /// Returns [`EpisodeError`] if [`Episode::check`] fails; nothing is recorded then.
     pub fn begin_episode(
         &self,
         name: impl Into<String>,
@@ -301,25 +305,25 @@ impl Recorder {
         Ok(())
     }
 
-    /// Records that the episode ends, and whether the task was done, if known.
+    /// Records that the episode ends, and whether the task was done, if that is known.
     pub fn end_episode(&self, success: Option<bool>) {
         self.entries.tell(None, &EventKind::EpisodeEnd { success });
     }
 
-    /// Returns the amount recorded so far, and failures.
+    /// Returns how much was recorded so far, and the failures.
     pub fn status(&self) -> RecordStatus {
         let mut status = self.inner.status();
         status.events_dropped += self.entries.lost();
         status
     }
 
-    /// Ends the recording and waits, 10 s at most, until everything that happened before the call
-    /// is on the disk. Blocks: in async code, call it by [`tokio::task::spawn_blocking`] where
-    /// other tasks must not wait.
+    /// Ends the recording and waits until everything that happened before the call is on the disk,
+    /// at most 10 s. This call blocks: in async code, use [`tokio::task::spawn_blocking`] if other
+    /// tasks must not wait.
     ///
     /// # Errors
-    /// [`RecordError`] if the files could not be written to their end. The written part is
-    /// readable.
+    /// Returns [`RecordError`] if the files could not be written completely. The part that was
+    /// written is readable.
     pub fn finish(self) -> Result<RecordStatus, RecordError> {
         let Self { entries, inner, .. } = self;
         let lost = entries.finish();

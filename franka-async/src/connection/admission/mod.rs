@@ -1,9 +1,11 @@
-//! Checks of requests, for services over HTTP, WebSockets and gRPC that can move or recover an arm.
+//! Checks of requests, for services over HTTP, WebSockets and gRPC through which clients can move
+//! or recover an arm.
 //!
 //! A listener on a loopback address does not keep web pages out. A page of any site, open in a
 //! browser on this computer, can send requests there, and can open WebSockets. The site can also
 //! rebind its own name to `127.0.0.1`; its page then has the same origin as the service. A proxy on
-//! this computer makes the requests of other computers look local. [`Admission`] refuses them all:
+//! this computer makes requests of other computers look local. [`Admission`] refuses all such
+//! requests:
 //!
 //! | request | without a token set | with a token set |
 //! |---|---|---|
@@ -13,12 +15,12 @@
 //! | any other name in `Host` or `:authority` | refused | refused |
 //! | a page of another origin, by `Origin` or `Sec-Fetch-Site` | refused | refused |
 //!
-//! Programs send the token as `Authorization: Bearer TOKEN`. Pages in a browser cannot set headers
-//! of a WebSocket: they send it as the subprotocol `token.TOKEN`.
+//! Programs send the token as `Authorization: Bearer TOKEN`. A page in a browser cannot set headers
+//! of a WebSocket, so it sends the token as the subprotocol `token.TOKEN`.
 //!
 //! # Example
 //!
-//! The layer goes around all routes of an axum service, and sees each request first:
+//! The layer encloses all routes of an axum service, and sees each request first:
 //!
 //! ```text
 //! let admission = Admission::default(); // this computer only
@@ -31,9 +33,9 @@
 //!
 //! # Limits
 //!
-//! Nothing is encrypted: on a network that is not trusted a token can be read. Use a proxy with TLS
-//! there. A proxy that adds no header and replaces `Host` cannot be recognised, so a service behind
-//! a proxy needs a token.
+//! Nothing is encrypted, so a token can be read on a network that is not trusted. Use a proxy with
+//! TLS there. A proxy that adds no header and replaces `Host` cannot be recognised. Therefore a
+//! service behind a proxy needs a token.
 
 mod layer;
 mod token;
@@ -46,7 +48,8 @@ use http::{HeaderMap, Request, StatusCode, header};
 pub use layer::{AdmissionLayer, Admitted};
 pub use token::{TOKEN_VARIABLE, Token, TokenError};
 
-/// Rules for the requests that a service answers. By default only this computer is served.
+/// Rules for the requests that a service answers. By default, only requests from this computer are
+/// answered.
 #[derive(Clone, Debug, Default)]
 #[must_use = "rules do nothing until requests are checked by them"]
 pub struct Admission {
@@ -58,11 +61,11 @@ pub struct Admission {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Refused {
-    /// The request names no host, several hosts, or something that is no host.
+    /// The request names no host or several hosts, or its host name is invalid.
     #[error("the Host header is missing, repeated or invalid, expected exactly one")]
     NoHost,
-    /// The host name is not a name of the service. A page of another site may have rebound the
-    /// name.
+    /// The host name is not a name of the service. A page of another site may have rebound its name
+    /// to this address.
     #[error(
         "the Host header is {got:?}, expected localhost, an IP address or a name of the service"
     )]
@@ -73,7 +76,7 @@ pub enum Refused {
     /// The request comes from a page of another origin.
     #[error("the request comes from a web page of another origin, expected a page of this service")]
     Origin,
-    /// Only requests from this computer are answered without a token.
+    /// Without a token, only requests from this computer are answered.
     #[error(
         "got a request from another computer ({why}), expected one from this computer: start the \
          service with a token to admit others"
@@ -108,7 +111,7 @@ pub enum Elsewhere {
     Forwarded,
 }
 
-/// Listener that other computers can reach, without a token.
+/// Error: other computers can reach a listener that requires no token.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{address} can be reached from other computers: set a token, or use a loopback address")]
 pub struct NoToken {
@@ -128,14 +131,14 @@ impl Refused {
 }
 
 impl Admission {
-    /// Requires this token in every request. Other computers are then answered, too.
+    /// Requires this token in every request. Requests from other computers are then answered, too.
     pub fn token(mut self, token: Token) -> Self {
         self.token = Some(token);
         self
     }
 
-    /// Allows this name as a `Host`, besides `localhost` and IP addresses. Requests with it need
-    /// the token.
+    /// Allows this name as a `Host`, in addition to `localhost` and IP addresses. Requests with
+    /// this name need the token.
     pub fn host(mut self, name: impl Into<String>) -> Self {
         self.hosts.push(name.into());
         self
@@ -149,7 +152,7 @@ impl Admission {
     /// Checks the address on which a service is about to listen.
     ///
     /// # Errors
-    /// [`NoToken`] if the address is not a loopback address, and no token is set.
+    /// Returns [`NoToken`] if the address is not a loopback address and no token is set.
     pub fn check_listener(&self, address: SocketAddr) -> Result<(), NoToken> {
         match is_loopback(address.ip()) || self.token.is_some() {
             true => Ok(()),
@@ -157,12 +160,12 @@ impl Admission {
         }
     }
 
-    /// Checks a request for a resource that is not secret, and that changes nothing, such as the
-    /// files of a page. `Origin` and token are not checked: links of other sites may lead there,
-    /// and a page without a token can then ask for it.
+    /// Checks a request for a resource that is not secret, such as a file of a page, and that
+    /// changes nothing. `Origin` and the token are not checked, because other sites may link to the
+    /// page, and the page may then ask for the token.
     ///
     /// # Errors
-    /// [`Refused`], except [`Refused::Origin`] and [`Refused::Token`].
+    /// Returns [`Refused`], but never [`Refused::Origin`] or [`Refused::Token`].
     pub fn check_file<B>(
         &self,
         request: &Request<B>,
@@ -179,10 +182,11 @@ impl Admission {
         }
     }
 
-    /// Checks any other request. `peer` is the address of the connection, `None` if it is unknown.
+    /// Checks a request of any other kind. `peer` is the address of the client; `None` if it is
+    /// unknown.
     ///
     /// # Errors
-    /// [`Refused`].
+    /// Returns [`Refused`] with the reason.
     pub fn check<B>(&self, request: &Request<B>, peer: Option<SocketAddr>) -> Result<(), Refused> {
         let (headers, hosts) = (request.headers(), hosts(request).ok_or(Refused::NoHost)?);
         check_origin(headers, &hosts)?;
@@ -193,9 +197,9 @@ impl Admission {
         }
     }
 
-    /// Returns a layer of tower, for axum, tonic and others, that checks every request. `peer`
-    /// reads the address of the peer from the extensions of a request; if it returns `None`, the
-    /// token is needed. `refuse` makes the answer to a refused request.
+    /// Returns a tower layer that checks every request, for example for axum and tonic. `peer`
+    /// reads the client's address from the extensions of a request; if it returns `None`, the token
+    /// is needed. `refuse` makes the answer to a refused request.
     pub fn layer<P, A>(&self, peer: P, refuse: A) -> AdmissionLayer<P, A> {
         AdmissionLayer::new(self.clone(), peer, refuse)
     }
@@ -211,7 +215,7 @@ impl Admission {
     }
 }
 
-/// Returns the host of `:authority` and of `Host`; `None` if both are missing, or if they differ.
+/// Returns the hosts in `:authority` and `Host`; `None` if both are missing, or if they differ.
 fn hosts<B>(request: &Request<B>) -> Option<Vec<Authority>> {
     let headers = request.headers().get_all(header::HOST).iter();
     let said = headers.map(|host| Authority::try_from(host.as_bytes()).ok());
@@ -222,8 +226,8 @@ fn hosts<B>(request: &Request<B>) -> Option<Vec<Authority>> {
     (hosts.len() <= 2 && hosts.iter().all(|host| host == first && is_plain(host))).then_some(hosts)
 }
 
-/// Checks the origin. Browsers send it with every request that changes something, and with every
-/// WebSocket. Other programs send none.
+/// Checks the origin of a request. Browsers send it with every request that changes something, and
+/// with every WebSocket. Other programs send no origin.
 fn check_origin(headers: &HeaderMap, hosts: &[Authority]) -> Result<(), Refused> {
     let is_own = |origin: &[u8]| {
         let origin = std::str::from_utf8(origin).unwrap_or_default();
@@ -235,13 +239,13 @@ fn check_origin(headers: &HeaderMap, hosts: &[Authority]) -> Result<(), Refused>
     let sites = headers.get_all("sec-fetch-site").iter();
     let is_fine = origins.map(|it| it.as_bytes()).all(is_own)
         && sites.map(|it| it.as_bytes()).all(|site| {
-            // `none`: a person has typed the address.
+            // The value is `none` if a person has typed the address.
             [&b"same-origin"[..], b"none"].contains(&site)
         });
     is_fine.then_some(()).ok_or(Refused::Origin)
 }
 
-/// Returns the first sign that a request is from another computer. Ignores the origin, which
+/// Returns the first sign that a request comes from another computer. Ignores the origin, which
 /// [`check_origin`] has found to equal the host.
 fn elsewhere(
     headers: &HeaderMap,
@@ -261,7 +265,7 @@ fn elsewhere(
     }
 }
 
-/// Returns the tokens that a request offers.
+/// Returns the tokens in a request.
 fn offered(headers: &HeaderMap) -> impl Iterator<Item = &str> {
     let texts = |name| {
         let values = headers.get_all(name).iter();
@@ -290,7 +294,7 @@ fn is_loopback(address: IpAddr) -> bool {
 /// Prefix of the token among the subprotocols of a WebSocket.
 const TOKEN_PREFIX: &str = "token.";
 
-/// Headers that proxies add, besides those that begin with `x-forwarded`.
+/// Headers that proxies add, in addition to those that begin with `x-forwarded`.
 const FORWARDED: [&str; 6] = [
     "forwarded",
     "via",
