@@ -1,4 +1,4 @@
-//! Asynchronous joint positions: the robot itself moves from target to target.
+//! Asynchronous joint positions: the robot itself plans the motion from target to target.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -19,10 +19,11 @@ use crate::robot::Robot;
 /// Options of [`Robot::asynchronous_joint_positions`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousOptions {
-    /// Bounds of the joint velocities, `[rad/s]`.
+    /// Limits of the joint velocities, `[rad/s]`.
     pub maximum_joint_velocities: [f64; 7],
-    /// Distance of the desired joint positions from the target that counts as reached, as Euclidean
-    /// norm, `[rad]`. 20 at most, which is more than the distance of any two postures.
+    /// Largest distance of the desired joint positions from the target at which the target counts
+    /// as reached, as a Euclidean norm, `[rad]`. The maximum is 20, which is more than the distance
+    /// between any two postures.
     pub goal_tolerance: f64,
 }
 
@@ -74,22 +75,23 @@ impl AsynchronousOptions {
     }
 }
 
-/// The least velocity, `[rad/s]`, and the least tolerance, `[rad]`.
+/// Smallest velocity, `[rad/s]`, and smallest tolerance, `[rad]`.
 const LEAST: f64 = 1e-6;
 
-/// Farther than the distance of any two postures of an arm, `[rad]`. The vendor's examples have a
+/// More than the distance between any two postures of an arm, `[rad]`. The vendor's examples have a
 /// tolerance of 10.
 const FARTHEST: f64 = 20.0;
 
 impl Robot {
-    /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when
-    /// the motion runs. Protocol 10 only, and experimental there.
+    /// Starts a motion in which the robot itself plans the way to sparse joint targets, and
+    /// resolves when the motion runs. Such motions exist only in protocol 10, and are experimental
+    /// there.
     ///
     /// # Errors
-    /// [`MotionError::Unsupported`] for a protocol version without such motions.
-    /// [`MotionError::Goal`] for a velocity or a tolerance that is not positive, or beyond the
-    /// robot's. Both are returned before a byte is sent. [`MotionError::Busy`] while anything else
-    /// controls the arm. Otherwise, the reason why the motion ended before it ran.
+    /// Returns [`MotionError::Unsupported`] if the protocol version has no such motions. Returns
+    /// [`MotionError::Goal`] if a velocity or a tolerance is not positive, or exceeds the robot's
+    /// limit. In both cases nothing was sent. Returns [`MotionError::Busy`] if anything else
+    /// controls the arm. Otherwise, returns the reason why the motion ended before it ran.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -122,7 +124,7 @@ impl Robot {
     }
 }
 
-/// A motion from target to target that the robot itself plans. May be shared between tasks.
+/// A motion from target to target that the robot itself plans. Tasks may share it.
 ///
 /// Dropping this value stops the robot.
 #[derive(Debug)]
@@ -142,12 +144,12 @@ struct Targets {
 }
 
 impl AsynchronousControl {
-    /// Makes the robot move to `q`, `[rad]`, and stop there; replaces an earlier target. The target
-    /// is sent with the next state.
+    /// Makes the robot move to `q`, `[rad]`, and stop there. This replaces an earlier target. The
+    /// target is sent with the next state.
     ///
     /// # Errors
-    /// [`MotionError::Invalid`] for non-finite numbers; the cause of the end of the motion, if it
-    /// has ended.
+    /// Returns [`MotionError::Invalid`] if a number is not finite, and the reason why the motion
+    /// ended if it has ended.
     pub fn set_target(&self, q: [f64; 7]) -> Result<(), MotionError> {
         check::finite(&q)?;
         if let Some(outcome) = self.end.clone().now_or_never() {
@@ -165,15 +167,15 @@ impl AsynchronousControl {
         self.status_in(&self.robot.state())
     }
 
-    /// Resolves when the newest target is reached. Has no time limit, because only the robot knows
-    /// the duration.
+    /// Resolves when the newest target is reached. The wait has no time limit, because only the
+    /// robot knows the duration.
     ///
     /// # Errors
-    /// The cause of an earlier end of the motion. [`MotionError::Goal`] never comes, because the
-    /// robot does the planning.
+    /// Returns the reason why the motion ended if it ended earlier. It never returns
+    /// [`MotionError::Goal`], because the robot does the planning.
     ///
     /// # Cancel safety
-    /// Nothing is lost: the robot continues to move.
+    /// Dropping the future has no effect: the robot continues to move.
     pub async fn reached(&self) -> Result<(), MotionError> {
         let mut states = self.robot.states();
         loop {
@@ -191,15 +193,16 @@ impl AsynchronousControl {
         }
     }
 
-    /// Ends the motion at the newest target, or without one where the arm is, and resolves when the
-    /// robot has ended the motion. Await [`Self::reached`] before: the robot may refuse to end a
-    /// motion of an arm that still moves.
+    /// Ends the motion at the newest target, or where the arm is if there was no target. Resolves
+    /// when the robot has ended the motion. Await [`Self::reached`] first, because the robot may
+    /// refuse to end a motion while the arm moves.
     ///
     /// # Errors
-    /// The cause of another end of the motion.
+    /// Returns the reason if the motion ended in another way.
     ///
     /// # Cancel safety
-    /// Once polled the motion ends; dropping the future stops the robot at once.
+    /// Once the future has been polled, the motion ends; dropping the future stops the robot at
+    /// once.
     pub async fn finish(self) -> Outcome {
         let newest = self.lock().newest;
         self.write(newest.unwrap_or(self.robot.state().q_d), true);
@@ -217,7 +220,7 @@ impl AsynchronousControl {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Targets> {
-        // No panic can leave the writer half-finished.
+        // A panic cannot leave the writer half-finished.
         self.targets.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -228,7 +231,7 @@ impl Drop for AsynchronousControl {
     }
 }
 
-/// Returns the error for a request that the end of the motion leaves unanswered.
+/// Returns the error for a request that is unanswered because the motion ended.
 fn end_of(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Stopped)
 }

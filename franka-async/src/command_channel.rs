@@ -1,10 +1,10 @@
 //! The command channel: one task that owns the TCP connection, sends requests and routes the
 //! replies.
 //!
-//! Replies match by command id. Every request has a deadline except `Move`, whose two replies
-//! belong to the lifecycle of the motion. Motions have a separate queue and reserved places, so
-//! other requests never delay a stop. When the connection ends, pending and later calls return the
-//! reason.
+//! Replies are matched to requests by their command id. Every request has a deadline except `Move`,
+//! whose two replies belong to the lifecycle of the motion. Motions have their own queue and
+//! reserved places, so other requests never delay a stop. When the connection ends, pending and
+//! later calls return the reason.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -28,10 +28,10 @@ use crate::error::CommandError;
 use crate::journal::{Journal, What};
 use crate::world::{self, Instant, Stream};
 
-/// Number of requests that may wait for the task. Further callers wait for room.
+/// Number of requests that may wait for the task. Further callers wait until there is room.
 const CAPACITY: usize = 32;
 
-/// Number of callers' requests that may wait for answers. Two places are reserved for a motion's
+/// Number of callers' requests that may wait for an answer. Two places are reserved for a motion's
 /// `Move` and `StopMove`.
 const CALLS: usize = <Session>::PENDING_LIMIT - 2;
 
@@ -57,7 +57,7 @@ impl Connection {
     /// Closes the connection and returns once the socket is gone.
     ///
     /// # Cancel safety
-    /// Once polled, the connection closes.
+    /// Once the future has been polled, the connection closes even if the future is dropped.
     pub(crate) async fn close(self) {
         self.close.cancel();
         if let Err(error) = self.task.await {
@@ -74,7 +74,7 @@ pub(crate) enum Report {
         motion: MotionId,
         status: MoveStatus,
     },
-    /// The `Move` of a motion had no readable answer.
+    /// The answer to the `Move` of a motion could not be read.
     MoveViolation {
         motion: MotionId,
         violation: Violation,
@@ -83,11 +83,11 @@ pub(crate) enum Report {
     Closed { reason: CloseReason },
 }
 
-/// Answer of the robot to a request that is not a motion and was not refused.
+/// Answer of the robot to an accepted request that is not a motion.
 #[derive(Debug)]
 pub(crate) enum Response {
     Done,
-    /// The robot's description, URDF.
+    /// The robot's description as URDF.
     Model(Vec<u8>),
     /// The model library, in the format of the requested system.
     Library(Vec<u8>),
@@ -102,9 +102,10 @@ struct QueuedRequest {
 
 #[derive(Debug)]
 enum ReplyTo {
-    /// The lifecycle of a motion: replies go to the bridge, without a deadline.
+    /// The lifecycle of a motion: the bridge receives the replies, without a deadline.
     Motion(MotionId),
-    /// No one receives the reply: the lifecycle sends `StopMove` and watches the states instead.
+    /// No one receives the reply, because the lifecycle sends `StopMove` and then watches the
+    /// states.
     Discarded,
     Caller {
         answer: oneshot::Sender<Result<Response, CommandError>>,
@@ -113,8 +114,8 @@ enum ReplyTo {
 }
 
 impl Channel {
-    /// Starts the task on a connection whose handshake is done. Refusals name the mode that `mode`
-    /// returns.
+    /// Starts the task on a connection whose handshake has succeeded. Refusals name the robot mode
+    /// that `mode` returns.
     pub(crate) fn start(
         stream: Framed<Stream, MessageCodec>,
         session: Session,
@@ -144,7 +145,7 @@ impl Channel {
         (channel, Connection { task, close }, inbox)
     }
 
-    /// Makes the channel write requests and their answers to this journal.
+    /// Makes the channel write requests and their answers to `journal`.
     #[cfg(feature = "record")]
     pub(crate) fn with_journal(mut self, journal: Journal) -> Self {
         self.journal = journal;
@@ -154,7 +155,7 @@ impl Channel {
     /// Sends a request and waits for its answer.
     ///
     /// # Cancel safety
-    /// The request may have been sent; its answer is then discarded.
+    /// If the future is dropped, the request may have been sent; its answer is discarded.
     pub(crate) async fn call(
         &self,
         request: Request,
@@ -163,11 +164,11 @@ impl Channel {
         self.call_in_turn(request, deadline, ()).await
     }
 
-    /// As [`Self::call`]; also drops `turn` once the request has its place in the order of
-    /// requests.
+    /// Does the same as [`Self::call`], and drops `turn` once the request has its place in the
+    /// order of requests.
     ///
     /// # Cancel safety
-    /// As [`Self::call`].
+    /// See [`Self::call`].
     pub(crate) async fn call_in_turn<T>(
         &self,
         request: Request,
@@ -218,7 +219,7 @@ impl Channel {
         }
     }
 
-    /// Returns the reason for the end of the connection, once it has ended.
+    /// Returns the reason why the connection ended, once it has ended.
     pub(crate) fn closing(&self) -> &Closing {
         &self.closing
     }
@@ -256,13 +257,13 @@ impl CommandTask {
             reason = self.serve(&mut queues) => reason,
             () = close.cancelled() => CloseReason::ClosedByUs,
         };
-        // Note the reason before the queues close: a caller that finds them closed then finds the
+        // Note the reason before the queues close, so that a caller who finds them closed finds the
         // reason.
         let reason = closing.note(reason);
         drop(queues);
         for (_, waiting) in self.pending.drain() {
             if let ReplyTo::Caller { answer, .. } = waiting.reply_to {
-                // Fails if the caller was dropped.
+                // This fails if the caller was dropped.
                 let _ = answer.send(Err(CommandError::ConnectionClosed {
                     reason: reason.clone(),
                 }));
@@ -271,7 +272,7 @@ impl CommandTask {
         let _ = self.reports.send(Report::Closed { reason });
     }
 
-    /// Serves until the connection ends and returns the reason.
+    /// Serves until the connection ends, and returns the reason.
     async fn serve(&mut self, (motions, calls): &mut Queues) -> CloseReason {
         loop {
             let until = self
@@ -301,7 +302,7 @@ impl CommandTask {
                         return reason;
                     }
                 }
-                // If there is no room for its answer, a call waits in the queue.
+                // A call waits in the queue until there is room for its answer.
                 call = calls.recv(), if self.session.pending() < CALLS => match call {
                     Some(call) => {
                         if let Err(reason) = self.on_call(call).await {
@@ -360,8 +361,7 @@ impl CommandTask {
         self.pending.insert(id, waiting);
     }
 
-    /// Stops waiting for replies to motions that have ended for the lifecycle, which begins one
-    /// motion after the other.
+    /// Stops waiting for replies to motions that have ended for the lifecycle.
     fn forget_motions(&mut self) {
         let over = self
             .pending
@@ -464,8 +464,8 @@ mod tests {
     use super::*;
     use crate::handshake::shake_hands;
 
-    /// No byte leaves the process, and time passes only while all tasks wait. A deadline of half a
-    /// minute is therefore kept to the millisecond, and costs no time.
+    /// No byte leaves the process, and time passes only while all tasks wait. Therefore a deadline
+    /// of half a minute is exact to the millisecond, and costs no real time.
     #[tokio::test(start_paused = true)]
     async fn a_robot_in_memory_answers_on_a_clock_that_is_counted() {
         let (ours, theirs) = tokio::io::duplex(4096);

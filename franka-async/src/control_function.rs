@@ -20,14 +20,15 @@ use crate::robot::Robot;
 use crate::user_value::UserValue;
 
 impl Robot {
-    /// Returns control by torques alone. `function` receives every state, and the robot's time
-    /// since the previous state: zero at first, and more than a millisecond after a loss. It
-    /// returns [`Torques`], or `torques.finish()` for the last torques.
+    /// Returns a motion that `function` controls with torques alone. `function` receives every
+    /// state, and the robot's time since the previous state. This time is zero at first, and more
+    /// than a millisecond after a loss. `function` returns [`Torques`], or `torques.finish()` for
+    /// the last torques.
     ///
-    /// The function runs on the real-time thread, once a millisecond, and has some 300 us to
-    /// answer: it must not lock, allocate, print or wait. If the function panics, the driver asks
-    /// the robot to stop, and the motion resolves as
-    /// [`MotionError::Panicked`](crate::MotionError::Panicked). The thread continues.
+    /// `function` runs on the real-time thread once a millisecond, and has about 300 us to answer:
+    /// it must not lock, allocate, print or wait. If it panics, the driver asks the robot to stop,
+    /// and the motion resolves as [`MotionError::Panicked`](crate::MotionError::Panicked). The
+    /// thread continues.
     pub fn control_torques<R: Into<Next<Torques>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -38,9 +39,9 @@ impl Robot {
         )
     }
 
-    /// Returns control by joint positions for the robot's own controller. See
-    /// [`Self::control_torques`] for the rules of a function, and [`Control::controller`] and
-    /// [`Control::with_torques`] for the source of the torques.
+    /// Returns a motion that `function` controls with joint positions, which the robot's own
+    /// controller follows. See [`Self::control_torques`] for the rules of a function, and
+    /// [`Control::controller`] and [`Control::with_torques`] for the source of the torques.
     pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -48,7 +49,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns control by joint velocities; otherwise like [`Self::control_joint_positions`].
+    /// Returns a motion that `function` controls with joint velocities. Otherwise it is like
+    /// [`Self::control_joint_positions`].
     pub fn control_joint_velocities<R: Into<Next<JointVelocities>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -56,8 +58,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns control by poses of the end effector; otherwise like
-    /// [`Self::control_joint_positions`].
+    /// Returns a motion that `function` controls with poses of the end effector. Otherwise it is
+    /// like [`Self::control_joint_positions`].
     pub fn control_cartesian_pose<R: Into<Next<CartesianPose>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -65,8 +67,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns control by twists of the end effector; otherwise like
-    /// [`Self::control_joint_positions`].
+    /// Returns a motion that `function` controls with twists of the end effector. Otherwise it is
+    /// like [`Self::control_joint_positions`].
     pub fn control_cartesian_velocities<R: Into<Next<CartesianVelocities>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -85,16 +87,16 @@ impl Robot {
     }
 }
 
-/// A motion under a control function, before it begins: nothing is sent until the value is awaited
+/// A motion that a function controls, before it begins: nothing is sent until this value is awaited
 /// or detached.
 ///
 /// The future resolves when the function has finished and the robot has ended the motion. Unlike
 /// goals, a control function neither supersedes a motion nor is superseded. It is refused as
-/// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and other
-/// motions are refused while it runs. **Dropping the future stops the robot**; the function may
-/// still be called for the few cycles that this takes.
+/// [`MotionError::Busy`](crate::MotionError::Busy) if anything else controls the arm, and other
+/// motions are refused while it runs. **Dropping the future stops the robot**; meanwhile, the
+/// function may still be called for a few cycles.
 ///
-/// `.await` takes it as it is. Functions that take a future, such as `tokio::spawn`,
+/// A motion can be awaited as it is. Functions that take a future, such as `tokio::spawn`,
 /// `tokio::time::timeout` and `block_on`, need its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
@@ -121,15 +123,15 @@ impl Control {
         }
     }
 
-    /// Sets which of the robot's own controllers follows the commands; joint impedance by default.
-    /// Has no effect if torques are commanded. The external controller needs
-    /// [`Self::with_torques`].
+    /// Sets which of the robot's own controllers follows the commands; by default, the joint
+    /// impedance controller. This has no effect if torques are commanded. The external controller
+    /// needs [`Self::with_torques`].
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
     }
 
-    /// Adds torques to the commands to the motion generator; they replace the robot's own
+    /// Adds torques to the commands for the motion generator; the torques replace the robot's own
     /// controller. If torques are set already, the new function replaces the old one.
     pub fn with_torques<R: Into<Next<Torques>>>(
         mut self,
@@ -139,26 +141,27 @@ impl Control {
         self
     }
 
-    /// Sets whether commands pass the rate limiter. By default they pass it for protocol 5 and not
-    /// for protocol 10, as in libfranka.
+    /// Sets whether the rate limiter applies to commands. By default, it applies in protocol 5 and
+    /// not in protocol 10, as in libfranka.
     pub fn limit_rate(mut self, limit: bool) -> Self {
         self.limit_rate = limit;
         self
     }
 
-    /// Sets the cutoff of the low-pass filter, `[Hz]`: 100 by default; 1000 and more switch it off.
-    /// A cutoff that is not above zero ends the motion with its first command.
+    /// Sets the cutoff frequency of the low-pass filter, `[Hz]`: 100 by default; 1000 or more
+    /// switches the filter off. A cutoff that is not above zero ends the motion with its first
+    /// command.
     pub fn cutoff_frequency(mut self, cutoff_frequency: f64) -> Self {
         self.cutoff_frequency = cutoff_frequency;
         self
     }
 
-    /// Begins together with the motions of other robots, see
+    /// Makes the motion begin together with the motions of other robots: see
     /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all
-    /// motions are ready. Until then the driver holds the arm with the robot's own desired joint
-    /// positions or pose, with velocities of zero, or with torques of zero. With torques of zero,
-    /// the robot's gravity compensation alone holds it. The function's first call still has a time
-    /// step of zero. The report's duration includes the wait.
+    /// motions are ready. Until then, the driver holds the arm with the robot's own desired joint
+    /// positions or pose, with zero velocities, or with zero torques. With zero torques, only the
+    /// robot's gravity compensation holds the arm. The first call of the function still has a time
+    /// step of zero. The duration in the report includes the wait.
     ///
     /// # Cancel safety
     /// See [`Motion::start_with`](crate::Motion::start_with).
@@ -176,7 +179,7 @@ impl Control {
         }
     }
 
-    /// Returns a handle that stops the motion from elsewhere.
+    /// Returns a handle with which any task can stop the motion.
     pub fn canceller(&self) -> Canceller {
         self.canceller.clone()
     }
@@ -200,7 +203,7 @@ impl Control {
     }
 }
 
-/// Wraps the function, so that the bridge frees it with everything that it has captured.
+/// Wraps the function so that the bridge frees it, with everything that it has captured.
 fn kept<R>(
     function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
 ) -> impl FnMut(&RobotState, Duration) -> R + Send + 'static {

@@ -1,5 +1,5 @@
-//! Checks of this computer. After a motion that ended because packets were missing, these checks
-//! find the likely causes on this computer.
+//! Checks of this computer. If a motion ended because packets were missing, these checks find the
+//! likely causes on this computer.
 //!
 //! ```no_run
 //! # use franka_async::{Robot, doctor};
@@ -12,8 +12,8 @@
 //! # }
 //! ```
 //!
-//! With this feature, a `tracing` warning also reports such an end, with the causes in its field
-//! `causes`.
+//! With this feature, a `tracing` warning also reports such an end, and lists the causes in its
+//! field `causes`.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};
@@ -32,18 +32,18 @@ pub use franka_doctor::{
 #[cfg(feature = "doctor-desk")]
 pub use franka_doctor::{DeskState, SelfTest, ask_desk, web};
 
-/// Explanation of a motion that ended because packets were missing.
+/// Explains why a motion ended because packets were missing.
 ///
-/// `Display` prints the diagnosis of the log, if there is one, and a line for each cause on this
-/// host.
+/// `Display` prints the diagnosis from the log, if there is one, and one line for each cause on
+/// this host.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HostDiagnosis {
-    /// Evidence from the motion.
+    /// Evidence from the motion that packets were missing.
     pub evidence: Evidence,
     /// Diagnosis from the log of the motion, if the robot stopped itself.
     pub diagnosis: Option<Diagnosis>,
-    /// The two likeliest causes on this host, or fewer if fewer are found.
+    /// The two likeliest causes on this host, or fewer if not as many are found.
     pub causes: Vec<Finding>,
 }
 
@@ -73,17 +73,17 @@ impl fmt::Display for HostDiagnosis {
     }
 }
 
-/// Explains why a motion of the robot at this address ended because packets were missing, with the
-/// two likeliest causes on this host. `None` if the motion ended for another reason.
+/// Explains why packets were missing in a motion of the robot at this address, with the two
+/// likeliest causes on this host. Returns `None` if the motion ended for another reason.
 ///
-/// Reads files and asks the driver of the network card, on a thread for blocking work. This takes
-/// some milliseconds.
+/// The checks read files and query the driver of the network card, on a thread for blocking work.
+/// They take some milliseconds.
 ///
 /// # Panics
-/// Outside of a Tokio runtime.
+/// Panics outside of a Tokio runtime.
 ///
 /// # Cancel safety
-/// Dropping the future discards the answer; nothing is changed.
+/// Dropping the future discards the answer and changes nothing.
 pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosis> {
     let evidence = evidence(error)?;
     let error = error.clone();
@@ -114,7 +114,7 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
             missing or late")
         });
     };
-    // Without a runtime there are no threads for blocking work.
+    // Without a runtime, there are no threads for blocking work.
     if world::has_runtime() {
         world::spawn_blocking(look);
     }
@@ -138,7 +138,7 @@ fn diagnosis(error: &MotionError) -> Option<Diagnosis> {
     error.diagnose()
 }
 
-/// Returns the evidence in an error of packets that did not come in time; `None` without evidence.
+/// Returns the evidence in an error that packets did not come in time; `None` if there is none.
 fn evidence(error: &MotionError) -> Option<Evidence> {
     match error {
         MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
@@ -151,7 +151,8 @@ fn evidence(error: &MotionError) -> Option<Evidence> {
     }
 }
 
-/// Returns the evidence in a robot's errors, after a motion with `overruns` commands sent too late.
+/// Returns the evidence in the robot's errors, after a motion in which `overruns` commands were
+/// sent too late.
 fn of_errors(errors: Errors, overruns: u64) -> Option<Evidence> {
     if !errors.contains(RobotError::CommunicationConstraintsViolation) {
         return None;
@@ -217,7 +218,7 @@ mod tests {
             (found.evidence, found.diagnosis.as_ref()),
             (Evidence::LinkLost, None)
         );
-        // The packets to this computer itself pass no network card.
+        // Packets to this computer itself do not pass a network card.
         assert_eq!(found.causes, []);
         assert_eq!(diagnose(&MotionError::Busy, robot).await, None);
     }

@@ -1,4 +1,4 @@
-//! Endpoints of devices: texts and addresses, and the errors in them.
+//! Endpoints of devices: texts, addresses, and the errors in them.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
@@ -7,7 +7,7 @@ use std::str::FromStr;
 /// Endpoint of a device: a host and a port. The default port depends on the device: 1337 for a
 /// robot, 1338 for a Franka Hand. A vacuum gripper has 1339.
 ///
-/// Made from an [`IpAddr`], a [`SocketAddr`], or from text:
+/// It is made from an [`IpAddr`], from a [`SocketAddr`], or from text:
 ///
 /// | text | means |
 /// |---|---|
@@ -16,9 +16,9 @@ use std::str::FromStr;
 /// | `fe80::2%eth0`, `[fe80::2%3]:40123` | a link-local address with its interface, by name or index |
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
-/// Other text makes an endpoint too. Connecting then refuses it as
-/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. Use
-/// `parse` to check a text at once.
+/// Other text makes an endpoint, too. Connecting then refuses it as
+/// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To
+/// check a text at once, use `parse`.
 ///
 /// ```
 /// use franka_async::connection::Endpoint;
@@ -38,7 +38,7 @@ pub struct Endpoint {
 /// Host to connect to, before any name is looked up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Host {
-    /// An address, with the index of its interface or 0.
+    /// An address, with the index of its interface, or 0.
     Address(IpAddr, u32),
     /// An address with the name of its interface.
     Scoped(Ipv6Addr, String),
@@ -62,11 +62,11 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// Caller: a text that is not an endpoint.
+/// Error of the caller: a text is not an endpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EndpointError {
-    /// The text has no host: the text is empty, or begins with the port.
+    /// The text contains no host: it is empty, or begins with the port.
     #[error("`{text}` has no host: expected a host name or an IP address")]
     NoHost {
         /// The whole text.
@@ -78,7 +78,7 @@ pub enum EndpointError {
         /// Text in the place of the port.
         port: String,
     },
-    /// The text looks like an address and is not a valid one.
+    /// The text looks like an address, but is not a valid one.
     #[error(
         "`{address}` is not an IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
          port takes brackets, [fd00::2]:1337"
@@ -87,7 +87,7 @@ pub enum EndpointError {
         /// Text in the place of the address.
         address: String,
     },
-    /// Unclosed `[`, or text after `]` other than `:port`.
+    /// A `[` is not closed, or text other than `:port` follows the `]`.
     #[error("`{text}` is incomplete: expected [address] or [address]:port")]
     Brackets {
         /// The whole text.
@@ -104,13 +104,13 @@ pub enum EndpointError {
     /// The address belongs to a network interface that this host does not have.
     #[error("there is no network interface `{interface}`")]
     Interface {
-        /// Text behind the percent sign.
+        /// Text after the percent sign.
         interface: String,
     },
 }
 
 impl Endpoint {
-    /// Returns the same host at another port, for an end effector besides a robot.
+    /// Returns the same host with another port, for example for an end effector of a robot.
     #[must_use]
     pub fn at_port(mut self, port: u16) -> Self {
         self.set_port(port);
@@ -133,7 +133,7 @@ impl Endpoint {
 }
 
 impl EndpointError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoHost { .. } => "endpoint-no-host",
@@ -190,7 +190,7 @@ fn parse_host(host: &str, text: &str) -> Result<Host, EndpointError> {
     if let Ok(address) = host.parse::<Ipv4Addr>() {
         return Ok(Host::Address(address.into(), 0));
     }
-    // The system would read `172.16.2`, a mistyped address, as 172.16.0.2.
+    // The system would read the mistyped address `172.16.2` as 172.16.0.2.
     if host
         .bytes()
         .all(|byte| byte.is_ascii_digit() || byte == b'.')
@@ -230,7 +230,7 @@ fn parse_v6(text: &str) -> Result<Host, EndpointError> {
     }
 }
 
-/// Length of a label and of a name, at most. Source: RFC 1035, section 2.3.4.
+/// Largest length of a label and of a name. Source: RFC 1035, section 2.3.4.
 const LABEL_MAX: usize = 63;
 const NAME_MAX: usize = 253;
 

@@ -12,27 +12,28 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
 /// A connected Franka Hand. The Hand has its own server, independent of the robot's.
 ///
-/// A cheap handle: clones share one connection, from any task or thread. One action runs at a time:
-/// a newer action or [`Gripper::stop`], from any handle, aborts it. Dropping the last handle closes
-/// the connection; a grasped object stays grasped.
+/// This is a cheap handle: all clones share one connection, and any task or thread may use them.
+/// One action runs at a time: a newer action or [`Gripper::stop`], from any handle, aborts it.
+/// Dropping the last handle closes the connection; a grasped object stays grasped.
 ///
 /// Actions have no deadline, because some take long: a move that an obstacle blocks takes minutes.
-/// Use `tokio::time::timeout` to limit the time of an action; the timeout stops the fingers. If the
-/// Hand is out of reach, the connection's keepalive ends its actions within seconds.
+/// To limit the time of an action, use `tokio::time::timeout`; when it expires, the fingers stop.
+/// If the Hand is out of reach, the keepalive of the connection ends its actions within seconds.
 ///
-/// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the
-/// connection. Everything else may be called and awaited from anywhere.
+/// Connecting needs a Tokio runtime with I/O and time enabled. That runtime then runs the task of
+/// the connection. Everything else may be called and awaited from anywhere.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     connection: DeviceConnection<Version>,
 }
 
 impl Gripper {
-    /// Connects to the Hand at `endpoint`: TCP, handshake, first state. Each step may take 1 s. The
-    /// default port is 1338.
+    /// Connects to the Hand at `endpoint`, and resolves when the first state has come. The TCP
+    /// connection, the handshake and the first state may take 1 s each. The default port is 1338.
     ///
     /// # Errors
-    /// [`ConnectError`]; nothing is left behind.
+    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
+    /// again.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -56,17 +57,17 @@ impl Gripper {
         self.connection.state()
     }
 
-    /// Returns the newest state as it changes. The stream ends when the connection does.
+    /// Returns a receiver that waits for newer states. It ends with the connection.
     pub fn states(&self) -> States<State> {
         self.connection.states()
     }
 
-    /// Measures the opening width of the fingers: `max_width` of the state. Needed once after
-    /// power-on and after a change of fingers; until then, the Hand refuses wider grasps and moves.
-    /// Returns true on success.
+    /// Measures the largest opening width of the fingers (`max_width` of the state). This is needed
+    /// once after power-on and after a change of fingers; until then, the Hand refuses wider grasps
+    /// and moves. Returns true on success.
     ///
     /// # Errors
-    /// [`GripperError`].
+    /// Returns [`GripperError`] if the Hand does not carry out the action.
     ///
     /// # Cancel safety
     /// Dropping the future stops the fingers, unless a newer action has taken over or the future
@@ -78,7 +79,7 @@ impl Gripper {
     /// Moves the fingers to `width` `[m]` at `speed` `[m/s]`. Returns true if the fingers arrived.
     ///
     /// # Errors
-    /// [`GripperError`].
+    /// See [`Self::homing`].
     ///
     /// # Cancel safety
     /// See [`Self::homing`].
@@ -89,10 +90,11 @@ impl Gripper {
     }
 
     /// Closes the fingers on an object. Returns true if the fingers stopped within the tolerances
-    /// of the object's width. The force stays applied either way, until the next action or a stop.
+    /// of the object's width. In both cases the force stays applied until the next action or a
+    /// stop.
     ///
     /// # Errors
-    /// [`GripperError`].
+    /// See [`Self::homing`].
     ///
     /// # Cancel safety
     /// See [`Self::homing`]. Once the future has resolved, only another request releases the
@@ -105,10 +107,10 @@ impl Gripper {
     /// true on success.
     ///
     /// # Errors
-    /// [`GripperError`].
+    /// See [`Self::homing`].
     ///
     /// # Cancel safety
-    /// Once the future is polled, the fingers still stop.
+    /// Once the future has been polled, the fingers stop even if the future is dropped.
     pub async fn stop(&self) -> Result<bool, GripperError> {
         self.connection.act(Request::Stop).await
     }

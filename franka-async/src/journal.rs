@@ -1,4 +1,4 @@
-//! Requests to a robot or an end effector, and their results, for recorders.
+//! Journal of the requests to a robot or an end effector, and of their results, for recorders.
 //!
 //! ```text
 //! supervisor       goals, stops, outcomes, events, connections --+
@@ -6,7 +6,7 @@
 //! device           actions of an end effector, its states -------+
 //! ```
 //!
-//! A writer puts the data into an entry as it is; readers turn it into words on their own thread.
+//! A writer copies the data into an entry; readers convert it into words on their own thread.
 //! Writing never waits for a reader. Without a reader, nothing is kept.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -26,14 +26,14 @@ use crate::destination::Destination;
 use crate::input::{Beginning, Input};
 use crate::world;
 
-/// Journal that requests and results are written to. Clones are the same journal.
+/// The journal to which requests and results are written. Clones share one journal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Journal(Arc<Mutex<Vec<Reader>>>);
 
 /// Reader of a journal.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader {
-    /// Number of the journal, for a reader of several.
+    /// Number of the journal, for a reader of several journals.
     pub(crate) track: usize,
     pub(crate) entries: EntrySender,
     /// Number of cycles of a connection that may wait for the reader; `None` if it reads no cycles.
@@ -54,7 +54,7 @@ pub(crate) struct EntryReceiver {
     counts: Arc<Counts>,
 }
 
-/// Counts of a queue. Relaxed everywhere: the counts order no other memory.
+/// Counts of a queue. All accesses are relaxed, because the counts order no other memory.
 #[derive(Debug)]
 struct Counts {
     /// Number of further entries that may wait.
@@ -98,14 +98,14 @@ pub(crate) enum What {
         goal: GoalId,
         outcome: Arc<Outcome>,
     },
-    /// The state of the robot or its connection has changed.
+    /// The state of the robot or of its connection has changed.
     Event(Event),
-    /// A new connection, with its cycles.
+    /// A new connection, with a reader of its cycles.
     Connected(Result<CycleReader, AttachError>),
-    /// The robot has answered a request, or failed to.
+    /// The robot has answered a request, or did not answer.
     Answered {
         request: Box<Request>,
-        /// Reason why the request was not carried out, if it was not.
+        /// Reason why the request was not carried out; `None` if it was.
         error: Option<String>,
     },
     /// An action of the Hand has ended.
@@ -120,23 +120,23 @@ pub(crate) enum What {
         ended: ActionEnd,
     },
     VacuumState(vacuum::State),
-    /// The caller has changed its request: a stop, a pause, a cancelled motion.
+    /// The caller has stopped, paused or cancelled something.
     Remark(String),
     /// An event that the recorder itself has received.
     Told(Box<EventKind>),
-    /// The reader stops reading.
+    /// The reader must stop reading.
     End,
 }
 
 impl What {
-    /// True if the entry is dropped when no room is left. A connection is kept, because its cycles
-    /// would be lost with it, and so is the end; both are rare.
+    /// True if the entry is dropped when no room is left. The entry of a connection is kept,
+    /// because its cycles would be lost with it, and so is the end. Both are rare.
     fn needs_room(&self) -> bool {
         !matches!(self, Self::Connected(_) | Self::End)
     }
 }
 
-/// True if an action succeeded, false if not, or the text of its error.
+/// True if an action succeeded, false if it did not, or the text of its error.
 pub(crate) type ActionEnd = Result<bool, String>;
 
 /// A goal, a session or a program that was requested.
@@ -146,12 +146,12 @@ pub(crate) struct Given {
     pub(crate) kind: &'static str,
     /// The goal; `None` for a program.
     pub(crate) goal: Option<Box<Goal>>,
-    /// Destination, if that depends on the poses at the start; the goal then has no target.
+    /// Destination, if it depends on the poses at the start; the goal then has no target.
     pub(crate) destination: Option<Destination>,
 }
 
 impl Entry {
-    /// Returns an entry of `what`, at the present time.
+    /// Returns an entry of `what` at the present time.
     pub(crate) fn now(what: What) -> Self {
         let at = world::now().into_std();
         Self { at, what }
@@ -164,7 +164,7 @@ impl Journal {
         self.with(|readers| readers.push(reader));
     }
 
-    /// True if a reader with this queue reads the journal as this track.
+    /// True if a reader with this queue reads the journal under this number.
     pub(crate) fn is_read(&self, track: usize, entries: &EntrySender) -> bool {
         let same = |reader: &Reader| {
             reader.track == track && Arc::ptr_eq(&reader.entries.counts, &entries.counts)
@@ -181,10 +181,10 @@ impl Journal {
         self.with(|readers| readers.retain(tell));
     }
 
-    /// Writes an entry for a new connection, and gives its readers the cycles from now on, even if
-    /// a reader takes the entry much later.
+    /// Writes an entry for a new connection. Readers get its cycles from now on, even if they read
+    /// the entry much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
-        // Attaching allocates memory, so do it without the lock: no caller should wait for it.
+        // Attaching allocates memory, so do it without the lock, for which no caller should wait.
         for reader in self.with(|readers| readers.clone()) {
             if let Some(capacity) = reader.cycles {
                 let attached = cycles.attach(capacity);
@@ -194,7 +194,7 @@ impl Journal {
         }
     }
 
-    /// Writes down the end of a goal, a session or a program.
+    /// Writes the end of a goal, a session or a program.
     pub(crate) fn ended(&self, goal: GoalId, outcome: &Outcome) {
         self.write(|| {
             let outcome = Arc::new(outcome.clone());
@@ -202,8 +202,8 @@ impl Journal {
         });
     }
 
-    /// Writes down the requests of a program to the bridge. Updates of a goal's target are not
-    /// written: every cycle has them.
+    /// Writes the requests of a program to the bridge. Updates of a goal's target are not written,
+    /// because every cycle contains them.
     pub(crate) fn asked(&self, input: &Input) {
         self.write(|| match input {
             Input::Begin { motion, .. } => Some(What::Goal(Given::of(motion, false))),
@@ -246,14 +246,14 @@ impl Journal {
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut Vec<Reader>) -> T) -> T {
-        // No panic can leave the readers half-finished.
+        // A panic cannot leave the readers half-finished.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 impl EntrySender {
-    /// Passes an entry of a track on if there is room, and counts it as lost otherwise. Returns
-    /// true if the reader is still there.
+    /// Passes on an entry with its journal's number if there is room, and counts the entry as lost
+    /// otherwise. Returns true if the reader still exists.
     pub(crate) fn send(&self, track: usize, entry: Entry) -> bool {
         let less = |room: usize| room.checked_sub(1);
         let has_room = || {
@@ -275,7 +275,8 @@ impl EntrySender {
 }
 
 impl EntryReceiver {
-    /// Waits for the next entry and returns it with its track; `None` once all writers are gone.
+    /// Waits for the next entry, and returns it with its journal's number; `None` once all writers
+    /// are gone.
     pub(crate) fn next(&self) -> Option<(usize, Entry)> {
         let (track, entry) = self.entries.recv().ok()?;
         if entry.what.needs_room() {
@@ -286,7 +287,7 @@ impl EntryReceiver {
 }
 
 impl Given {
-    /// Returns the request of `motion`, whose outcome is not awaited if it is `set`.
+    /// Returns the request of `motion`. If it is `set`, its outcome is not awaited.
     fn of(motion: &Beginning, set: bool) -> Self {
         let Beginning {
             motion,

@@ -7,18 +7,18 @@ use franka_rt::session::{Deadman, DeadmanMonitor};
 
 use crate::world;
 
-/// Lease of an arm: the right of one client at a time to command it. A cheap handle: clones share
-/// the lease.
+/// Lease of an arm: the right of one client at a time to command it. This is a cheap handle: clones
+/// share the lease.
 #[derive(Clone, Debug, Default)]
 pub struct Lease {
     state: Arc<Mutex<State>>,
 }
 
-/// The right of one client to command the arm.
+/// Holder of a lease: a client that has the right to command the arm.
 ///
-/// Dropping it frees the lease, and brakes the arm if a session is bound to the lease, as dropping
-/// a [`Deadman`] does. Drop the [`Arm`](crate::Arm) first: the next holder's session begins when
-/// the arm has been released.
+/// Dropping it frees the lease. If a session is bound to the lease, this also brakes the arm, as
+/// dropping a [`Deadman`] does. Drop the [`Arm`](crate::Arm) first, because the next holder's
+/// session begins when the arm has been released.
 #[derive(Debug)]
 #[must_use = "dropping the holder brakes the arm and frees the lease"]
 pub struct Holder {
@@ -40,23 +40,23 @@ pub struct Taken {
     pub name: String,
 }
 
-/// The holder was silent for too long, and the lease is free since then.
+/// The holder was silent for too long, so it has lost the lease.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the lease (the right to command this arm) was lost after more than {silence:?} without a \
      heartbeat: take the lease again"
 )]
 pub struct Lost {
-    /// The silence that the lease allowed.
+    /// Time for which the lease allowed the holder to be silent.
     pub silence: Duration,
 }
 
 /// State that all handles of a lease share.
 #[derive(Debug, Default)]
 struct State {
-    /// The newest time.
+    /// The newest time that a call has passed.
     now: Option<Instant>,
-    /// Number of times that the lease was taken.
+    /// How many times the lease was taken.
     taken: u64,
     held: Option<Held>,
 }
@@ -73,9 +73,9 @@ struct Held {
 }
 
 impl Lease {
-    /// Takes the lease under `name`, which refused clients are shown. The holder loses the lease
-    /// after more than `silence` without [`Holder::keep_alive`]. With [`Duration::MAX`], only
-    /// the holder itself ends the lease.
+    /// Takes the lease under `name`, which is shown to refused clients. The holder loses the lease
+    /// after more than `silence` without a call of [`Holder::keep_alive`]. With [`Duration::MAX`],
+    /// only the holder itself ends the lease.
     ///
     /// # Errors
     /// [`Taken`] if another client holds the lease.
@@ -128,11 +128,11 @@ impl Holder {
         &self.name
     }
 
-    /// Restarts the time of silence, for the lease and for the sessions that are bound to it.
+    /// Restarts the timer of the lease, and the timers of the sessions that are bound to it.
     ///
     /// # Errors
-    /// [`Lost`] if the call comes too late. The arm then stays braked: take the lease again, and
-    /// begin another session.
+    /// Returns [`Lost`] if the call comes too late. The arm then stays braked. Take the lease
+    /// again, and begin another session.
     pub fn keep_alive(&self, now: Instant) -> Result<(), Lost> {
         let mut state = self.lease.lock();
         let now = state.advance(now);
@@ -147,20 +147,21 @@ impl Holder {
         self.left(now).is_some()
     }
 
-    /// Returns the deadman to bind a session to: see [`Engage::deadman`](crate::Engage::deadman).
-    /// The control thread brakes the arm after the silence that the lease allows, and when the
-    /// lease is lost or dropped. A session accepts a silence of [`Deadman::SILENCE_MIN`] or more.
+    /// Returns the deadman for a session: see [`Engage::deadman`](crate::Engage::deadman). The
+    /// control thread brakes the arm when the holder has been silent for too long, and when the
+    /// lease is lost or dropped. A session accepts an allowed silence of [`Deadman::SILENCE_MIN`]
+    /// or more.
     pub fn deadman(&self) -> DeadmanMonitor {
         self.monitor.clone()
     }
 
-    /// Resolves when the lease is lost, by the host's clock. Needs a Tokio runtime.
+    /// Resolves when the lease is lost, measured by the host's clock. This needs a Tokio runtime.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn lost(&self) -> Lost {
         while let Some(left) = self.left(world::now().into_std()) {
-            // A silence of exactly the allowed length is still allowed.
+            // A silence of exactly the allowed length does not lose the lease.
             world::sleep(left.saturating_add(Duration::from_millis(1))).await;
         }
         self.lost_by()
@@ -193,7 +194,7 @@ impl Drop for Holder {
 }
 
 impl State {
-    /// Lets time pass up to `now`, and frees a lease whose holder has been silent for too long.
+    /// Advances the time to `now`, and frees the lease if its holder has been silent for too long.
     /// Returns the newest time.
     fn advance(&mut self, now: Instant) -> Instant {
         let now = self.now.map_or(now, |newest| newest.max(now));
@@ -223,7 +224,7 @@ mod tests {
         Taken { name }
     }
 
-    /// True once no session that is bound to the lease moves the arm any more.
+    /// True once no session that is bound to the lease moves the arm.
     fn has_braked(monitor: &DeadmanMonitor) -> bool {
         monitor.is_gone()
     }
@@ -270,9 +271,9 @@ mod tests {
         let other = lease.take("Grace", SILENCE, now).expect("it is free");
         assert_eq!(late.keep_alive(now), lost);
         assert!(has_braked(&monitor) && !has_braked(&other.deadman()));
-        // A session that the former holder begins now does not move the arm either.
+        // A session that the former holder begins now does not move the arm.
         assert!(has_braked(&late.deadman()));
-        // The end of the former holder does not end the present holder's lease.
+        // The former holder does not end the lease of the present holder.
         drop(late);
         assert!(other.is_held(now) && !has_braked(&other.deadman()));
     }
@@ -323,8 +324,8 @@ mod tests {
         assert!(lease.take("Grace", silence, Instant::now()).is_ok());
     }
 
-    /// Holders come, leave, send and are silent in any order. There is never more than one, and an
-    /// arm moves only for the holder of the lease.
+    /// Holders come, leave, send messages and are silent in any order. There is never more than one
+    /// holder, and the arm moves only for the holder.
     #[test]
     fn any_schedule_has_one_holder_at_most() {
         let start = Instant::now();

@@ -1,7 +1,7 @@
-//! Conversions of poses from and to other programs, and rotations of poses in place.
+//! Conversions of poses between programs, and rotations of poses in place.
 //!
-//! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`, and products of poses
-//! do most of the work. `start` is a pose of the end effector in the base frame:
+//! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`; for most tasks,
+//! multiply poses. `start` is a pose of the end effector in the base frame:
 //!
 //! | wanted | written |
 //! |---|---|
@@ -12,9 +12,9 @@
 //! | the position, the orientation | `start.translation.vector`, `start.rotation` |
 //! | the way from `start` to `goal`, in axes of `start` | `start.inv_mul(&goal)` |
 //!
-//! `turn` is a [`UnitQuaternion`]. The state has its poses as column-major arrays: [`from_array`].
-//! A policy or a planner has positions and quaternions: [`from_xyzw`]. The model has matrices:
-//! [`from_matrix`].
+//! `turn` is a [`UnitQuaternion`]. A state contains its poses as column-major arrays: see
+//! [`from_array`]. Policies and planners often use positions and quaternions: see [`from_xyzw`].
+//! The model uses matrices: see [`from_matrix`].
 //!
 //! ```
 //! use franka_async::nalgebra::{UnitQuaternion, Vector3};
@@ -42,18 +42,18 @@ pub enum NotRigid {
     /// A number is not finite.
     #[error("the number in row {row}, column {column} is not finite")]
     NotFinite {
-        /// Row of that number, from 1.
+        /// Row of that number, counted from 1.
         row: usize,
-        /// Column of that number, from 1.
+        /// Column of that number, counted from 1.
         column: usize,
     },
-    /// The transpose is a pose: the numbers are in row-major order.
+    /// The transpose is a pose, so the numbers are in row-major order.
     #[error(
         "got the pose row by row, expected it column by column: 0 0 0 1 is in the last column, not in \
          the last row"
     )]
     RowMajor,
-    /// The last row is not the last row of a homogeneous matrix.
+    /// The last row is not that of a homogeneous matrix.
     #[error("the last row is not 0 0 0 1, as expected of a pose")]
     LastRow,
     /// The upper left block is scaled, sheared or mirrored.
@@ -67,7 +67,8 @@ pub enum NotRigid {
 /// Returns the pose nearest to a matrix, for example to a matrix of the model.
 ///
 /// # Errors
-/// [`NotRigid`]. Errors of a rotation below 1e-3 are accepted.
+/// Returns [`NotRigid`] if the matrix is not a pose. Errors below 1e-3 in the rotation are
+/// accepted.
 pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     transform::isometry(matrix).ok_or_else(|| {
         if let Some(index) = matrix.iter().position(|x| !x.is_finite()) {
@@ -84,18 +85,20 @@ pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     })
 }
 
-/// As [`from_matrix`], for 16 numbers in column-major order, as in `O_T_EE`.
+/// Returns the pose nearest to 16 numbers in column-major order, as in `O_T_EE`. Otherwise it is
+/// like [`from_matrix`].
 ///
 /// # Errors
-/// As for [`from_matrix`].
+/// Returns the errors of [`from_matrix`].
 pub fn from_array(column_major: &[f64; 16]) -> Result<Pose, NotRigid> {
     from_matrix(&Matrix4::from_column_slice(column_major))
 }
 
-/// Returns the pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, normalised.
+/// Returns the pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, which is
+/// normalised.
 ///
-/// `None` if a number is not finite, or if the quaternion is shorter than 1e-6 and therefore has no
-/// direction.
+/// Returns `None` if a number is not finite, or if the quaternion is shorter than 1e-6 and
+/// therefore has no direction.
 pub fn from_xyzw(position: [f64; 3], [x, y, z, w]: [f64; 4]) -> Option<Pose> {
     let rotation = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), SHORTEST)?;
     let pose = Pose::from_parts(Translation3::from(position), rotation);
@@ -109,8 +112,8 @@ pub fn to_xyzw(pose: &Pose) -> ([f64; 3], [f64; 4]) {
     (pose.translation.vector.into(), pose.rotation.coords.into())
 }
 
-/// Returns the pose rotated in place: by `turn` about the axes of the base, through the position of
-/// `pose`, which stays the same.
+/// Returns `pose` rotated in place, by `turn` about the axes of the base. The position does not
+/// change.
 pub fn rotated(pose: &Pose, turn: UnitQuaternion<f64>) -> Pose {
     Pose::from_parts(pose.translation, turn * pose.rotation)
 }
@@ -171,7 +174,7 @@ mod tests {
         let start = Pose::from_parts([0.4, 0.1, 0.3].into(), about(Vector3::x() * 1.0));
         let turned = rotated(&start, about(Vector3::z() * 0.5));
         assert_eq!(turned.translation, start.translation);
-        // The x axis of the pose is the x axis of the base: it turns in the plane.
+        // The x axis of the pose is the x axis of the base, so it turns in the plane.
         let x = turned * Vector3::x();
         assert!((x - Vector3::new(0.5_f64.cos(), 0.5_f64.sin(), 0.0)).norm() < 1e-12);
     }

@@ -1,4 +1,4 @@
-//! Reading: every state of the robot, in motion or not.
+//! Reads every state of the robot, whether the arm moves or not.
 
 use std::ops::ControlFlow;
 use std::pin::Pin;
@@ -14,30 +14,31 @@ use crate::error::ReadError;
 use crate::publish::Update;
 use crate::robot::Robot;
 
-/// A state, and the number of states that are missing before it.
+/// A state, and the number of states that were missed before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reading {
     /// The state.
     pub state: RobotState,
-    /// Number of states that the robot sent between the last state of this stream and this one.
-    /// Such a state was lost, or skipped by the control thread for a newer one, or came while the
-    /// reader lagged too far behind. For the first state of a stream, counts from the creation of
-    /// the stream.
+    /// Number of states between the last state of this stream and this one. Each of them was lost,
+    /// or the control thread skipped it for a newer one, or it came while the reader lagged too far
+    /// behind. For the first state of a stream, this counts from the creation of the stream.
     pub missed: u64,
 }
 
-/// Every state of the robot from now on, each once and in order: see [`Robot::state_stream`].
+/// Stream of all states of the robot from now on, each once and in order: see
+/// [`Robot::state_stream`].
 #[derive(Debug)]
 pub struct StateStream {
     updates: BroadcastStream<Update>,
-    /// `message_id` of the last state returned; at first, of the newest state at the creation.
+    /// `message_id` of the last state that was returned; at first, of the newest state at the
+    /// creation.
     newest: u64,
 }
 
 impl Robot {
-    /// Calls `each` with every state that comes, in motion or not, until `each` breaks. Returns the
-    /// value of the break.
+    /// Calls `each` with every state that comes, whether the arm moves or not, until `each` breaks.
+    /// Returns the value of that break.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
@@ -52,13 +53,14 @@ impl Robot {
     /// # }
     /// ```
     ///
-    /// `each` runs in the task that awaits, not on the control thread, and delays only that task.
-    /// If it takes longer than a millisecond it lags behind, and misses states once it lags by more
-    /// than a second; [`Self::state_stream`] reports their number.
+    /// `each` runs in the task that awaits this future, not on the control thread, and delays only
+    /// that task. If `each` takes longer than a millisecond, it lags behind. Once it lags by more
+    /// than a second, states are missed; [`Self::state_stream`] reports their number.
     ///
     /// # Errors
-    /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if the
-    /// robot is silent already. [`ReadError::ConnectionClosed`] when the connection has ended.
+    /// Returns [`ReadError::LinkLost`] if the robot has been silent for the link timeout; at once
+    /// if it is silent already. Returns [`ReadError::ConnectionClosed`] if the connection has
+    /// ended.
     ///
     /// # Cancel safety
     /// Dropping the future only ends the reading. No state is kept for a later call.
@@ -92,13 +94,13 @@ impl Robot {
         }
     }
 
-    /// Returns every state from now on, each once and in order, with the number of states missed
-    /// before it; in motion or not. A reader may lag about a second behind before it misses states.
-    /// The stream ends when the connection does, pauses while the robot is silent, and does not
-    /// keep the connection open.
+    /// Returns a stream of every state from now on, each once and in order, with the number of
+    /// states missed before it. A reader may lag about a second behind before it misses states. The
+    /// stream ends when the connection does, pauses while the robot is silent, and does not keep
+    /// the connection open.
     ///
-    /// To read the newest state at any time, see [`Self::states`]. For the commands and records of
-    /// each cycle, see [`Self::records`].
+    /// To read the newest state at any time, use [`Self::states`]. For the commands and records of
+    /// each cycle, use [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
         let link = self.link();
         let updates = BroadcastStream::new(link.subscriptions().updates());
@@ -124,7 +126,7 @@ impl Stream for StateStream {
         loop {
             let state = match ready!(self.updates.poll_next_unpin(context)) {
                 Some(Ok(Update::State(state))) => state,
-                // The next state will report the length of the gap.
+                // The next state reports the length of the gap.
                 Some(Ok(Update::Silence(_)) | Err(BroadcastStreamRecvError::Lagged(_))) => continue,
                 None => return Poll::Ready(None),
             };

@@ -1,5 +1,5 @@
 //! The lease of an arm: the right of one client at a time to command it. The client has a name, and
-//! keeps the lease by heartbeats.
+//! sends heartbeats to keep the lease.
 //!
 //! ```text
 //!             take                    keep_alive in time
@@ -8,21 +8,22 @@
 //!    └────── silence ─────┘
 //! ```
 //!
-//! A service that passes a robot on to clients takes the lease of [`Robot::lease`] for each client
-//! that should move the arm. The service binds the client's session to the lease by
+//! A service through which clients move a robot takes the lease [`Robot::lease`] for each client
+//! that should move the arm. The service binds the client's session to the lease with
 //! [`Holder::deadman`]. All services of a process that share the robot share its lease, for example
-//! a dashboard and a teleoperation. A second client is refused with the name of the first one.
+//! a dashboard and a teleoperation service. A second client is refused, with the name of the first
+//! one.
 //!
-//! An open connection alone does not keep the lease: only messages of the client's own program
-//! should call [`Holder::keep_alive`]. When these calls stop, two clocks notice. By the robot's
-//! clock, the control thread brakes the arm, even if the rest of the process hangs. By the host's
-//! clock, the lease becomes free, and later requests of the former holder are refused.
+//! An open connection alone does not keep the lease: call [`Holder::keep_alive`] only for messages
+//! of the client's own program. When these calls stop, two clocks notice it. On the robot's clock,
+//! the control thread brakes the arm, even if the rest of the process hangs. On the host's clock,
+//! the lease becomes free, and later requests of the former holder are refused.
 //!
-//! The lease binds services, not the program itself: a motion that the program begins needs no
-//! lease. [`Robot::stop`] needs none either: it is open to every client.
+//! The lease binds clients, not the program itself: a motion that the program begins needs no
+//! lease. Nor does [`Robot::stop`], which is open to every client.
 //!
-//! Time is an argument, so that a test needs no clock. A time before the newest time counts as the
-//! newest time.
+//! Methods take the time as an argument, so that a test needs no clock. A time before the newest
+//! one counts as the newest one.
 //!
 //! # Example
 //!

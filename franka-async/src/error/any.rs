@@ -1,4 +1,4 @@
-//! One error type for all calls.
+//! One error type that can hold the error of any call.
 
 use franka_proto::{gripper, vacuum};
 use franka_rt::lifecycle::{ControlError, MotionError, Party};
@@ -9,9 +9,9 @@ use super::{
     ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, TareError,
 };
 
-/// Any error of a robot or its end effectors: the return type of a program with many kinds of
-/// calls. Every error of this crate converts into it, also by `?`, and `Display` prints the error
-/// inside.
+/// Any error of a robot or its end effectors. Programs with many kinds of calls return this type.
+/// Every error of this crate converts into it, for example through `?`, and `Display` prints the
+/// error inside.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -21,8 +21,8 @@ pub enum Error {
     /// A command other than a motion was not carried out.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// The robot ended a motion: by a reflex or a stop. The error has the log of the motion's last
-    /// cycles.
+    /// The robot ended a motion by a reflex or a stop. The error contains the log of the motion's
+    /// last cycles.
     #[error(transparent)]
     Control(Box<ControlError>),
     /// A motion ended short of its goal for another reason.
@@ -31,13 +31,13 @@ pub enum Error {
     /// Active control could not continue.
     #[error(transparent)]
     Active(ActiveError),
-    /// The identification of an arm failed, for another reason than a motion.
+    /// The identification of an arm failed for another reason than a motion.
     #[error(transparent)]
     Identify(IdentifyError),
     /// No more states could be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The tare failed, for another reason than a lost link.
+    /// The tare failed for another reason than a lost link.
     #[error(transparent)]
     Tare(TareError),
     /// There is no connection to the Franka Hand.
@@ -95,7 +95,7 @@ impl From<TareError> for Error {
 }
 
 impl Error {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`, which
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors, which
     /// explains what to do. Every error of a call has a row.
     ///
     /// ```

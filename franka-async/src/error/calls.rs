@@ -15,16 +15,16 @@ use franka_rt::thread::{BorrowError, WriteFault};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
-    /// Robot: it refused the command, or gave it up.
+    /// Robot: it refused the command, or did not complete it.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Caller: the robot does not accept this number. Nothing has changed. A load that is
-    /// impossible for a rigid body is refused in the same way, before it is sent.
+    /// Caller: the robot does not accept a number. Nothing has changed. A load that is impossible
+    /// for a rigid body also returns this error, before it is sent.
     #[error("{refusal} ({why})")]
     InvalidArgument {
         /// The robot's answer, or the answer that it would have given.
         refusal: Refusal,
-        /// Value that was given, and the documented range.
+        /// The value that was given, and the documented range.
         why: String,
     },
     /// Caller: the protocol version does not have this command. Nothing was sent.
@@ -33,24 +33,24 @@ pub enum CommandError {
     /// Caller: a number is not finite. Nothing was sent.
     #[error("number {number} of {what} is not finite")]
     NotFinite {
-        /// Name of the argument with the number.
+        /// Name of the argument that contains the number.
         what: &'static str,
-        /// Position of the number in the argument, from 1.
+        /// Position of the number in the argument, counted from 1.
         number: usize,
     },
-    /// Robot or link: no answer came in time. The robot may still carry the command out.
+    /// Robot or link: no answer came in time. The robot may still carry out the command.
     #[error("no answer to {command} within {} ms", .deadline.as_millis())]
     Timeout {
         /// Command without an answer.
         command: Command,
-        /// Time for which the answer was awaited.
+        /// How long the driver waited for the answer.
         deadline: Duration,
     },
-    /// Link: no robot state comes. It is unknown whether the command was carried out.
+    /// Link: the robot sends no states. It is unknown whether the command was carried out.
     #[error("no robot state for {} ms: the command may have taken effect, read the state when the \
         robot is back", .silence.as_millis())]
     LinkLost {
-        /// The silence so far; its end may be later.
+        /// How long the robot has been silent so far.
         silence: Duration,
     },
     /// Peer: the robot's answer cannot be read.
@@ -59,13 +59,13 @@ pub enum CommandError {
     /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// Cause of the end.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
 }
 
 impl CommandError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(refusal) | Self::InvalidArgument { refusal, .. } => refusal.entry(),
@@ -92,20 +92,20 @@ impl CommandError {
     }
 }
 
-/// Reason why an action of an end effector has no result; `C` is the command type of the end
-/// effector.
+/// Reason why an action of an end effector returned neither true nor false; `C` is the command type
+/// of the end effector.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActionError<C: ServiceCommand> {
-    /// Device: the action failed, or a stop or a newer action ended it.
+    /// Device: the action failed, or was ended by a stop or a newer action.
     #[error(transparent)]
     Failure(#[from] Failure<C>),
-    /// Caller: the device cannot carry out the request, because the request is out of its range.
+    /// Caller: the request is out of the range of the device.
     #[error("{failure} ({why})")]
     OutOfRange {
         /// Answer of the device.
         failure: Failure<C>,
-        /// Value that was given, and the possible range.
+        /// The value that was given, and the possible range.
         why: String,
     },
     /// Caller: too many requests wait for their answers. Nothing was sent.
@@ -117,13 +117,13 @@ pub enum ActionError<C: ServiceCommand> {
     /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// Cause of the end.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
 }
 
 impl<C: ServiceCommand> ActionError<C> {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Failure(_) => "action-failure",
@@ -149,22 +149,22 @@ impl<C: ServiceCommand> ActionError<C> {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// Link: the robot fell silent. The text begins as in the reference client.
+    /// Link: the robot has stopped sending states. The text begins as in libfranka.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
-        /// The silence so far.
+        /// How long the robot has been silent so far.
         silence: Duration,
     },
     /// The connection has ended. Who can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// Cause of the end.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
 }
 
 impl ReadError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::LinkLost { .. } => "read-link-lost",
@@ -185,13 +185,13 @@ impl ReadError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActiveError {
-    /// The motion has ended, with this error.
+    /// The motion has ended with this error.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The motion has ended otherwise than asked. An earlier call has returned the same error.
+    /// The motion has ended in another way than asked. An earlier call has returned the same error.
     #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
     Ended(MotionError),
-    /// The motion has ended as asked: the last command was written earlier.
+    /// The motion has ended as asked, because the last command was written earlier.
     #[error("the motion has finished and accepts no more reads or commands: begin a new motion")]
     Finished,
     /// The command was not sent; the motion continues.
@@ -203,7 +203,7 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Motion(error) => error.entry(),
@@ -235,7 +235,8 @@ const RECOVER: &str = " (call `recover` before the next motion)";
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
-    /// Caller: the arm has moved since its motions were planned. Identification has not moved it.
+    /// Caller: the arm has moved since its motions were planned. The identification did not move
+    /// it.
     #[error(
         "joint {joint} is at {got:.3} rad, expected {expected:.3} rad, the start of the planned \
          motions: move the arm back, or plan again"
@@ -245,19 +246,19 @@ pub enum IdentifyError {
         joint: usize,
         /// Present position, `[rad]`.
         got: f64,
-        /// Earlier position, `[rad]`.
+        /// Position at the time of planning, `[rad]`.
         expected: f64,
     },
-    /// A motion did not arrive. The arm stays where it is.
+    /// A motion did not arrive. The arm stays where it stopped.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Robot: something held or pushed the arm, so its torques are no measurement.
+    /// Robot: something held or pushed the arm, so the measured torques are useless.
     #[error(transparent)]
     Fit(#[from] FitError),
 }
 
 impl IdentifyError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Moved { .. } => "identify-moved",
@@ -289,7 +290,7 @@ pub enum TareError {
 }
 
 impl TareError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(_) => "tare-refused",
@@ -321,7 +322,7 @@ pub enum ModelLibraryError {
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),

@@ -21,33 +21,33 @@ use crate::endpoint::EndpointError;
 /// Hint for a program that connects to a simulator.
 const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
 
-/// Reason why there is no connection: to a robot, unless `P` names another device. Nothing is left
-/// behind, and the program may connect again.
+/// Reason why connecting failed: to a robot, unless `P` names another device. Everything that was
+/// opened is closed again, and the program may retry.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: the operating system does not grant the requests of real-time control, see
+    /// Host: the operating system does not grant what real-time control requests, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
     /// Caller: the given text is not an endpoint. Nothing was sent.
     #[error(transparent)]
     Endpoint(#[from] EndpointError),
-    /// Caller: the silence after which the link counts as lost is out of range, see
+    /// Caller: the link timeout is out of range, see
     /// [`Builder::link_timeout`](crate::connection::Builder::link_timeout).
     #[error(transparent)]
     LinkTimeout(#[from] LinkTimeoutError),
-    /// Caller: the requested log of a motion has more cycles than there is memory for, see
+    /// Caller: the requested log of a motion has too many cycles, see
     /// [`Builder::log_size`](crate::connection::Builder::log_size). Nothing was sent.
     #[error(
         "the log has {got} cycles, expected {} at most",
         ControlLog::CAPACITY_MAX
     )]
     LogSize {
-        /// Cycles asked for.
+        /// Number of cycles that was requested.
         got: usize,
     },
-    /// Caller: a function should be asked before recoveries, but no policy supervises the robot.
+    /// Caller: a function should be asked before each recovery, but no policy supervises the robot.
     /// See [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery).
     /// Nothing was sent.
     #[error(
@@ -55,19 +55,19 @@ pub enum ConnectError<P: Protocol = Version> {
          that recovers"
     )]
     Unsupervised,
-    /// Caller: the known values are of another kind of robot, or are impossible for an arm. See
+    /// Caller: the known values belong to another kind of robot, or are impossible for an arm. See
     /// [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
     /// Host: no thread, socket or file descriptor is available.
     #[error("cannot set up the connection: {0}")]
     System(#[from] io::Error),
-    /// Robot: it accepts no connection. FCI is off, or the address is of another machine.
+    /// Robot: it refuses the connection. FCI is off, or the address belongs to another machine.
     #[error(
         "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. ({address})"
     )]
     Refused {
-        /// Address tried.
+        /// The address that was tried.
         address: SocketAddr,
     },
     /// Link: the address did not answer.
@@ -75,25 +75,25 @@ pub enum ConnectError<P: Protocol = Version> {
         "libfranka: Connection timeout. Please check your network connection or settings. ({address})"
     )]
     Timeout {
-        /// Address tried.
+        /// The address that was tried.
         address: SocketAddr,
     },
-    /// Link: any other failure to connect.
+    /// Link: connecting failed in another way.
     #[error("libfranka: Connection error: {reason}")]
     Network {
-        /// The class of the failure.
+        /// Class of the failure.
         reason: String,
     },
-    /// Robot or link: the host name has several addresses, and connecting to each of them failed.
+    /// Robot or link: the host name has several addresses, and connecting failed for each of them.
     #[error("{}", list(.attempts))]
     NoAddress {
-        /// Result of each attempt, in the order tried.
+        /// Result of each attempt, in the order in which the addresses were tried.
         attempts: Vec<Attempt<P>>,
     },
-    /// Robot: its system has a protocol version that this driver does not support. Caller: the
-    /// requested version is not the robot's, see
-    /// [`VersionPolicy`](crate::connection::VersionPolicy). The text names the system and the
-    /// remedy, where libfranka's text names versions of libfranka.
+    /// Robot: its system uses a protocol version that this driver does not support. Caller: the
+    /// requested version is not the version of the robot, see
+    /// [`VersionPolicy`](crate::connection::VersionPolicy). The text names the robot's system
+    /// version and the remedy; libfranka's text names versions of libfranka instead.
     #[error(
         "libfranka: Incompatible library version (server version: {}, library version: {}): {}",
         .0.server_version, .0.library_version.number(), .0.explanation()
@@ -102,10 +102,10 @@ pub enum ConnectError<P: Protocol = Version> {
     /// The connection ended during the handshake. Who can act depends on the reason.
     #[error("{}", closed(.reason))]
     ConnectionClosed {
-        /// Cause of the end.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
-    /// Link: a datagram of the robot could not be read.
+    /// Link: a datagram from the robot could not be read.
     #[error("{fault}")]
     Datagram {
         /// Fault of the link.
@@ -120,18 +120,18 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: the handshake was not answered in time.
     #[error("libfranka: TCP receive: Timeout ({address})")]
     HandshakeTimeout {
-        /// Address tried.
+        /// The address that was tried.
         address: SocketAddr,
     },
-    /// Link: the handshake succeeded and no state came. The usual cause is a firewall that blocks
+    /// Link: the handshake succeeded, but no state came. The usual cause is a firewall that blocks
     /// UDP.
     #[error("libfranka: UDP receive: Timeout ({address})")]
     NoState {
-        /// Address where the handshake succeeded.
+        /// The address at which the handshake succeeded.
         address: SocketAddr,
     },
-    /// Robot: the poses that it reports are of another geometry than its description, or than the
-    /// constants of its kind. That geometry is not a known one. See
+    /// Robot: its reported poses do not fit the geometry in its description, or in the constants of
+    /// its kind. They do not fit any other known geometry either. See
     /// [`Builder::accept_geometry_error`](crate::connection::Builder::accept_geometry_error).
     #[error(
         "the robot's pose is {:.1} µm from the pose of its model at the same joint positions, expected {:.0} µm at most: check the address and the robot's description, or connect with accept_geometry_error",
@@ -140,10 +140,11 @@ pub enum ConnectError<P: Protocol = Version> {
     )]
     Geometry {
         /// Distance of the reported pose from the pose of the model, `[m]`, or the largest
-        /// difference of an element of the rotation matrices times 0.1 m, whichever is greater.
+        /// difference between elements of their rotation matrices times 0.1 m, whichever is
+        /// greater.
         residual: f64,
     },
-    /// Robot, link or peer: the arm has no model. See
+    /// Robot, link or peer: the driver has no model of the arm. See
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model).
     #[cfg(feature = "urdf")]
     #[error(transparent)]
@@ -151,7 +152,7 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Realtime(error) => error.entry(),
@@ -187,7 +188,7 @@ impl<P: Protocol> ConnectError<P> {
             | Self::LogSize { .. }
             | Self::Unsupervised
             | Self::Known(_) => Party::Caller,
-            // A device that refuses exists; the other addresses may not.
+            // A device that refuses exists, while the devices of the other addresses may not.
             Self::NoAddress { attempts } => attempts
                 .iter()
                 .map(|attempt| attempt.error.party())
@@ -224,7 +225,7 @@ pub struct Attempt<P: Protocol = Version> {
     pub error: ConnectError<P>,
 }
 
-/// True if the connection ended as a robot ends it that already has a client.
+/// Returns the usual reason why a connection ends before the robot has answered.
 fn likely_taken(reason: &CloseReason) -> bool {
     matches!(
         reason,
@@ -258,13 +259,15 @@ impl From<StartError> for ConnectError {
         match error {
             StartError::Scheduling(error) => Self::Realtime(error),
             StartError::System(error) => Self::System(error),
-            // The enum is open; every other obstacle to starting the thread is a fault of the host.
+            // The enum is non-exhaustive; every other obstacle to starting the thread is a fault of
+            // the host.
             other => Self::System(io::Error::other(other)),
         }
     }
 }
 
-/// Written by hand: the refusal is not an error source, because its own text is libfranka's.
+/// This is written by hand because the refusal must not be an error source: its own text is
+/// libfranka's.
 impl<P: Protocol> From<IncompatibleVersion<P>> for ConnectError<P> {
     fn from(refusal: IncompatibleVersion<P>) -> Self {
         Self::IncompatibleVersion(refusal)
@@ -277,13 +280,13 @@ impl From<LinkFault> for ConnectError {
     }
 }
 
-/// Reason why the connected arm has no model.
+/// Reason why the driver has no model of the connected arm.
 /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) needs no description.
 #[cfg(feature = "urdf")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// The robot was asked for its description and did not send it.
+    /// The robot did not send its description when asked for it.
     #[error(transparent)]
     Command(#[from] CommandError),
     /// Robot: its description does not fit any arm that this driver knows.
@@ -293,7 +296,7 @@ pub enum ModelError {
 
 #[cfg(feature = "urdf")]
 impl ModelError {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),

@@ -1,6 +1,6 @@
-//! Errors, grouped by the party that can act on them. Texts follow the reference client where it
-//! has the same error. [`Error`](crate::Error) holds any of them.
-//! [`MotionError`](crate::MotionError) is the reason why a motion ended short of its goal.
+//! Errors, grouped by the party that can act on them. Texts are the same as in libfranka if
+//! libfranka has the same error. [`Error`](crate::Error) can hold any of them.
+//! [`MotionError`](crate::MotionError) is the reason why a motion ended before its goal.
 
 pub(crate) mod any;
 mod calls;
@@ -43,8 +43,8 @@ pub use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;
 
-/// Reason why an action of the Franka Hand has no result.
+/// Reason why an action of the Franka Hand returned neither true nor false.
 pub type GripperError = ActionError<gripper::Command>;
 
-/// Reason why an action of the vacuum gripper has no result.
+/// Reason why an action of the vacuum gripper returned neither true nor false.
 pub type VacuumGripperError = ActionError<vacuum::Command>;

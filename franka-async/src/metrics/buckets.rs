@@ -1,10 +1,10 @@
-//! The buckets of a histogram's text.
+//! Converts histograms into the buckets of the text.
 
 use std::time::Duration;
 
 use franka_rt::stats::Histogram;
 
-/// A histogram of the control thread in the buckets of the text, in seconds.
+/// A histogram of the control thread, in the buckets of the text, in seconds.
 #[derive(Debug, PartialEq)]
 pub(super) struct Buckets {
     /// The bound of each bucket, and the number of durations between it and the previous bound.
@@ -32,12 +32,12 @@ impl Buckets {
     }
 }
 
-/// Upper bounds of the buckets, `[s]`: close together around the millisecond of a cycle.
+/// Upper bounds of the buckets, `[s]`; they are close together around the cycle of a millisecond.
 const BOUNDS: [f64; 11] = [
     5e-5, 1e-4, 2e-4, 3e-4, 5e-4, 7.5e-4, 1e-3, 1.25e-3, 2e-3, 5e-3, 1e-2,
 ];
 
-/// The middle of a bucket of the control thread, as a share of its longest duration.
+/// Middle of a bucket of the control thread, as a share of the longest duration in it.
 const MIDDLE: f64 = 1.0 - 1.0 / 32.0;
 
 #[cfg(test)]

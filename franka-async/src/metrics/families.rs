@@ -1,4 +1,5 @@
-//! The metric families, each with its samples of every robot, because a family must not come twice.
+//! The metric families. Each contains the samples of all robots, because a family must not come
+//! twice.
 
 use std::fmt;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use super::buckets::Buckets;
 use crate::robot::Robot;
 use crate::tally::Tally;
 
-/// One robot at one moment.
+/// The data of one robot at one moment.
 pub(super) struct Scrape<'a> {
     label: &'a str,
     robot: &'a Robot,
@@ -40,7 +41,7 @@ impl<'a> Scrape<'a> {
     }
 }
 
-/// All families, as they are written.
+/// Writer of all families.
 pub(super) struct Families<'a, 'e> {
     encoder: DescriptorEncoder<'e>,
     scrapes: Vec<Scrape<'a>>,
@@ -100,7 +101,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// Writes the mishaps of the robot.
+    /// Writes the numbers of motions, reflexes, recoveries and reconnects.
     fn mishaps(&mut self) -> fmt::Result {
         let help = "Motions that have ended.";
         self.counters("franka_motions", help, |scrape| {
@@ -132,7 +133,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// Writes the punctuality of control.
+    /// Writes how punctual control is.
     fn thread(&mut self) -> fmt::Result {
         let help = "1 for each real-time request of the control thread that the operating system \
             granted, otherwise 0.";
@@ -175,7 +176,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// Writes a family of gauges: for each robot, some samples with labels in addition to the
+    /// Writes a family of gauges: some samples for each robot, with labels in addition to the
     /// robot's label.
     fn gauges<L, V, S>(
         &mut self,
@@ -202,7 +203,7 @@ impl<'a, 'e> Families<'a, 'e> {
         Ok(())
     }
 
-    /// Writes a family of counters, as [`Self::gauges`].
+    /// Writes a family of counters, as [`Self::gauges`] does.
     fn counters<L, S>(
         &mut self,
         name: &str,
@@ -226,7 +227,7 @@ impl<'a, 'e> Families<'a, 'e> {
         Ok(())
     }
 
-    /// Writes a family with a histogram per robot, in seconds.
+    /// Writes a family with one histogram per robot, in seconds.
     fn histogram(
         &mut self,
         name: &str,

@@ -1,11 +1,11 @@
-//! Counts and measurements of connections, as [OpenMetrics] text: for Prometheus and other readers
+//! Counts and measurements of connections as [OpenMetrics] text, for Prometheus and other readers
 //! of that format.
 //!
-//! [`Robot::metrics`] returns one robot's text. [`Exporter`] returns the text of several robots, or
-//! is a collector for the program's own registry. When called, both read the counters that the
-//! control thread keeps anyway ([`Robot::stats`]), the newest state, [`Robot::health`],
-//! [`Robot::granted`], and how motions ended. The thread does no work for them. Its counts begin
-//! anew with each connection of a supervised robot.
+//! [`Robot::metrics`] returns the text of one robot. [`Exporter`] returns the text of several
+//! robots, or acts as a collector in the program's own registry. Both read their data when called:
+//! the counters of the control thread ([`Robot::stats`]), the newest state, [`Robot::health`],
+//! [`Robot::granted`], and how motions ended. This costs the control thread no work. The counts of
+//! the thread begin anew with each connection of a supervised robot.
 //!
 //! | metric | type | labels besides `robot` |
 //! |---|---|---|
@@ -28,9 +28,9 @@
 //! | `franka_state_interval_seconds`, `franka_cycle_turnaround_seconds` | histogram | |
 //! | `franka_cycle_slack_seconds` | gauge, the least so far; negative for an overrun | |
 //!
-//! The thread's own buckets are finer than the buckets of these histograms, and their bounds
-//! differ. A bucket counts all durations up to 15/16 of its bound, some of the durations up to the
-//! bound, and none above. The sum is computed from the middles of the thread's buckets, within
+//! The control thread's own histograms have finer buckets with other bounds. Therefore a bucket
+//! here counts all durations up to 15/16 of its bound, some of the durations up to the bound, and
+//! none above it. The sum is computed from the middles of the thread's buckets, and is accurate to
 //! 1/32.
 //!
 //! [OpenMetrics]: https://prometheus.io/docs/specs/om/open_metrics_spec/
@@ -54,24 +54,24 @@ pub use prometheus_client;
 pub const CONTENT_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 impl Robot {
-    /// Returns the metrics of this robot as OpenMetrics text; the label `robot` is its address. See
-    /// [`metrics`](crate::metrics). The content type is
+    /// Returns the metrics of this robot as OpenMetrics text. The label `robot` contains its
+    /// address. See [`metrics`](crate::metrics). The content type is
     /// [`CONTENT_TYPE`](crate::metrics::CONTENT_TYPE).
     pub fn metrics(&self) -> String {
         Exporter::new([(self.address().to_string(), self.clone())]).text()
     }
 }
 
-/// The metrics of some robots. An exporter holds a handle of each robot. Without other handles, a
-/// connection ends when the exporter is dropped, or by [`Robot::shutdown`].
+/// The metrics of one or more robots. An exporter holds a handle of each robot. If it holds the
+/// last handle, the connection ends when the exporter is dropped, or by [`Robot::shutdown`].
 #[derive(Clone, Debug)]
 pub struct Exporter {
     robots: Vec<(String, Robot)>,
 }
 
 impl Exporter {
-    /// Returns the metrics of these robots, each with its value of the label `robot`. The values
-    /// must be distinct, and should be the same in every run of the program.
+    /// Returns the metrics of these robots. Each comes with its value of the label `robot`. The
+    /// values must be distinct, and should be the same in every run of the program.
     pub fn new<L: Into<String>>(robots: impl IntoIterator<Item = (L, Robot)>) -> Self {
         let robots = robots.into_iter();
         Self {

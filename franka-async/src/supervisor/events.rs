@@ -9,7 +9,7 @@ use tokio::sync::broadcast;
 use tokio_stream::wrappers::BroadcastStream;
 use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 
-/// Number of events that a slow listener may lag behind before it misses some.
+/// Number of events by which a slow listener may lag before it misses events.
 pub(crate) const CAPACITY: usize = 256;
 
 /// An event, and the number of events that are missing before it.
@@ -18,12 +18,12 @@ pub(crate) const CAPACITY: usize = 256;
 pub struct Notification {
     /// The event.
     pub event: Event,
-    /// Number of events that were dropped between the last event of this stream and this one,
-    /// because the listener was too slow: it may lag 256 events behind.
+    /// Number of events between the last event of this stream and this one that were dropped
+    /// because the listener was more than 256 events behind.
     pub missed: u64,
 }
 
-/// Events of a robot from now on, each once and in order: see
+/// Stream of the events of a robot from now on, each once and in order: see
 /// [`Robot::events`](crate::Robot::events).
 #[derive(Debug)]
 pub struct Events {

@@ -1,8 +1,9 @@
 //! Supervision of a robot: connects the state machine `franka_rt::supervision` to the handles, to
 //! the bridge of the newest connection, and to the task that reconnects and recovers.
 //!
-//! Handles and bridge call the supervisor. It therefore knows of a mishap before a motion resolves
-//! for it. Its lock is held for some microseconds, and never on the control thread.
+//! Handles and bridge call the supervisor. Therefore it knows of a mishap before the affected
+//! motion resolves. Its lock is held for some microseconds at a time, and never on the control
+//! thread.
 
 mod events;
 
@@ -31,7 +32,7 @@ use crate::world::{self, Instant};
 
 pub use events::{Events, Notification};
 
-/// Something for the task to do.
+/// A job for the task that reconnects and recovers.
 #[derive(Debug)]
 pub(crate) enum Job {
     Connect,
@@ -55,13 +56,13 @@ pub(crate) struct Supervisor {
 
 struct Inner {
     core: Supervision,
-    /// Connection on which a waiting motion begins. Weak, because a waiting motion does not keep
-    /// the connection open.
+    /// Connection on which a waiting motion begins. The reference is weak, because a waiting motion
+    /// does not keep the connection open.
     link: Weak<Link>,
     waiting: Option<Waiting>,
     refused: Vec<Refused>,
     jobs: VecDeque<Job>,
-    /// Sender of events; `None` once closed, like the next field.
+    /// Sender of events; `None` once closed, like the sender of health.
     events: Option<broadcast::Sender<Event>>,
     health: Option<watch::Sender<Health>>,
     #[cfg(feature = "metrics")]
@@ -74,11 +75,12 @@ struct Inner {
 struct Waiting {
     motion: Beginning,
     replies: Replies,
-    /// True if its stream of targets has ended.
+    /// True if the stream of targets of this motion has ended.
     is_closed: bool,
 }
 
-/// A motion that is refused. Dropped without the lock held, because it may own values of the user.
+/// A motion that is refused. It is dropped without holding the lock, because it may own values of
+/// the user.
 struct Refused {
     motion: Beginning,
     replies: Replies,
@@ -113,7 +115,7 @@ impl Supervisor {
         }
     }
 
-    /// True if there is no connection and no further one will come.
+    /// True if there is no connection and will be no other one.
     pub(crate) fn is_closed(&self) -> bool {
         self.lock().core.health().condition == Condition::Closed
     }
@@ -136,7 +138,7 @@ impl Supervisor {
         let inner = self.lock();
         Events::new(match &inner.events {
             Some(events) => events.subscribe(),
-            // The supervision has ended: return a closed channel.
+            // The supervision has ended, so return a closed channel.
             None => broadcast::channel(1).1,
         })
     }
@@ -202,7 +204,7 @@ impl Supervisor {
     }
 
     /// Notes a setting that is about to be sent over the connection that `newest` returns. Returns
-    /// that connection, and the name for [`Self::on_set`].
+    /// that connection, and the identifier for [`Self::on_set`].
     pub(crate) fn declare(
         &self,
         request: Request,
@@ -269,8 +271,8 @@ impl Supervisor {
         self.lock().core.check_latch()
     }
 
-    /// Returns the time at which [`Self::on_time`] must be called; `None` also for a time that no
-    /// clock can show.
+    /// Returns the time at which [`Self::on_time`] must be called; `None` also if no clock can show
+    /// that time.
     pub(crate) fn deadline(&self) -> Option<Instant> {
         let after = self.lock().core.deadline()?;
         self.begun.checked_add(after)
@@ -280,7 +282,7 @@ impl Supervisor {
         self.lock().jobs.pop_front()
     }
 
-    /// Waits until there is a job, or the deadline has changed.
+    /// Waits until there is a job or the deadline has changed.
     ///
     /// # Cancel safety
     /// A notification is not lost: the next call returns at once.
@@ -288,9 +290,9 @@ impl Supervisor {
         self.work.notified().await;
     }
 
-    /// Passes an input to the bridge of the newest connection, or keeps it with the waiting motion.
-    /// Returns that connection, which `newest` looks up under the lock. A waiting motion also
-    /// begins under the lock, so a cancel or a stop never goes to an older connection.
+    /// Passes an input to the bridge of the newest connection, or keeps the input with the waiting
+    /// motion. Returns that connection, which `newest` looks up under the lock. A waiting motion
+    /// also begins under the lock, so a cancel or a stop never goes to an older connection.
     pub(crate) fn pass(&self, input: Input, newest: impl FnOnce() -> Arc<Link>) -> Arc<Link> {
         self.with(|inner, now| {
             let link = newest();
@@ -299,7 +301,7 @@ impl Supervisor {
         })
     }
 
-    /// Applies `act` to a robot as its newest state shows it, and then handles the consequences.
+    /// Applies `act` after the newest state was read, and then handles the consequences.
     fn with<T>(&self, act: impl FnOnce(&mut Inner, Duration) -> T) -> T {
         let mut inner = self.lock();
         let now = world::now() - self.begun;
@@ -347,8 +349,8 @@ impl Inner {
                 mut motion,
                 replies,
             } => {
-                // A motion without a line must not wait, because it would replace another waiting
-                // motion.
+                // A motion whose line could not be planned must not wait, because it would replace
+                // another waiting motion.
                 let unready = matches!(self.core.health().condition, Condition::Unready(_));
                 if let Some(error) = motion.refused.take_if(|_| unready) {
                     let latched = self.core.check_latch().err();
@@ -445,8 +447,8 @@ impl Inner {
         link.send(input);
     }
 
-    /// Answers an input that would move the arm while a stop is latched, and returns all other
-    /// inputs. Motions that begin are refused where they are submitted.
+    /// Answers an input that would move the arm while a stop is latched. Returns all other inputs.
+    /// Motions that begin are refused where they are submitted.
     fn check_latch(&mut self, input: Input) -> Option<Input> {
         let Err(error) = self.core.check_latch() else {
             return Some(input);
@@ -473,18 +475,18 @@ impl Inner {
         None
     }
 
-    /// Notes a goal that its session does not receive.
+    /// Records a goal that its session does not receive.
     fn note_refused(&self, goal: GoalId, error: &MotionError) {
         tracing::info!(goal = goal.0, %error, "goal refused");
         #[cfg(feature = "record")]
         self.journal.ended(goal, &Err(error.clone()));
     }
 
-    /// Hands a motion over to a connection.
+    /// Passes a motion to a connection.
     fn begin(&mut self, motion: Beginning, replies: Replies, link: &Link, now: Duration) {
         let goal = motion.motion.id();
-        // Note the motion before the bridge has it: the robot is not recovered until the motion has
-        // ended.
+        // Note the motion before passing it on, because the robot must not be recovered until the
+        // motion has ended.
         self.core.on_begun(goal, now);
         let sent = link.try_send(Input::Begin { motion, replies });
         if let Err(Input::Begin { motion, replies }) = sent {
@@ -506,8 +508,8 @@ impl Inner {
 
     /// Carries out the decisions of the state machine, in order, and publishes the robot's health.
     fn carry_out(&mut self, closing: &Closing, now: Duration) {
-        // Compute the health first: a receiver of the event then finds the robot as it is after
-        // that event.
+        // Compute the health first, so that a receiver of the event finds the health after that
+        // event.
         let health = self.core.health();
         if let Some(shown) = &self.health {
             shown.send_if_modified(|before| std::mem::replace(before, health) != health);
@@ -564,7 +566,7 @@ impl Inner {
             _ => None,
         };
         if let Some(events) = &self.events {
-            // Fails without listeners.
+            // Sending fails if nobody listens.
             let _ = events.send(event);
         }
         if let Some(reason) = reason {
@@ -580,7 +582,7 @@ mod tests {
 
     use super::*;
 
-    /// A connection may be replaced between reading it and taking the lock.
+    /// A connection may be replaced after it was read and before the lock is taken.
     #[test]
     fn connection_of_an_input_is_looked_up_under_the_lock() {
         let supervisor = Supervisor::new(None);
