@@ -1,4 +1,4 @@
-//! Connects, prints the state, moves the hand 5 cm up and back, then two joints.
+//! Connects, prints the state, moves the hand 5 cm up and back, and then moves two joints.
 //!
 //! ```text
 //! cargo run --release --example quickstart              # a simulated robot in this process
@@ -46,7 +46,7 @@ async fn main() -> anyhow::Result<()> {
 /// is dropped. Asks before a real arm may move.
 async fn connect(address: Option<String>) -> anyhow::Result<(Robot, Option<Running>)> {
     let Some(address) = address else {
-        // The simulated robot waits for a busy computer. A real robot stops its arm.
+        // The simulated robot waits for a busy computer. A real robot would stop its arm.
         let sim = Sim::fr3().wait_for_commands(Duration::from_secs(1));
         let sim = sim.start().await.context("starting the simulator")?;
         let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
@@ -66,7 +66,7 @@ async fn connect(address: Option<String>) -> anyhow::Result<(Robot, Option<Runni
     Ok((robot, None))
 }
 
-/// Awaits a motion, and checks by the robot's own state that it arrived.
+/// Awaits a motion, and checks in the robot's own state that the arm arrived.
 async fn arrive(
     name: &str,
     robot: &Robot,

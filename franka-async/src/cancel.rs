@@ -1,10 +1,10 @@
 //! Cancelling and pausing of motions. Dropping the future of a motion cancels it.
 //!
-//! A motion towards goals is braked within the robot's limits, and so is a session before it ends.
-//! A control function or program is ended by stopping the robot. Each request is one input to the
-//! bridge, which acts after `cancel` or `drop` has returned. The future of a
-//! motion is `Moving`; its `Drop` is in `move_to`. Handles that cancel when dropped are in
-//! `session`, `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
+//! A motion towards goals brakes within the robot's limits, and so does a session before it ends. A
+//! control function or a program ends because the robot is stopped. Each request is one input to
+//! the bridge, which acts after `cancel` or `drop` has returned. The `Drop` of a motion's future is
+//! the `Drop` of `Moving`, in `motion`. Handles that cancel when dropped are in `session`,
+//! `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`, decides what happens.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -17,15 +17,16 @@ use tokio_util::sync::CancellationToken;
 use crate::input::{Beginning, Input};
 use crate::robot::{Robot, WeakRobot};
 
-/// Cancels a motion from elsewhere. An arm on its way to a goal brakes; for a control function or
-/// program, the robot is stopped. Clones cancel the same motion. A canceller does not count as a
-/// handle of the robot: dropping the last [`Robot`] still brakes the arm and closes the connection.
+/// A handle with which any task can cancel a motion. An arm on its way to a goal brakes; for a
+/// control function or a program, the robot is stopped. Clones cancel the same motion. A canceller
+/// does not count as a handle of the robot: dropping the last [`Robot`] still brakes the arm and
+/// closes the connection.
 #[derive(Clone, Debug)]
 pub struct Canceller {
     robot: WeakRobot,
     id: GoalId,
     cancelled: CancellationToken,
-    /// True if the motion should pause; locked while the request is sent.
+    /// True if the motion should pause. The lock is held while the request is sent.
     paused: Arc<Mutex<bool>>,
 }
 
@@ -40,9 +41,10 @@ impl Canceller {
         }
     }
 
-    /// Brakes the motion, which resolves as [`MotionError::Stopped`](crate::MotionError::Stopped).
-    /// A motion that has not begun never begins, and resolves likewise when it is awaited. The call
-    /// has no effect after the motion has ended or was superseded.
+    /// Brakes the arm and cancels the motion, which resolves as
+    /// [`MotionError::Stopped`](crate::MotionError::Stopped). A motion that has not begun never
+    /// begins, and resolves in the same way when it is awaited. The call has no effect after the
+    /// motion has ended or was superseded.
     pub fn cancel(&self) {
         self.cancelled.cancel();
         // If the robot is gone, its motions have been braked.
@@ -55,7 +57,7 @@ impl Canceller {
     pub(crate) fn set_paused(&self, paused: bool) {
         let mut wanted = self.lock_paused();
         *wanted = paused;
-        // The input has no effect on a motion that has not begun.
+        // This input has no effect on a motion that has not begun.
         let goal = self.id;
         if let Some(robot) = self.robot() {
             robot.send(Input::Pause { goal, paused });
@@ -76,7 +78,7 @@ impl Canceller {
         self.id
     }
 
-    /// Begins `motion` of its robot, unless this canceller was used already. Returns the receiver
+    /// Begins `motion` on its robot, unless this canceller was already used. Returns the receiver
     /// of the outcome.
     pub(crate) fn begin(
         &self,
@@ -86,15 +88,15 @@ impl Canceller {
         if self.cancelled.is_cancelled() {
             return None;
         }
-        // The lock makes a pause that comes now wait until the motion is sent.
+        // The lock makes a pause that comes now wait until the motion has been sent.
         let paused = self.lock_paused();
         if let NewMotion::Goal { goal, .. } = &mut motion.motion {
             goal.paused = *paused;
         }
         let outcome = robot.begin(motion);
         drop(paused);
-        // `cancel` sets the token before it sends its input. If the input came before the motion,
-        // it had no effect, but the token is set here.
+        // `cancel` sets the token before it sends its input. If that input came before the motion,
+        // it had no effect, but the token is already set here.
         if self.cancelled.is_cancelled() {
             robot.cancel(self.id);
         }

@@ -13,10 +13,10 @@ use tokio_util::codec::{Decoder, Encoder, Framed};
 
 use crate::world::{self, Stream};
 
-/// Time in which a request must be sent. Source: `SO_SNDTIMEO` of libfranka's command socket.
+/// Time limit for sending a request. Source: `SO_SNDTIMEO` of libfranka's command socket.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Cuts the stream into messages, and writes requests to it.
+/// Splits the stream into messages, and writes requests to it.
 #[derive(Debug)]
 pub(crate) struct MessageCodec {
     next: fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>,
@@ -63,7 +63,7 @@ pub(crate) async fn send(
     }
 }
 
-/// Returns the reason for the end of a connection on whose sockets `what` failed.
+/// Returns the reason why a connection ended on whose sockets `what` failed.
 pub(crate) fn failed(what: &str, error: &io::Error) -> CloseReason {
     CloseReason::Io {
         kind: error.kind(),
@@ -105,7 +105,7 @@ impl Decoder for MessageCodec {
         Ok(Some(Frame { header, payload }))
     }
 
-    /// Reports a stream that ends within a message as ended, not as failed to read.
+    /// Reports a stream that ends within a message as closed, not as failed.
     fn decode_eof(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
         let frame = self.decode(received)?;
         if frame.is_none() {
@@ -124,7 +124,7 @@ impl Encoder<Outgoing> for MessageCodec {
     }
 }
 
-/// Name of the class of a failure in the reference client's socket library.
+/// Returns the name that libfranka's socket library gives to this class of failure.
 pub(crate) fn reason(error: &io::Error) -> String {
     use io::ErrorKind;
     match error.kind() {

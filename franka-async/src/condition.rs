@@ -1,8 +1,8 @@
-//! Conditions that end a motion ([`until`](crate::Motion::until)), and the measured values at the
-//! moment when a condition became true.
+//! Conditions that end a motion ([`until`](crate::Motion::until)), and the values that were
+//! measured when a condition became true.
 //!
 //! The control thread checks the condition in every cycle. The arm brakes within the next
-//! millisecond, however busy the program is.
+//! millisecond, even if the program is busy.
 
 pub use franka_rt::session::condition::{
     Axis, Condition, Quantity, cartesian_contact, collision, contact, elapsed, force, force_x,

@@ -1,4 +1,4 @@
-//! From the options of a connection to a robot.
+//! Connects to a robot with the options of a builder.
 
 use std::hash::{BuildHasher, RandomState};
 use std::sync::Arc;
@@ -22,8 +22,8 @@ impl Robot {
     /// Connects with the default options of [`Robot::builder`].
     ///
     /// # Errors
-    /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see
-    /// [`Builder::realtime`].
+    /// Returns [`ConnectError`] if there is no connection. On a host without a real-time kernel,
+    /// this is [`ConnectError::Realtime`]: see [`Builder::realtime`].
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -33,13 +33,13 @@ impl Robot {
 }
 
 impl Builder {
-    /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
-    /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection,
-    /// and a third one for supervision.
+    /// Connects to the robot: real-time check, TCP, handshake, first state, and description. Call
+    /// it on a Tokio runtime with I/O and time enabled. That runtime then runs the two tasks of the
+    /// connection, and a third one for supervision.
     ///
     /// # Errors
-    /// [`ConnectError`]; nothing is left behind. No step is tried twice, with supervision or
-    /// without.
+    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
+    /// again. No step is repeated, with supervision or without.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -122,7 +122,7 @@ mod tests {
     fn real_time_rights_are_tried_out_on_a_thread_that_may_block() {
         let started = Arc::new(AtomicUsize::new(0));
         let counted = started.clone();
-        // Such a runtime starts a thread for blocking work only.
+        // This runtime starts threads only for blocking work.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .on_thread_start(move || _ = counted.fetch_add(1, Relaxed))

@@ -1,4 +1,4 @@
-//! The model of the connected arm: from the robot's description, if it has one.
+//! The model of the connected arm, from the robot's description if it has one.
 
 #[cfg(feature = "urdf")]
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
@@ -21,12 +21,12 @@ use crate::parameters;
 use crate::robot::Robot;
 use crate::state_model::nominal;
 
-/// Time for the download of a library.
+/// Time limit for the download of a library.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
 /// Returns the model of the arm and a hash of the robot's description. The model comes from the
-/// description if there is one and it is wanted. Otherwise it has the constants of the kind of
-/// robot.
+/// description if the robot has one and it is wanted. Otherwise, it contains the constants of the
+/// kind of robot.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -52,15 +52,15 @@ pub(crate) async fn of(
 }
 
 impl Robot {
-    /// Returns the bytes of the model library of a Franka Emika Robot: a shared library in the
-    /// format of the system. Protocol 5 only.
+    /// Returns the bytes of the model library of a Franka Emika Robot, which is a shared library in
+    /// the format of the system. Protocol 5 only.
     ///
     /// # Errors
-    /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command, without
-    /// asking the robot.
+    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command,
+    /// without asking the robot.
     ///
     /// # Cancel safety
-    /// Only the answer is lost.
+    /// If the future is dropped, only the answer is lost.
     pub async fn load_model_library(
         &self,
         architecture: Architecture,
@@ -86,16 +86,17 @@ mod library {
     use crate::robot::Robot;
 
     impl Robot {
-        /// Asks a Franka Emika Robot for its model library and loads it into this process. Needs
-        /// the feature `model-library`, and Linux.
+        /// Asks a Franka Emika Robot for its model library and loads it into this process. This
+        /// needs the feature `model-library`, and Linux.
         ///
-        /// The call is unsafe, the future is not: `unsafe { robot.model_library() }.await`.
+        /// The call is unsafe, but the future is not: `unsafe { robot.model_library() }.await`.
         ///
         /// # Errors
-        /// [`ModelLibraryError`].
+        /// Returns [`ModelLibraryError`] if the robot does not send the library, or if it cannot be
+        /// loaded.
         ///
         /// # Cancel safety
-        /// Only the answer is lost.
+        /// If the future is dropped, only the answer is lost.
         ///
         /// # Safety
         /// You must trust the robot to run code in this process: see [`ModelLibrary::load`].
@@ -107,7 +108,7 @@ mod library {
         }
     }
 
-    /// Returns the protocol's name of the processor that this was compiled for, if it has one.
+    /// Returns the protocol's name of the processor for which this was compiled, if it has one.
     fn host_architecture() -> Option<Architecture> {
         Some(match std::env::consts::ARCH {
             "x86_64" => Architecture::X64,

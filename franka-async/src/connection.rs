@@ -1,7 +1,7 @@
 //! Options of a connection: see [`Robot::builder`](crate::Robot::builder). For the scheduling of
-//! the control thread see [`realtime`](crate::realtime). A service that passes a robot on to its
-//! own clients checks them with `admission` (feature `admission`). With a [`lease`], the service
-//! lets one client at a time move the arm.
+//! the control thread, see [`realtime`](crate::realtime). A service through which clients move a
+//! robot checks their requests with `admission` (feature `admission`). With a [`lease`], the
+//! service lets one client at a time move the arm.
 
 #[cfg(feature = "admission")]
 pub mod admission;

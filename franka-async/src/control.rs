@@ -1,9 +1,10 @@
-//! Control at 1 kHz by the program itself.
+//! Control at 1 kHz by code of the program.
 //!
-//! * [`Control`]: a function that the real-time thread calls with every state. The call is a
-//!   future: [`Robot::control_torques`](crate::Robot::control_torques) and its siblings.
-//! * [`Active`]: the same in a thread of the program, which reads states and writes commands.
-//! * [`AsynchronousControl`]: sparse joint targets between which the robot plans.
+//! * [`Control`]: a function that the real-time thread calls with every state.
+//!   [`Robot::control_torques`](crate::Robot::control_torques) and similar methods return this
+//!   future.
+//! * [`Active`]: a thread of the program reads states and writes commands itself.
+//! * [`AsynchronousControl`]: sparse joint targets; the robot plans the motion between them.
 //! * [`slot`]: passes values into a control function, which must not lock.
 
 pub use crate::active_control::Active;

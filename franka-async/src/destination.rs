@@ -1,4 +1,4 @@
-//! Destinations of motions: a target, or an offset from the target or the current pose of the arm.
+//! Destinations of motions: a target, or an offset from the target or from the arm's current pose.
 
 use franka_model::Model;
 use franka_proto::RobotState;
@@ -7,20 +7,19 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::end_effector_pose::{pose_at, pose_of};
 
-/// Destination of a motion. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, from an
-/// [`Offset`], or by the functions here. A pose or joint positions may come with a velocity, for a
-/// target that moves.
+/// Destination of a motion. It is made from a [`Pose`](crate::Pose), joint positions `[rad]` or an
+/// [`Offset`], or by the functions here. For a target that moves, a pose or joint positions may
+/// come with a velocity.
 ///
-/// A destination that is not a whole pose is completed from the present target when the motion
-/// begins.
+/// If a destination is not a whole pose, the present target completes it when the motion begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Destination {
     /// A target.
     Target(Target),
-    /// A position of the end effector in the base frame, `[m]`, with the orientation kept.
+    /// A position of the end effector in the base frame, `[m]`; the orientation stays.
     Position(Vector3<f64>),
-    /// An orientation of the end effector in the base frame, with the position kept.
+    /// An orientation of the end effector in the base frame; the position stays.
     Orientation(UnitQuaternion<f64>),
     /// A pose at an offset from the present target, or from the arm.
     Offset(Offset),
@@ -37,8 +36,7 @@ impl Destination {
         Self::Orientation(orientation)
     }
 
-    /// Returns the target to the extent that it is known without the current one: its kind is
-    /// final.
+    /// Returns the target as far as it is known without the current one; its kind is final.
     pub(crate) fn kind(&self) -> Target {
         match self {
             Self::Target(target) => *target,
@@ -76,7 +74,7 @@ impl From<Offset> for Destination {
     }
 }
 
-/// The poses of the end effector that a destination may be relative to, in the base frame.
+/// The end effector's poses to which a destination may be relative, in the base frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now {
     /// Pose of the present target.
@@ -86,8 +84,8 @@ pub(crate) struct Now {
 }
 
 impl Now {
-    /// Returns the poses of an arm in `state` that moves to a target. `reference` is the joint
-    /// positions of its reference, `[rad]`; `None` if nothing moves the arm.
+    /// Returns the poses of an arm in `state` that moves to a target. `reference` contains the
+    /// joint positions of its reference, `[rad]`; `None` if nothing moves the arm.
     pub(crate) fn of(
         model: &Model,
         state: &RobotState,
@@ -99,7 +97,7 @@ impl Now {
         let target = match heading {
             Some(Target::Pose(pose)) => pose,
             Some(Target::Joints(q)) => pose_at(q),
-            // A held or followed target has no pose.
+            // A target of holding or following has no pose.
             Some(_) => reference.map_or(arm, pose_at),
             None => arm,
         };
@@ -107,8 +105,8 @@ impl Now {
     }
 }
 
-/// An offset from the present target of the arm, or from the arm itself, in the axes of the base or
-/// of the end effector.
+/// An offset from the arm's present target, or from the arm's pose, along the axes of the base or
+/// the end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     way: Isometry3<f64>,
@@ -143,9 +141,9 @@ impl Offset {
         }
     }
 
-    /// Makes the offset count from the measured pose of the arm. By default an offset counts from
-    /// the target that the arm is held at or moves to, so that several offsets add up exactly.
-    /// Without such a target it counts from the measured pose.
+    /// Makes the offset start at the measured pose of the arm. By default, an offset starts at the
+    /// target that the arm is held at or moves to, so that several offsets add up exactly. If there
+    /// is no such target, it starts at the measured pose.
     #[must_use]
     pub fn from_arm(mut self) -> Self {
         self.from_arm = true;

@@ -1,8 +1,8 @@
 //! The connection to an end effector: one task that owns both of its sockets.
 //!
-//! An action has one answer, when it has ended, and no deadline: a homing takes seconds, a blocked
-//! move minutes. The task sends a stop once the future of the running action is dropped. States
-//! come by UDP at a low rate, so a task of the runtime is fast enough for them.
+//! An action has one answer, when it has ended, and no deadline: homing takes seconds, and a
+//! blocked move takes minutes. The task sends a stop when the future of the running action is
+//! dropped. States come by UDP at a low rate, so a task of the runtime is fast enough for them.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -27,10 +27,10 @@ use crate::journal::{ActionEnd, Journal, What};
 use crate::states::States;
 use crate::world::{self, Datagrams, StatePort, Stream, timeout};
 
-/// Largest number of states that are read ahead of an answer.
+/// Largest number of states that are read before an answer.
 const DATAGRAMS: usize = 64;
 
-/// Length of the longest datagram that is read, in bytes.
+/// Largest length of a datagram that is read, in bytes.
 const DATAGRAM_SIZE: usize = 64;
 
 /// Differences between the end effectors.
@@ -46,8 +46,8 @@ pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
     /// Returns the device's clock, `[ms]`.
     fn clock(state: &Self::State) -> u32;
 
-    /// Returns the reason why the device cannot carry out the request, if the request is out of
-    /// range.
+    /// Returns the reason why the device cannot carry out the request; `None` if the request is
+    /// within its range.
     fn out_of_range(_request: &Self::Request, _state: &Self::State) -> Option<String> {
         None
     }
@@ -157,8 +157,8 @@ struct QueuedAction<D: Device> {
 /// Sender of requests to the task. Clones share the task.
 pub(crate) struct DeviceConnection<D: Device> {
     address: SocketAddr,
-    /// Unbounded, but in practice short: the task reads requests at once, and refuses requests that
-    /// do not fit into the session.
+    /// Unbounded, but in practice short, because the task reads requests at once, and refuses those
+    /// that do not fit into the session.
     calls: mpsc::UnboundedSender<QueuedAction<D>>,
     states: watch::Receiver<D::State>,
     closing: Closing,
@@ -251,10 +251,10 @@ where
         &self.journal
     }
 
-    /// Sends a request and waits for the end of its action.
+    /// Sends a request, and waits until its action has ended.
     ///
     /// # Cancel safety
-    /// The action is stopped, unless a newer one has taken its place.
+    /// Dropping the future stops the action, unless a newer action has replaced it.
     pub(crate) async fn act(&self, request: D::Request) -> ActionResult<D> {
         let asked = request.clone();
         let ended = self.ask(request).await.map_err(|error| match error {
@@ -310,9 +310,9 @@ struct DeviceTask<D: Device> {
     socket: Datagrams,
     peer: IpAddr,
     states: watch::Sender<D::State>,
-    /// The newest action, until its answer comes.
+    /// The newest action, until its answer has come.
     running: Option<(CommandId, ActionReply<D>)>,
-    /// Stop requests, and actions that newer ones have replaced.
+    /// Stop requests, and actions that newer actions have replaced.
     waiting: HashMap<CommandId, ActionReply<D>>,
     #[cfg(feature = "record")]
     journal: Journal,
@@ -321,8 +321,8 @@ struct DeviceTask<D: Device> {
 impl<D: Device> DeviceTask<D> {
     async fn run(mut self, mut calls: mpsc::UnboundedReceiver<QueuedAction<D>>, closing: Closing) {
         let Err(reason) = self.serve(&mut calls).await;
-        // Note the reason before the answers are dropped: a caller that finds them dropped then
-        // finds it.
+        // Note the reason before the answers are dropped, so that a caller who finds them dropped
+        // finds the reason.
         closing.note(reason);
     }
 
@@ -364,7 +364,7 @@ impl<D: Device> DeviceTask<D> {
         &mut self,
         QueuedAction { request, answer }: QueuedAction<D>,
     ) -> Result<(), CloseReason> {
-        // The caller's future was dropped before its request was sent. A stop is still sent.
+        // The caller's future was dropped before the request was sent. A stop is sent nevertheless.
         if answer.is_closed() && request != D::STOP {
             return Ok(());
         }
@@ -375,7 +375,7 @@ impl<D: Device> DeviceTask<D> {
         let outgoing = match self.session.request(&request) {
             Ok(outgoing) => outgoing,
             Err(error) => {
-                // Fails if the caller was dropped.
+                // This fails if the caller was dropped.
                 let _ = answer.send(Err(error.into()));
                 return Ok(());
             }
@@ -400,7 +400,7 @@ impl<D: Device> DeviceTask<D> {
                 self.session.abandon(stop.id());
                 codec::send(&mut self.stream, stop).await
             }
-            // Without the connection, the device stops on its own.
+            // Without the connection, the device stops by itself.
             Err(error) => {
                 tracing::warn!(%error, "too many pending requests to send a stop; closing the \
                     connection instead");
@@ -429,7 +429,7 @@ impl<D: Device> DeviceTask<D> {
 
     /// Routes one message. An error ends the connection.
     fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation<D::Command>> {
-        // Read first the states that were sent before this answer: they show its result.
+        // First read the states that were sent before this answer, because they show its result.
         let mut buffer = [0; DATAGRAM_SIZE];
         for _ in 0..DATAGRAMS {
             match self.socket.try_recv_from(&mut buffer) {

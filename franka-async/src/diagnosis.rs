@@ -1,5 +1,5 @@
-//! Diagnosis of a motion that the robot ended: the limit that was exceeded, the cycles before it,
-//! and the remedy.
+//! Explains why the robot ended a motion: the exceeded limit, the cycles before that, and the
+//! remedy.
 //!
 //! ```no_run
 //! # use franka_async::{MotionError, Robot};

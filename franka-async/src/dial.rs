@@ -1,4 +1,4 @@
-//! From an endpoint to a TCP connection.
+//! Connects to an endpoint by TCP.
 
 use std::net::{IpAddr, SocketAddr, SocketAddrV6};
 use std::time::Duration;
@@ -10,11 +10,11 @@ use crate::endpoint::{Endpoint, EndpointError, Host};
 use crate::error::{Attempt, ConnectError};
 use crate::world::{self, Stream, timeout};
 
-/// Time for the TCP connection. Source: libfranka 0.21, `network.h`.
+/// Time limit for the TCP connection. Source: libfranka 0.21, `network.h`.
 pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Finds the addresses of the host within `limit`, each once, in the order in which to try them.
-/// `port` is the default port, for an endpoint without one.
+/// Looks up the addresses of the host within `limit`. Returns each address once, in the order in
+/// which to try them. `port` is used if the endpoint has none.
 pub(crate) async fn resolve<P: Protocol>(
     endpoint: &Endpoint,
     port: u16,
@@ -26,7 +26,7 @@ pub(crate) async fn resolve<P: Protocol>(
             return Ok(vec![SocketAddrV6::new(*address, port, 0, *scope).into()]);
         }
         Host::Address(address, _) => return Ok(vec![SocketAddr::new(*address, port)]),
-        // The system knows its interfaces, and how such addresses are written.
+        // The system knows its interfaces, and how to write such addresses.
         Host::Scoped(address, interface) => (format!("{address}%{interface}"), Some(interface)),
         Host::Name(name) => (name.clone(), None),
     };
@@ -43,8 +43,8 @@ pub(crate) async fn resolve<P: Protocol>(
             addresses.push(address);
         }
     }
-    // The reference client supports only IPv4. Robots are therefore reached by IPv4, and an IPv6
-    // address is a special case.
+    // libfranka supports only IPv4. Therefore robots are reached by IPv4, and an IPv6 address is a
+    // special case.
     addresses.sort_by_key(SocketAddr::is_ipv6);
     if addresses.is_empty() {
         return Err(network("No address found"));
@@ -113,7 +113,7 @@ mod tests {
 
     const LIMIT: Duration = Duration::from_secs(5);
 
-    /// An address of this host without a listener.
+    /// An address of this host where nothing listens.
     async fn silent(ip: &str) -> SocketAddr {
         let ip: IpAddr = ip.parse().expect("an address");
         let listener = TcpListener::bind((ip, 0)).await.expect("a free port");
@@ -168,7 +168,7 @@ mod tests {
             ("172.16.0.2", "172.16.0.2:1337"),
             ("[fd00::2]:99", "[fd00::2]:99"),
             ("fe80::2%1", "[fe80::2%1]:1337"),
-            // Every Linux has the interface, with the index 1.
+            // Every Linux system has this interface, with the index 1.
             ("fe80::2%lo", "[fe80::2%1]:1337"),
         ] {
             assert_eq!(found(endpoint).await.expect("an address"), [address]);

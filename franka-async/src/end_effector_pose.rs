@@ -1,4 +1,5 @@
-//! The pose of the end effector in the base frame, `[m]`: as measured, and at joint positions.
+//! The pose of the end effector in the base frame, `[m]`: the measured pose, and the pose at given
+//! joint positions.
 
 use franka_model::{Frame, Model, transform};
 use franka_proto::RobotState;
@@ -11,7 +12,7 @@ pub(crate) fn pose_of(state: &RobotState) -> Option<Isometry3<f64>> {
 }
 
 /// Returns the pose of the end effector at the joint positions `q`, `[rad]`, with the end effector
-/// of `state`. An end effector that is not a rigid transformation counts as the flange.
+/// of `state`. If that end effector is not a rigid transformation, the flange is used instead.
 pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Isometry3<f64> {
     let ee = reported_end_effector(model, state).unwrap_or_default();
     let pose = model.pose(Frame::EndEffector, &q.into(), &ee);

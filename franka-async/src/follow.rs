@@ -1,4 +1,4 @@
-//! Following a stream of targets.
+//! Motions that follow a stream of targets.
 
 use std::fmt;
 use std::future::{Future, IntoFuture};
@@ -22,11 +22,11 @@ use crate::options::{GoalOptions, goal_options};
 use crate::robot::Robot;
 use crate::session::Session;
 
-/// Targets as they come; fused.
+/// Targets as they come, as a fused stream.
 pub(crate) type Targets = Pin<Box<dyn Stream<Item = Target> + Send>>;
 
-/// A motion that follows the newest of a stream of targets; see [`Robot::follow`] and
-/// [`Arm::follow`](crate::Arm::follow). Nothing moves before it is awaited.
+/// A motion that follows the newest target of a stream; see [`Robot::follow`] and
+/// [`Arm::follow`](crate::Arm::follow). Nothing moves until it is awaited.
 #[must_use = "a motion does nothing until it is awaited"]
 pub struct Follow {
     robot: Robot,
@@ -39,9 +39,9 @@ pub struct Follow {
 }
 
 impl Robot {
-    /// Follows the newest of the targets in `targets`, poses or joint positions `[rad]`, until the
-    /// sender is dropped, and then stops at the last target. Targets may come at any rate and any
-    /// distance apart: the arm moves within its budget.
+    /// Follows the newest target in `targets` (poses or joint positions `[rad]`) until the sender
+    /// is dropped, and then stops at the last target. Targets may come at any rate, and any
+    /// distance apart: the arm moves within its limits.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -49,7 +49,7 @@ impl Robot {
         Follow::new(self.clone(), None, watched(targets))
     }
 
-    /// Follows the newest of the targets that a stream yields; otherwise like [`Self::follow`]. See
+    /// Follows the newest target that a stream yields. Otherwise it is like [`Self::follow`]. See
     /// also [`Arm::follow_stream`](crate::Arm::follow_stream).
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
@@ -88,20 +88,20 @@ impl Follow {
 
     goal_options!(target);
 
-    /// Bounds how far ahead of the arm a target may be, metres and radians above zero; unbounded by
-    /// default. A target that is further ahead is moved closer, in every cycle anew while targets
-    /// come. A wrong target then cannot move the arm far once the stream stops.
+    /// Limits how far ahead of the arm a target may be, in metres and radians above zero; unlimited
+    /// by default. While targets come, a target that is further ahead is moved closer in every
+    /// cycle. Therefore a wrong target cannot move the arm far once the stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
         self.lead = Some(lead);
         self
     }
 
-    /// Gives up when no target has come for `silence`, in whole milliseconds from 10 on. The arm
-    /// then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
+    /// Ends the motion if no target has come for `silence`: whole milliseconds, at least 10. The
+    /// arm then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
     /// ([`OnTimeout::Brake`]). When the arm rests, the future resolves as [`MotionError::Held`] or
     /// [`MotionError::Braked`], unless targets come again before that. A target counts even if it
-    /// equals the previous one. The control thread itself counts the silence. Without a watchdog,
-    /// the arm holds the last target indefinitely.
+    /// equals the previous one. The control thread measures this time, so it does not depend on the
+    /// program. Without a watchdog, the arm holds the last target indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,
@@ -110,7 +110,7 @@ impl Follow {
         self
     }
 
-    /// Begins together with the motions of other robots: see
+    /// Makes the motion begin together with the motions of other robots: see
     /// [`Motion::start_with`](crate::Motion::start_with). Targets that come before the start
     /// replace the first one.
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
@@ -149,7 +149,7 @@ impl Follow {
                 ..goal
             })
         };
-        // Options that are not accepted are refused before a target is awaited.
+        // Refuse wrong options before waiting for a target.
         towards(Target::Rest)?;
         let first = tokio::select! {
             biased;
@@ -157,7 +157,7 @@ impl Follow {
             first = newest(&mut targets) => first,
         };
         let Some(first) = first else {
-            // Nothing to follow: the arm continues as before.
+            // There is nothing to follow, so the arm continues as before.
             return Err(GoalError::NoTarget.into());
         };
         let motion = NewMotion::Goal {
@@ -203,7 +203,7 @@ impl Follow {
     }
 }
 
-/// Waits for the end of the session, and returns the reason why it takes no goals.
+/// Waits for the end of the session, and returns the reason why it accepts no goals.
 async fn end_of(session: Option<&Session>) -> MotionError {
     match session {
         Some(session) => session
@@ -215,9 +215,9 @@ async fn end_of(session: Option<&Session>) -> MotionError {
     }
 }
 
-/// Returns the newest of the available targets, once there is one; `None` at the end. From a stream
-/// that is always ready, returns the last of [`AT_ONCE`], so that the caller can serve other
-/// events.
+/// Returns the newest available target once there is one; `None` at the end of the stream. If the
+/// stream is always ready, returns the last of [`AT_ONCE`] targets, so that the caller can serve
+/// other events.
 async fn newest(targets: &mut Targets) -> Option<Target> {
     let mut newest = targets.next().await?;
     for _ in 1..AT_ONCE {
@@ -229,11 +229,12 @@ async fn newest(targets: &mut Targets) -> Option<Target> {
     Some(newest)
 }
 
-/// Number of targets read from a stream before the newest one is passed on. A stream with one
-/// target per millisecond and a task that is delayed by a quarter of a second reach this number.
+/// Number of targets that are read from a stream before the newest one is passed on. A stream with
+/// one target per millisecond reaches this number if the task is delayed by a quarter of a second.
 const AT_ONCE: usize = 256;
 
-/// Returns the next item that a stream has ready. Its next poll registers a waker again.
+/// Returns the next item if the stream has one ready. The next poll of the stream registers a waker
+/// again.
 fn poll_once(targets: &mut Targets) -> Poll<Option<Target>> {
     let mut context = Context::from_waker(std::task::Waker::noop());
     targets.as_mut().poll_next(&mut context)
@@ -245,8 +246,8 @@ impl IntoFuture for Follow {
 
     /// Returns a future that resolves when the targets have ended and the arm rests at the last
     /// one, or with an error. A target that is not accepted brakes the arm and ends the motion with
-    /// [`MotionError::Goal`]. Before the first target nothing begins, and no watchdog counts. A
-    /// stream that ends without a target resolves as [`GoalError::NoTarget`].
+    /// [`MotionError::Goal`]. Nothing begins before the first target, not even the watchdog. If the
+    /// stream ends without a target, the future resolves as [`GoalError::NoTarget`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

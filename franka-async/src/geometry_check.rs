@@ -9,28 +9,28 @@ use franka_rt::session::geometry::{RESIDUAL_MAX, residual};
 
 use crate::error::ConnectError;
 
-/// Number of states to try until one has the poses of a known geometry. While a robot is guided by
-/// hand, its pose and joint positions may be of different moments.
+/// Number of states that are tried until one fits a known geometry. While a robot is guided by
+/// hand, its pose and its joint positions may belong to different moments.
 const STATES: usize = 10;
 
-/// Agreement of a robot's model with the poses that the robot reports, checked when connecting: see
+/// Result of comparing a robot's model with its reported poses when connecting: see
 /// [`Robot::geometry_check`](crate::Robot::geometry_check).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct GeometryCheck {
     /// Lengths in the robot's description, or in the constants of its kind.
     pub described: Lengths,
-    /// Lengths that the model computes with. They differ from the described ones where the robot's
-    /// poses have other [known](Lengths::KNOWN) lengths.
+    /// Lengths with which the model computes. They differ from the described lengths if the robot's
+    /// poses fit other [known](Lengths::KNOWN) lengths.
     pub used: Lengths,
     /// Distance of the reported pose from the pose of the model at the same joint positions, `[m]`,
-    /// or the largest difference of an element of their rotation matrices times 0.1 m, whichever is
-    /// greater. `None` if the robot reported no pose.
+    /// or the largest difference between elements of their rotation matrices times 0.1 m, whichever
+    /// is greater. `None` if the robot reported no pose.
     pub residual: Option<f64>,
 }
 
 impl GeometryCheck {
-    /// Greatest residual that counts as agreement, `[m]`.
+    /// Largest residual that counts as agreement, `[m]`.
     pub const RESIDUAL_MAX: f64 = RESIDUAL_MAX;
 
     /// True unless the poses were compared and disagree.
@@ -39,12 +39,12 @@ impl GeometryCheck {
             .is_none_or(|residual| residual <= RESIDUAL_MAX)
     }
 
-    /// True if the poses were compared, and agree with the lengths in the description.
+    /// True if the poses were compared and agree with the lengths in the description.
     pub fn is_as_described(&self) -> bool {
         self.agrees() && self.residual.is_some() && self.used == self.described
     }
 
-    /// Compares this state with `model`. If they disagree, also compares the known lengths.
+    /// Compares this state with `model`. If they disagree, also tries the known lengths.
     fn of(model: &Model, state: &RobotState) -> Self {
         let described = *model.lengths();
         let with = |used: Lengths| Self {
@@ -61,7 +61,7 @@ impl GeometryCheck {
     }
 }
 
-/// Prints one sentence for a person.
+/// Prints one sentence for people.
 impl fmt::Display for GeometryCheck {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -99,7 +99,7 @@ impl fmt::Display for GeometryCheck {
     }
 }
 
-/// Prints lengths in a sentence for a person.
+/// Prints lengths in a sentence for people.
 struct Told<'a>(&'a Lengths);
 
 impl fmt::Display for Told<'_> {
@@ -112,7 +112,7 @@ impl fmt::Display for Told<'_> {
     }
 }
 
-/// A comparison of a model with states, until a state has the poses of a known geometry.
+/// A comparison of a model with states, which continues until a state fits a known geometry.
 #[derive(Debug)]
 pub(crate) struct Comparison {
     model: Model,
@@ -145,12 +145,13 @@ impl Comparison {
         }
     }
 
-    /// Returns the model with the lengths of the robot's own poses, and the result of the check. A
-    /// robot that reports no pose has the lengths that were found `before`, if its description has
-    /// the same lengths as then.
+    /// Returns the model with the lengths that fit the robot's own poses, and the result of the
+    /// check. If the robot reports no pose, the lengths that were found `before` are used, provided
+    /// that its description contains the same lengths as then.
     ///
     /// # Errors
-    /// [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is `accepted`.
+    /// Returns [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is
+    /// `accepted`.
     pub(crate) fn conclude(
         self,
         accepted: bool,
@@ -235,7 +236,7 @@ mod tests {
         }
     }
 
-    /// A state of a Franka Emika Robot with the Hand, of 2017, with six digits, as printed in the
+    /// A state of a Franka Emika Robot with the Hand from 2017, printed with six digits in the
     /// documentation of the Franka Control Interface.
     #[test]
     #[expect(clippy::approx_constant, reason = "four digits are reported")]

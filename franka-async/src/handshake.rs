@@ -1,5 +1,5 @@
-//! The handshake on a new command connection: sending and waiting. `franka_proto::client::Session`
-//! defines its messages and verdict.
+//! The handshake on a new command connection. `franka_proto::client::Session` defines its messages
+//! and its verdict.
 
 use franka_proto::Protocol;
 use franka_proto::client::{Event, Session};
@@ -11,8 +11,8 @@ use crate::codec::{MessageCodec, StreamError};
 use crate::error::ConnectError;
 use crate::world::Stream;
 
-/// Announces `udp_port` to the peer, for its states, and waits for the answer: the connection is
-/// open, or the peer has another version.
+/// Announces `udp_port`, to which the peer should send its states, and waits for the answer: the
+/// connection is open, or the peer has another version.
 pub(crate) async fn shake_hands<P: Protocol>(
     stream: &mut Framed<Stream, MessageCodec>,
     session: &mut Session<P>,
@@ -34,7 +34,7 @@ pub(crate) async fn shake_hands<P: Protocol>(
         match session.on_message(frame.message())? {
             Event::Connected { .. } => return Ok(()),
             Event::Incompatible(refusal) => return Err(refusal.into()),
-            // This message is not the answer, which may still come until the time is up.
+            // This message is not the answer, which may still come before the time limit.
             _ => {}
         }
     }

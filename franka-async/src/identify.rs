@@ -1,4 +1,4 @@
-//! Torques of an arm that its model does not have, measured in a minute of small motions: see
+//! Torques of an arm that its model does not contain, measured in a minute of small motions: see
 //! [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
 
 use std::future::IntoFuture;
@@ -16,8 +16,8 @@ use crate::arm::Engage;
 use crate::error::IdentifyError;
 use crate::robot::Robot;
 
-/// Planned motions that measure friction and bias of the joints and the load at the flange. Made by
-/// [`Robot::identify`]; nothing moves before [`Self::run`] is awaited.
+/// Planned motions that measure the friction and bias of the joints, and the load at the flange.
+/// [`Robot::identify`] plans them; nothing moves until [`Self::run`] is awaited.
 #[derive(Clone, Debug)]
 #[must_use = "an identification does nothing until it is run"]
 pub struct Identify {
@@ -26,10 +26,10 @@ pub struct Identify {
 }
 
 impl Robot {
-    /// Plans motions from the present position of the arm that identify its friction, bias and
-    /// load. In each of six poses all joints move 0.2 rad to and fro twice, at 0.2 rad/s. The space
-    /// around the arm must be free ([`Identify::reach`]), and the arm must carry the load to
-    /// identify.
+    /// Plans motions from the present position of the arm that identify its friction, its bias and
+    /// its load. In each of six poses, all joints move to and fro twice, by 0.2 rad at 0.2 rad/s.
+    /// The space around the arm must be free ([`Identify::reach`]), and the arm must carry the load
+    /// that you want to identify.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::Error> {
@@ -52,8 +52,8 @@ impl Robot {
 }
 
 impl Identify {
-    /// Returns the planned motions, in order; the last one ends where the first one begins.
-    /// `Display` prints a line for each.
+    /// Returns the planned motions in order; the last one ends where the first one begins.
+    /// `Display` prints one line for each.
     pub fn motions(&self) -> &[PlannedMotion] {
         self.plan.motions()
     }
@@ -63,23 +63,23 @@ impl Identify {
         self.plan.duration()
     }
 
-    /// Returns the distance that the motions move the arm from its present position. A compliant
-    /// arm is some millimetres off its reference.
+    /// Returns how far the motions take the arm from its present position. A compliant arm is some
+    /// millimetres away from its reference.
     pub fn reach(&self) -> Reach {
         self.plan.reach()
     }
 
-    /// Moves the arm and returns its identified values. The robot and this connection stay
-    /// unchanged; the connection learns in any motion. Pass the result to
-    /// [`Builder::known`](crate::connection::Builder::known) of later connections, and declare the
-    /// load by [`Robot::set_load`] if you like.
+    /// Moves the arm and returns its identified values. This changes neither the robot nor this
+    /// connection, which learns in any motion anyway. Pass the result to
+    /// [`Builder::known`](crate::connection::Builder::known) for later connections, and declare the
+    /// load with [`Robot::set_load`] if you like.
     ///
     /// # Errors
-    /// [`IdentifyError`] if a motion fails, if the arm has left the position of the plan, or if
-    /// something held or pushed the arm.
+    /// Returns [`IdentifyError`] if a motion fails, if the arm has left the position of the plan,
+    /// or if something held or pushed the arm.
     ///
     /// # Cancel safety
-    /// Dropping the future brakes the arm, in the background; the measurements are lost.
+    /// Dropping the future brakes the arm in the background; the measurements are lost.
     pub async fn run(self) -> Result<Identified, IdentifyError> {
         let Self { robot, plan } = self;
         let state = robot.state();
@@ -110,7 +110,7 @@ impl Identify {
                     record = records.recv(), if is_open => match record {
                         Ok(record) => fit.on_record(&record),
                         Err(RecvError::Lagged(_)) => {}
-                        // The motion has the reason.
+                        // The motion itself reports the reason.
                         Err(RecvError::Closed) => is_open = false,
                     },
                     outcome = &mut moving => {
@@ -125,6 +125,6 @@ impl Identify {
     }
 }
 
-/// Distance that a joint may be from the start of the motions, `[rad]`. Under the robot's
-/// controller a joint sinks by less after a motion.
+/// Largest distance of a joint from the start of the motions, `[rad]`. Under the robot's
+/// controller, a joint sinks by less than this after a motion.
 const MOVED: f64 = 0.02;

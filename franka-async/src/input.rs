@@ -1,4 +1,4 @@
-//! Inputs of handles and motions to the bridge, and its answers.
+//! Inputs of handles and motions to the bridge, and the answers of the bridge.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -19,19 +19,20 @@ pub(crate) enum Input {
         motion: Beginning,
         replies: Replies,
     },
-    /// Moves the target of a goal. The reply is true if the goal is still the newest one.
+    /// Changes the target of a goal. The reply is true if the goal is still the newest one.
     Update {
         goal: GoalId,
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
     /// Begins a motion whose outcome is not awaited. The reply reports whether the motion is
-    /// accepted, as do the replies to the next two inputs.
+    /// accepted.
     Set {
         motion: Beginning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Begins the newest waiting motion, if there is one, as `Set` does; no caller waits for it.
+    /// Begins the newest waiting motion, if there is one, as `Set` does. No caller waits for a
+    /// reply.
     SetNewest {
         waiting: Waiting,
     },
@@ -45,11 +46,11 @@ pub(crate) enum Input {
     Tune {
         id: GoalId,
         tuning: Box<Tuning>,
-        /// Place where accepted tuning is kept for later goals.
+        /// Storage for accepted tuning, for later goals.
         kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Replies when all earlier inputs are processed.
+    /// Replies when all earlier inputs have been processed.
     Await {
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
@@ -65,16 +66,17 @@ pub(crate) enum Input {
     },
     Cancel {
         goal: GoalId,
-        /// The refused target for which the goal is cancelled.
+        /// The reason why a target was refused, if the goal is cancelled for that reason.
         refused: Option<GoalError>,
     },
     Stop {
         goal: GoalId,
-        /// True if no motion is admitted after the stop until it is released.
+        /// True if motions are refused after the stop until it is released.
         latches: bool,
         ended: oneshot::Sender<Outcome>,
     },
-    /// Brakes, ends the motion and closes. The reply comes when the control thread has ended.
+    /// Brakes, ends the motion, and closes the connection. The reply comes when the control thread
+    /// has ended.
     Shutdown {
         ended: oneshot::Sender<()>,
     },
@@ -88,26 +90,26 @@ pub(crate) enum Input {
 #[derive(Debug)]
 pub(crate) struct Beginning {
     pub(crate) motion: NewMotion,
-    /// Destination of the goal, if that depends on the present poses.
+    /// Destination of the goal, if it depends on the present poses.
     pub(crate) destination: Option<Box<Destination>>,
     /// Waypoints of the path.
     pub(crate) path: Option<Arc<[Waypoint]>>,
-    /// Reason why the motion must not begin: the arm cannot move to the target on a straight line.
+    /// Reason why the motion must not begin: the arm cannot move to the target in a straight line.
     pub(crate) refused: Option<GoalError>,
-    /// The options of a motion of the joints that replaces the straight line in that case.
+    /// Options of a motion of the joints that replaces the straight line in that case.
     pub(crate) joint_fallback: Option<Box<GoalOptions>>,
 }
 
 impl Beginning {
-    /// Sets this posture in the goal of the motion.
+    /// Sets `posture` in the goal of the motion.
     pub(crate) fn lead(&mut self, posture: Option<[f64; 7]>) {
         if let NewMotion::Goal { goal, .. } = &mut self.motion {
             goal.posture = posture;
         }
     }
 
-    /// Replaces the straight line of the motion by a motion of the joints to `q`, `[rad]`, if that
-    /// is allowed. Otherwise the motion is refused for `error`.
+    /// Replaces the straight line by a motion of the joints to `q`, `[rad]`, if that is allowed.
+    /// Otherwise, the motion is refused with `error`.
     pub(crate) fn lead_joints(&mut self, q: [f64; 7], error: GoalError, model: &Model) {
         let (NewMotion::Goal { goal, .. }, Some(options)) =
             (&mut self.motion, &self.joint_fallback)
@@ -136,8 +138,8 @@ impl From<NewMotion> for Beginning {
     }
 }
 
-/// The newest motion that no caller waits for and that the bridge has not begun yet. However many
-/// motions are put there, only one input at a time is queued for them.
+/// The newest motion that no caller waits for and that the bridge has not begun yet. Only one input
+/// at a time is queued, regardless of the number of motions that are put here.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Waiting(Arc<Mutex<Option<Box<Beginning>>>>);
 
@@ -151,7 +153,7 @@ impl Waiting {
         self.lock().is_none()
     }
 
-    /// Returns the result of `look` on the waiting motion, if there is one.
+    /// Returns the result of `look` on the waiting motion; `None` if there is none.
     #[cfg(feature = "record")]
     pub(crate) fn peek<T>(&self, look: impl FnOnce(&Beginning) -> T) -> Option<T> {
         self.lock().as_deref().map(look)
@@ -167,8 +169,8 @@ impl Waiting {
     }
 }
 
-/// Returns the outcome of a motion that the bridge never answered: bridges answer everything unless
-/// their runtime drops them.
+/// Returns the outcome of a motion that the bridge never answered, which happens only if its
+/// runtime drops the bridge.
 pub(crate) fn unserved<E>(_: E) -> Outcome {
     let reason = CloseReason::RuntimeEnded;
     Err(MotionError::ConnectionClosed { reason })
@@ -177,7 +179,7 @@ pub(crate) fn unserved<E>(_: E) -> Outcome {
 /// Receivers of reports on a program, a session or a motion.
 #[derive(Debug)]
 pub(crate) struct Replies {
-    /// Receives the beginning of a program or a session.
+    /// Receives a message when a program or a session has begun.
     pub(crate) began: Option<oneshot::Sender<()>>,
     /// Receives the outcome.
     pub(crate) ended: EndReply,
@@ -188,7 +190,7 @@ pub(crate) struct Replies {
 pub(crate) enum EndReply {
     /// The future of the motion.
     One(oneshot::Sender<Outcome>),
-    /// Every handle of the session.
+    /// All handles of the session.
     All(watch::Sender<Option<Outcome>>),
 }
 
@@ -201,7 +203,7 @@ impl EndReply {
         }
     }
 
-    /// Sends the outcome. A motion that was dropped or detached has no receiver.
+    /// Sends the outcome. If the motion was dropped or detached, no one receives the outcome.
     pub(crate) fn send(self, outcome: Outcome) {
         match self {
             Self::One(ended) => drop(ended.send(outcome)),
@@ -210,7 +212,7 @@ impl EndReply {
     }
 }
 
-/// Sender to the bridge's inbox, and the bridge's publications.
+/// Sender to the inbox of the bridge, and receivers of what the bridge publishes.
 #[derive(Clone, Debug)]
 pub(crate) struct BridgeHandle {
     /// Inbox of the bridge. It is unbounded, because dropping a motion must be able to send.

@@ -1,4 +1,4 @@
-//! Tuning that a session keeps, shared with the task that accepts changes.
+//! Tuning of a session, shared with the task that accepts changes.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,7 +18,7 @@ impl KeptTuning {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Applies these changes, and keeps the rest.
+    /// Applies these changes and keeps everything else.
     pub(crate) fn change(&self, changes: Tuning) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         *kept = changes.or(*kept);

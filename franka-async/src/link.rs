@@ -1,4 +1,4 @@
-//! One connection to a robot: everything that ends with it.
+//! One connection to a robot, with everything that ends with it.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -37,13 +37,13 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Sends an input to the bridge. A bridge that has ended drops the input together with the
-    /// sender of its reply, which the receiver notices.
+    /// Sends an input to the bridge. A bridge that has ended drops the input and the sender of its
+    /// reply; the receiver notices this.
     pub(crate) fn send(&self, input: Input) {
         let _ = self.try_send(input);
     }
 
-    /// As [`Self::send`]; returns the input if the bridge has ended.
+    /// Sends an input as [`Self::send`] does, but returns it if the bridge has ended.
     #[expect(
         clippy::result_large_err,
         reason = "it goes back to where it came from"
@@ -67,11 +67,11 @@ impl Link {
         self.subscriptions().silence(newest)
     }
 
-    /// Waits until the link has been given up for `more` and no state has come meanwhile. Returns
-    /// the whole silence.
+    /// Waits until the link has been given up for the time `more` without a state. Returns the
+    /// whole silence.
     ///
     /// # Cancel safety
-    /// Nothing happens if the future is dropped.
+    /// Dropping the future has no effect.
     pub(crate) async fn stays_silent(&self, more: Duration) -> Duration {
         const LOOK: Duration = Duration::from_millis(50);
         let mut since = None;
@@ -92,7 +92,7 @@ impl Link {
     /// Waits until the connection has ended, and returns the reason.
     ///
     /// # Cancel safety
-    /// Nothing happens if the future is dropped.
+    /// Dropping the future has no effect.
     pub(crate) async fn ended(&self) -> CloseReason {
         self.bridge.inbox.closed().await;
         self.channel.closing().reason()

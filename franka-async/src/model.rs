@@ -1,10 +1,10 @@
 //! The model of an arm: kinematics, dynamics, limits, inverse kinematics, distances.
 //!
-//! [`Robot::model`](crate::Robot::model) is the model of the connected arm, from its own
-//! description (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] need no robot.
-//! Control functions may call the functions here, which neither allocate nor wait. Models that are
-//! read from a description, or loaded, are made beforehand. [`StateModel`] accepts states, with
-//! their end effector and load.
+//! [`Robot::model`](crate::Robot::model) returns the model of the connected arm, from the robot's
+//! own description (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] need no
+//! robot. Control functions may call the functions here, because they neither allocate nor wait.
+//! Load models from a description or a library beforehand. [`StateModel`] takes the end effector
+//! and the load from a state.
 //!
 //! ```
 //! use franka_async::READY;
@@ -16,8 +16,8 @@
 //! assert!((flange.translation.z - 0.590_282_052).abs() < 1e-9);
 //! ```
 //!
-//! Feature `model-library` (off by default): [`load_model_library`], the code that a Franka Emika
-//! Robot provides.
+//! With the feature `model-library` (off by default), [`load_model_library`] loads the code that a
+//! Franka Emika Robot provides.
 //!
 //! [`load_model_library`]: crate::Robot::load_model_library
 

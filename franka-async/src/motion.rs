@@ -1,4 +1,4 @@
-//! Motions under way: their futures, handles, progress, and motions of several robots that begin
+//! Motions under way: their futures, handles and progress; motions of several robots that begin
 //! together.
 
 pub use crate::cancel::Canceller;

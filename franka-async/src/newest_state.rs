@@ -1,4 +1,4 @@
-//! The newest state: read from the control thread's slot, or published as it changes.
+//! The newest state, read from the control thread's slot or published as it changes.
 
 use std::sync::{Arc, Weak};
 
@@ -9,7 +9,7 @@ use tokio::sync::watch;
 
 /// Reads the newest state from the control thread's slot.
 ///
-/// Reading the state costs no other thread or task anything. Subscribing to changes makes the
+/// Reading the state costs other threads and tasks nothing. Subscribing to changes makes the
 /// control thread wake the bridge for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
@@ -17,14 +17,14 @@ pub(crate) struct Newest {
     reader: StateReader,
     /// The state before the first state that `reader` finds.
     first: RobotState,
-    /// Last state published by the bridge, which may be some states old without wake-ups per state.
-    /// Weak, so that subscribers see the end of the connection. No receiver, because receivers are
-    /// counted as subscribers.
+    /// The last state that the bridge published, which may be some states old without wake-ups for
+    /// every state. The sender is weak, so that subscribers see the end of the connection. There is
+    /// no receiver here, because receivers count as subscribers.
     publisher: Weak<watch::Sender<RobotState>>,
     state_wakeups: StateWakeups,
 }
 
-/// Publishes a state, unless a newer state is published already.
+/// Publishes a state, unless a newer one is already published.
 pub(crate) fn publish(publisher: &watch::Sender<RobotState>, state: RobotState) {
     publisher.send_if_modified(|newest| {
         let newer = state.message_id > newest.message_id;
@@ -53,8 +53,8 @@ impl Newest {
 
     /// Returns the newest state.
     pub(crate) fn state(&self) -> RobotState {
-        // If nothing was read, nothing is newer than `first`, or the kernel has stopped this thread
-        // in the middle of each attempt.
+        // Nothing was read: nothing is newer than `first`, or the kernel has stopped this thread in
+        // the middle of each attempt.
         let newest = self.reader.clone().newest();
         newest.unwrap_or_else(|| {
             let publisher = self.publisher.upgrade();
@@ -65,7 +65,7 @@ impl Newest {
     /// Returns a receiver of the newest state and of its changes from now on.
     pub(crate) fn changes(&self) -> watch::Receiver<RobotState> {
         let Some(publisher) = self.publisher.upgrade() else {
-            // The connection has ended: return a closed channel.
+            // The connection has ended, so return a closed channel.
             return watch::channel(self.state()).1;
         };
         let mut states = publisher.subscribe();

@@ -1,5 +1,5 @@
-//! From an address to a connection. If the robot refuses the version and names an older version,
-//! the driver tries the older version.
+//! Opens a connection to an address. If the robot refuses the version and names an older one, the
+//! driver tries the older version.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ pub(crate) struct Opened {
     pub(crate) version: Version,
     pub(crate) link: Link,
     pub(crate) first: RobotState,
-    /// The bridge, to be started once the supervisor knows of the connection.
+    /// The bridge, which is started once the supervisor knows of the connection.
     pub(crate) bridge: Prepared,
 }
 
@@ -45,8 +45,7 @@ pub(crate) async fn open(
     states: &Arc<watch::Sender<RobotState>>,
     supervisor: &Arc<Supervisor>,
 ) -> Result<Opened, ConnectError> {
-    // Check before anything is sent, as the reference client does. The thread makes its own
-    // requests later.
+    // Check before anything is sent, as libfranka does. The thread makes its own requests later.
     let scheduling = builder.scheduling.clone();
     off_worker(move || scheduling.probe()).await??;
 
@@ -193,7 +192,7 @@ async fn open_with(
 }
 
 /// Runs work that blocks for milliseconds on a thread where no other task waits: starting and
-/// joining threads, locking and touching memory. Dropping the future discards the result.
+/// joining threads, or locking and touching memory. Dropping the future discards the result.
 async fn off_worker<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> std::io::Result<T> {
@@ -201,8 +200,8 @@ async fn off_worker<T: Send + 'static>(
     done.map_err(std::io::Error::other)
 }
 
-/// Compares the model with the poses of this state, and of newer states until they agree. Returns
-/// the model to use.
+/// Compares the model with the poses of this state, and then of newer states until one agrees.
+/// Returns the model to use.
 async fn check_geometry(
     model: Model,
     first: &RobotState,
@@ -212,7 +211,7 @@ async fn check_geometry(
     let mut comparison = Comparison::new(model, first);
     let deadline = world::now() + builder.connect_timeout;
     while comparison.needs_more() {
-        // The states so far count if no more arrive.
+        // If no more states arrive, the states so far count.
         let Ok(state) = timeout_at(deadline, newer_state(handle, wake)).await else {
             break;
         };
@@ -222,7 +221,7 @@ async fn check_geometry(
     comparison.conclude(builder.accept_geometry_error, before)
 }
 
-/// Waits for a state that was not read yet. Fails if none comes, because control needs a first
+/// Waits for a state that was not read before. Fails if none comes, because control needs a first
 /// state.
 async fn newer_state(handle: &mut Handle, wake: &Wake) -> Result<RobotState, ConnectError> {
     loop {

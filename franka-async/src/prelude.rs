@@ -1,4 +1,4 @@
-//! Names for a first program, by one import:
+//! Imports the names for a first program:
 //!
 //! ```
 //! use franka_async::prelude::*;

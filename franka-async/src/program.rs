@@ -1,4 +1,4 @@
-//! Programs: motions whose commands are written from outside the control thread.
+//! Programs: motions whose commands come from outside the control thread.
 
 use franka_proto::MoveRequest;
 use franka_rt::driver::Program;
@@ -15,7 +15,7 @@ impl Robot {
     /// future stops the robot.
     ///
     /// # Errors
-    /// The reason why the motion ended before it ran.
+    /// Returns the reason why the motion ended before it ran.
     pub(crate) async fn begin_program(
         &self,
         id: GoalId,
@@ -42,7 +42,7 @@ impl Robot {
             stop.defuse();
             return Ok(outcome);
         }
-        // The program will never run: the outcome has the reason.
+        // The program will never run, and the outcome contains the reason.
         let outcome = outcome.await.unwrap_or_else(unserved);
         stop.defuse();
         Err(outcome.err().unwrap_or(MotionError::Stopped))

@@ -1,4 +1,4 @@
-//! Target and reference of target control, and the progress of a motion.
+//! Target and reference of target control, and the progress of motions.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -7,11 +7,11 @@ use franka_rt::driver::{ReferenceReader, ReferenceState};
 use franka_rt::session::{Bindings, GoalId, Target};
 use nalgebra::Isometry3;
 
-/// Reference of target control, in the newest cycle.
+/// Reference of target control in the newest cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {
-    /// `message_id` of the state that the reference answered, `[ms]` of the robot's clock.
+    /// `message_id` of the state for which the reference was computed, `[ms]` of the robot's clock.
     pub time: u64,
     /// Joint positions, `[rad]`.
     pub q: [f64; 7],
@@ -21,8 +21,8 @@ pub struct Reference {
     pub ddq: [f64; 7],
     /// Pose of the end effector at those positions, in the base frame.
     pub pose: Isometry3<f64>,
-    /// Guards that have held the arm back within the last 0.1 s; a guard stays listed for 0.2 s at
-    /// most.
+    /// Guards that have held back the arm within the last 0.1 s; a guard stays listed for at most
+    /// 0.2 s.
     pub guards: Bindings,
 }
 
@@ -30,16 +30,16 @@ pub struct Reference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Time since the motion began, by the robot's clock, pauses included.
+    /// Time since the motion began, by the robot's clock, including pauses.
     pub elapsed: Duration,
-    /// Time until the reference is at the target, if nothing delays it. The arm then needs at least
-    /// a quarter of a second to settle.
+    /// Time until the reference reaches the target, if nothing delays it. After that, the arm needs
+    /// at least a quarter of a second to settle.
     pub remaining: Duration,
 }
 
 impl Progress {
     /// Returns the share of the motion's time that has passed, from 0 to 1. A pause reduces the
-    /// share a little, because the motion brakes and begins again.
+    /// share a little, because the motion brakes and starts again.
     pub fn fraction(&self) -> f64 {
         let all = self.elapsed + self.remaining;
         if all.is_zero() {
@@ -49,11 +49,11 @@ impl Progress {
     }
 }
 
-/// Target and reference of target control on a connection.
+/// Target and reference of target control, on one connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     references: ReferenceReader,
-    /// Last accepted target, and its name. Locked only to copy it.
+    /// The last accepted target, and the identifier of its goal. The lock is held only to copy it.
     heading: Arc<Mutex<Option<(GoalId, Target)>>>,
 }
 
@@ -65,7 +65,7 @@ impl Course {
         }
     }
 
-    /// Notes the target of target control.
+    /// Stores the target of target control.
     pub(crate) fn head_for(&self, heading: Option<(GoalId, Target)>) {
         let mut noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         *noted = heading;
@@ -77,21 +77,21 @@ impl Course {
         noted.map(|(_, target)| target)
     }
 
-    /// Returns the name of the present goal of target control; `None` if it moves nothing.
+    /// Returns the identifier of the present goal of target control; `None` if it moves nothing.
     #[cfg(feature = "record")]
     pub(crate) fn goal(&self) -> Option<GoalId> {
         let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         noted.map(|(goal, _)| goal)
     }
 
-    /// Returns the newest reference; `None` if target control has not answered the newest state.
+    /// Returns the newest reference; `None` if target control did not answer the newest state.
     pub(crate) fn reference(&self) -> Option<ReferenceState> {
         self.references.newest()
     }
 
     /// Returns the progress of the motion `goal`; `None` before it has begun and after its end.
     pub(crate) fn progress(&self, goal: GoalId) -> Option<Progress> {
-        // In the first cycle of a session nothing is planned yet.
+        // In the first cycle of a session, nothing is planned yet.
         let begun = |newest: &ReferenceState| newest.goal == goal && !newest.elapsed.is_zero();
         let newest = self.reference().filter(begun)?;
         Some(Progress {

@@ -1,4 +1,4 @@
-//! States and records of the control thread, passed on to subscribers.
+//! Passes states and records of the control thread on to subscribers.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -12,12 +12,12 @@ use tokio::sync::{broadcast, watch};
 
 use crate::newest_state;
 
-/// Number of items that a slow listener may lag behind before it misses some: two seconds of
-/// records, one second of states.
+/// Number of items by which a slow listener may lag before it misses items: two seconds of records,
+/// one second of states.
 const RECORDS: usize = 2048;
 const STATES: usize = 1024;
 
-/// An item of the stream of every state.
+/// An item in the stream of all states.
 #[derive(Clone, Debug)]
 pub(crate) enum Update {
     State(Arc<RobotState>),
@@ -25,14 +25,14 @@ pub(crate) enum Update {
     Silence(Duration),
 }
 
-/// The reading ends of the thread's queues, each with its listeners.
+/// The reading ends of the thread's queues, and the listeners of each.
 pub(crate) struct Publisher {
     pub(crate) newest: StateReader,
     pub(crate) sequence: StateSequence,
     pub(crate) queue: Receiver<Record>,
     state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
-    /// True if the bridge itself looks at every state.
+    /// True if the bridge itself reads every state.
     is_watched: bool,
     listeners: Listeners,
 }
@@ -51,7 +51,7 @@ struct Listeners {
     records: broadcast::Sender<Record>,
 }
 
-/// Sources for subscribers. Weak, so that subscribers see the end of the connection.
+/// Sources for subscribers. They are weak, so that subscribers see the end of the connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
@@ -102,8 +102,8 @@ impl Publisher {
     /// bridge for every state.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Count the states before the subscribers: none of these states is due to a subscriber that
-        // comes later.
+        // Count the states before the subscribers, because a subscriber that comes later must not
+        // get these states.
         let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip(come);
@@ -142,7 +142,7 @@ impl Publisher {
     pub(crate) fn tell_silence(&self, silence: Duration) {
         let since = self.state().message_id;
         *lock(&self.silent) = Some(Silent { since, silence });
-        // This fails without subscribers. Later subscribers find the silence above.
+        // This fails without subscribers. Later subscribers find the silence that is stored above.
         let _ = self.listeners.updates.send(Update::Silence(silence));
     }
 }
@@ -156,7 +156,7 @@ impl Listeners {
 }
 
 impl Subscriptions {
-    /// Returns a receiver of states from now on. The first ones may be of states that came before.
+    /// Returns a receiver of states from now on. The first states may be older than that.
     pub(crate) fn updates(&self) -> broadcast::Receiver<Update> {
         let updates = subscribe(&self.updates);
         self.state_wakeups.request();
@@ -164,14 +164,14 @@ impl Subscriptions {
     }
 
     /// Returns the silence for which the link was given up, if no state has come since. `newest` is
-    /// the `message_id` of the newest state. The message of a silence is sent once; later
+    /// the `message_id` of the newest state. The message of a silence is sent only once, so later
     /// subscribers call this.
     pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
         let silent = *lock(&self.silent);
         silent.and_then(|told| (newest <= told.since).then_some(told.silence))
     }
 
-    /// Returns a receiver of records from now on; the first ones may be of earlier cycles.
+    /// Returns a receiver of records from now on; the first records may be of earlier cycles.
     pub(crate) fn records(&self) -> broadcast::Receiver<Record> {
         let records = subscribe(&self.records);
         self.state_wakeups.request();
@@ -180,14 +180,14 @@ impl Subscriptions {
 }
 
 fn lock(silent: &Mutex<Option<Silent>>) -> std::sync::MutexGuard<'_, Option<Silent>> {
-    // No panic can leave the value half-finished.
+    // A panic cannot leave the value half-finished.
     silent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn subscribe<T: Clone>(sender: &broadcast::WeakSender<T>) -> broadcast::Receiver<T> {
     match sender.upgrade() {
         Some(sender) => sender.subscribe(),
-        // The connection has ended: return a closed channel.
+        // The connection has ended, so return a closed channel.
         None => broadcast::channel(1).1,
     }
 }

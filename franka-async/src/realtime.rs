@@ -1,4 +1,4 @@
-//! Scheduling of the control thread, and its punctuality: [`Realtime`](crate::Realtime) and the
+//! Scheduling of the control thread, and how punctual it is: [`Realtime`](crate::Realtime) and the
 //! options of a [`Builder`](crate::connection::Builder).
 
 pub use franka_rt::sched::{Granted, Kernel, Scheduling};

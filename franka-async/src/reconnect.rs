@@ -27,7 +27,7 @@ pub(crate) struct Reconnector {
     robot: WeakRobot,
     supervisor: Arc<Supervisor>,
     builder: Builder,
-    /// Stays the same from connection to connection, and ends with this value.
+    /// This stays the same from connection to connection, and ends with the task.
     states: Arc<watch::Sender<RobotState>>,
     connecting: OptionFuture<BoxFuture<'static, Result<Opened, ConnectError>>>,
     recovering: OptionFuture<BoxFuture<'static, (u64, Result<(), CommandError>)>>,
@@ -56,8 +56,8 @@ impl Reconnector {
         }
     }
 
-    /// Runs until there is no connection and no further one will come. `handles` is cancelled when
-    /// the last handle is dropped. `shutdowns` are notified of the end.
+    /// Runs until there is no connection and will be no other one. `handles` is cancelled when the
+    /// last handle is dropped. `shutdowns` receives the senders that are notified of the end.
     pub(crate) async fn run(
         mut self,
         mut shutdowns: mpsc::UnboundedReceiver<oneshot::Sender<()>>,
@@ -102,10 +102,10 @@ impl Reconnector {
         while let Some(ended) = shutdowns.recv().await {
             done.push(ended);
         }
-        // Drop all that ends with this task before the waiting callers are notified.
+        // Drop everything that ends with this task before the waiting callers are notified.
         drop(self);
         for ended in done {
-            // Fails if the caller was dropped.
+            // This fails if the caller was dropped.
             let _ = ended.send(());
         }
     }
@@ -133,7 +133,7 @@ impl Reconnector {
     }
 
     fn connect(&mut self) {
-        // The task of the previous connection.
+        // Drop the task of the previous connection.
         self.configuring = None.into();
         let span = tracing::info_span!("reconnect");
         let (builder, states) = (self.builder.clone(), self.states.clone());
@@ -153,7 +153,7 @@ impl Reconnector {
             Ok(opened) => opened,
             Err(error) => return self.supervisor.on_connect_failed(failure(&error)),
         };
-        // Without handles no program needs the connection: dropping it closes it.
+        // Without handles, no program needs the connection, and dropping it closes it.
         let Some(robot) = self.robot.upgrade() else {
             return;
         };
@@ -164,7 +164,7 @@ impl Reconnector {
             return self.supervisor.on_connect_failed(failure);
         }
         let (link, first) = (Arc::new(opened.link), opened.first);
-        // Replace the state, even by a lower number: a robot that was restarted counts from the
+        // Replace the state even by a lower number, because a restarted robot counts from the
         // beginning.
         self.states.send_replace(first);
         robot.set_link(link.clone());
@@ -205,8 +205,8 @@ impl Reconnector {
         self.supervisor.on_recovery(reflex, answer);
     }
 
-    /// Asks the program's function, which may take its time, for permission. Without a function,
-    /// the answer comes by [`Robot::agree`].
+    /// Asks the program's function for permission, which may take its time. Without a function, the
+    /// answer comes by [`Robot::agree`].
     fn ask(&mut self, reflex: Reflex) {
         let Some(ask) = self.builder.ask.clone() else {
             return;
@@ -230,7 +230,7 @@ impl Reconnector {
         self.is_closing = true;
         if let Some(robot) = self.robot.upgrade() {
             let (ended, _) = oneshot::channel();
-            // The end of the bridge is reported to the supervisor.
+            // The supervisor receives a report of the bridge's end.
             robot.link().send(Input::Shutdown { ended });
         }
     }
@@ -244,7 +244,7 @@ impl Reconnector {
     }
 }
 
-/// Also runs when the runtime drops the task.
+/// This also runs when the runtime drops the task.
 impl Drop for Reconnector {
     fn drop(&mut self) {
         self.supervisor.close(CloseReason::RuntimeEnded);
@@ -259,7 +259,7 @@ fn failure(error: &ConnectError) -> ConnectFailure {
     }
 }
 
-/// Describes the differences of two models for a person.
+/// Describes the differences between two models, for people.
 fn difference(expected: &Model, got: &Model) -> String {
     if expected.kind() != got.kind() {
         return format!("got {:?}, expected {:?}", got.kind(), expected.kind());

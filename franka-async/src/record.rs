@@ -1,6 +1,6 @@
-//! Records of every cycle's inputs and outputs ([`Robot::records`](crate::Robot::records),
+//! Records of every cycle, with its inputs and outputs ([`Robot::records`](crate::Robot::records),
 //! [`Robot::cycles`](crate::Robot::cycles), [`Engage::observer`](crate::Engage::observer)), and the
-//! log that an error carries.
+//! log in an error.
 
 pub use franka_proto::RobotCommand;
 pub use franka_rt::driver::{

@@ -18,9 +18,9 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: KeptTuning,
-    /// Joint positions at the start, `[rad]`: the default posture of goals.
+    /// Joint positions at the start, `[rad]`, which are the default posture of goals.
     posture: OnceLock<[f64; 7]>,
-    /// Pulse of the deadman that the session is bound to.
+    /// Pulse of the deadman to which the session is bound.
     pulse: Option<Arc<Pulse>>,
     /// Newest goal that was set without waiting.
     pub(crate) waiting: Waiting,
@@ -51,7 +51,7 @@ impl Session {
         &self.robot
     }
 
-    /// Returns the newest connection of the session's robot: its own, or a later one after its end.
+    /// Returns the newest connection of the session's robot: the session's own, or a later one.
     pub(crate) fn link(&self) -> Arc<Link> {
         self.robot.link()
     }
@@ -65,7 +65,7 @@ impl Session {
         &self.tuning
     }
 
-    /// Notes the joint positions at the start of the session, if known.
+    /// Stores the joint positions at the start of the session, if known.
     pub(crate) fn keep(&self, posture: Option<[f64; 7]>) {
         if let Some(posture) = posture {
             self.posture.get_or_init(|| posture);
@@ -90,8 +90,8 @@ impl Session {
         }
     }
 
-    /// As [`Self::check`]. Also returns the error for a goal while a stop is latched or a deadman
-    /// holds the arm.
+    /// Returns the errors of [`Self::check`]. Also returns the error for a goal while a stop is
+    /// latched or a deadman holds the arm.
     pub(crate) fn check_goal(&self) -> Result<(), MotionError> {
         self.robot.supervisor().check_latch()?;
         self.check()?;
@@ -105,7 +105,7 @@ impl Session {
     pub(crate) fn ended(&self) -> impl Future<Output = Outcome> + Send + 'static {
         let (mut ended, robot) = (self.ended.clone(), self.robot.clone());
         async move {
-            // A waiting caller keeps the connection.
+            // A waiting caller keeps the connection open.
             let _robot = robot;
             match ended.wait_for(Option::is_some).await {
                 Ok(outcome) => outcome.clone().expect("it was waited for"),
@@ -114,7 +114,7 @@ impl Session {
         }
     }
 
-    /// Sends to the bridge and waits for the reply.
+    /// Sends an input to the bridge and waits for the reply.
     pub(crate) async fn ask(
         &self,
         input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
@@ -125,9 +125,9 @@ impl Session {
         reply.map_err(|error| self.explain(error))
     }
 
-    /// Replaces [`MotionError::Disengaged`] by the cause of the end of the session, because the
+    /// Replaces [`MotionError::Disengaged`] by the reason why the session ended, because the
     /// lifecycle knows only the last session of its connection. Calls after the end of the session
-    /// and its connection return that cause, too.
+    /// and of its connection also return that reason.
     pub(crate) fn explain(&self, error: MotionError) -> MotionError {
         match (&*self.ended.borrow(), error) {
             (Some(Err(ended)), MotionError::Disengaged | MotionError::ConnectionClosed { .. }) => {

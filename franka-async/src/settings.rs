@@ -1,3 +1,3 @@
-//! Settings of the robot: see [`Robot::set_load`](crate::Robot::set_load) and its siblings.
+//! Settings of the robot: see [`Robot::set_load`](crate::Robot::set_load) and similar methods.
 
 pub use franka_proto::{CollisionBehavior, Filters, Load, VirtualWall};

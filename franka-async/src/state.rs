@@ -1,5 +1,5 @@
-//! States of the robot, in motion or not: the newest state as it changes ([`States`]), or every
-//! state ([`StateStream`]).
+//! States of the robot, whether the arm moves or not: the newest state as it changes ([`States`]),
+//! or every state ([`StateStream`]).
 
 pub use crate::state_stream::{Reading, StateStream};
 pub use crate::states::States;

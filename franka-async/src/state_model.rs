@@ -1,13 +1,13 @@
-//! The model of an arm, evaluated at states with their end effector and load.
+//! The model of an arm, evaluated at the robot's states.
 
 use std::sync::Arc;
 
 use franka_model::{Dynamics, EndEffector, Load, Model, RobotKind};
 use franka_proto::{RobotState, Version};
 
-/// The model of one robot, for its states. Each state has the joint positions and velocities, and
-/// the end effector, the load and the gravity that are set on the robot. Move a copy into a control
-/// function: no method here allocates or waits.
+/// The model of one robot, evaluated at its states. Each state contains the joint positions and
+/// velocities, and the end effector, the load and the gravity that are set on the robot. Move a
+/// copy into a control function: no method here allocates or waits.
 ///
 /// ```no_run
 /// # use franka_async::control::Torques;
@@ -37,15 +37,15 @@ impl StateModel {
         Self { model, version }
     }
 
-    /// Returns a model with the constants of the kind of robot that has `version`: for tests of a
-    /// law without a robot. An arm that describes itself has its own model,
+    /// Returns a model with the constants of the kind of robot that uses `version`. Use it to test
+    /// control laws without a robot. A robot that describes itself has its own model: see
     /// [`Robot::state_model`](crate::Robot::state_model).
     pub fn nominal(version: Version) -> Self {
         Self::new(Arc::new(nominal(version)), version)
     }
 
-    /// Computes pose and Jacobian of the end effector, mass matrix, Coriolis and gravity torques,
-    /// in one pass over the arm.
+    /// Computes the pose and the Jacobian of the end effector, the mass matrix, and the Coriolis
+    /// and gravity torques, in one pass over the arm.
     pub fn dynamics(&self, state: &RobotState) -> Dynamics {
         self.model.dynamics(
             &state.q.into(),
@@ -62,7 +62,8 @@ impl StateModel {
         EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
     }
 
-    /// Returns end effector and payload as one load, for the methods of [`Model`] that need it.
+    /// Returns the end effector and the payload as one load, for the methods of [`Model`] that need
+    /// it.
     pub fn load(&self, state: &RobotState) -> Load {
         let load = state.total_load(self.version);
         Load::from_arrays(load.m_total, &load.F_x_Ctotal, &load.I_total)
@@ -74,7 +75,8 @@ impl StateModel {
     }
 }
 
-/// Returns the constants of the kind of robot that has `version`: a version belongs to one kind.
+/// Returns the constants of the kind of robot that uses `version`; every version belongs to one
+/// kind.
 pub(crate) fn nominal(version: Version) -> Model {
     let kind = match version {
         Version::V5 => RobotKind::Fer,
@@ -89,7 +91,7 @@ mod tests {
 
     use super::*;
 
-    /// In both protocols, 2 kg of payload and 1 kg of end effector weigh 3 kg together, for any
+    /// In both protocols, 2 kg of payload and 1 kg of end effector weigh as much as 3 kg, for any
     /// direction of gravity in the state.
     #[test]
     fn gravity_of_a_state_includes_payload_and_end_effector() {

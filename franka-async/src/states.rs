@@ -1,4 +1,4 @@
-//! The newest state as it changes, in copies.
+//! Receivers of the newest state as it changes.
 
 use std::pin::Pin;
 use std::task::{Context, Poll};
@@ -11,14 +11,14 @@ use tokio_stream::wrappers::WatchStream;
 use crate::close::Closing;
 use crate::error::ReadError;
 
-/// The newest state of a robot or an end effector as it changes: see
+/// A receiver of the newest state of a robot or an end effector as it changes: see
 /// [`Robot::states`](crate::Robot::states).
 ///
-/// As a [`Stream`] it yields each change, or the newest of several changes since the last item, and
-/// ends when the connection does. A clone begins with the newest state at the time of cloning.
+/// As a [`Stream`], it yields each change, or the newest of several changes since the last item. It
+/// ends with the connection. A clone begins with the newest state at the time of cloning.
 ///
-/// States are handed out as copies. A borrow would lock out the task that publishes states and
-/// serves `stop`. A borrow held across an await would keep both waiting for each other.
+/// All methods return copies of states. A borrow would lock out the task that publishes states and
+/// serves `stop`. If a borrow were held across an await, both tasks would wait for each other.
 #[derive(Debug)]
 pub struct States<S = RobotState> {
     published: watch::Receiver<S>,
@@ -27,7 +27,7 @@ pub struct States<S = RobotState> {
 }
 
 impl<S: Copy + Send + Sync + 'static> States<S> {
-    /// Returns the changes of `published` from now on; `closing` has the reason for the end.
+    /// Returns the changes of `published` from now on; `closing` contains the reason for the end.
     pub(crate) fn new(mut published: watch::Receiver<S>, closing: Closing) -> Self {
         published.mark_unchanged();
         Self {
@@ -46,7 +46,7 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
     /// newest state. [`newest`](Self::newest) may have returned that state before.
     ///
     /// # Errors
-    /// [`ReadError::ConnectionClosed`].
+    /// Returns [`ReadError::ConnectionClosed`] if the connection has ended.
     ///
     /// # Cancel safety
     /// Dropping the future loses nothing: the next call returns the state.
@@ -57,16 +57,17 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
         })
     }
 
-    /// Waits for a state that satisfies `condition`, including the present one, and returns it.
-    /// States that are replaced by a newer one before this task runs are not tested; for every
-    /// state, see [`Robot::read`](crate::Robot::read). Has no time limit except the end of the
+    /// Waits for a state that satisfies `condition`, including the present one, and returns it. A
+    /// state that a newer one replaces before this task runs is not tested; to test every state,
+    /// use [`Robot::read`](crate::Robot::read). The wait has no time limit except the end of the
     /// connection, because only the caller knows when the state should come.
     ///
     /// # Errors
-    /// [`ReadError::ConnectionClosed`].
+    /// Returns [`ReadError::ConnectionClosed`] if the connection has ended.
     ///
     /// # Cancel safety
-    /// States tested before the future is dropped are not tested again, except the newest.
+    /// A later call does not test again the states that were tested before the future was dropped,
+    /// except the newest one.
     pub async fn wait_for(
         &mut self,
         mut condition: impl FnMut(&S) -> bool,

@@ -21,7 +21,7 @@ impl Default for Tally {
 }
 
 impl Tally {
-    /// Counts an event, if it is the end of a motion or a reflex.
+    /// Counts an event if it is the end of a motion or a reflex.
     pub(crate) fn note(&mut self, event: &EventKind) {
         match event {
             EventKind::MotionEnded { outcome, .. } => {
@@ -42,7 +42,8 @@ impl Tally {
         OUTCOMES.into_iter().zip(self.motions)
     }
 
-    /// Returns the number of reflexes for each error. A reflex with several errors counts for each.
+    /// Returns the number of reflexes for each error. A reflex with several errors counts once for
+    /// each error.
     pub(crate) fn reflexes(&self) -> impl Iterator<Item = (RobotError, u64)> + use<> {
         RobotError::ALL.into_iter().zip(self.reflexes)
     }

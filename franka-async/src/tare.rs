@@ -1,4 +1,4 @@
-//! The external wrench minus the offset that the robot reports with nothing attached: see
+//! The external wrench without the offset that the robot reports with nothing attached: see
 //! [`Robot::tare`].
 
 use std::ops::ControlFlow;
@@ -11,14 +11,14 @@ use crate::robot::Robot;
 
 impl Robot {
     /// Averages the robot's estimate of external forces and torques over half a second of its
-    /// clock, to subtract it later: robots report a newton or two with nothing attached.
-    /// [`Self::tare_over`] has another duration.
+    /// clock. The program subtracts this average later, because robots report a newton or two with
+    /// nothing attached. [`Self::tare_over`] averages over another duration.
     ///
-    /// The arm must rest, untouched. A tare belongs to the posture in which it was taken: in
-    /// another posture, an undeclared load, cables and errors of the model pull differently, and
-    /// friction sticks differently after each motion. [`WrenchTare::turned`] reports how far the
-    /// arm has turned since; beyond [`WrenchTare::NEAR`], take a new tare. Nothing is changed at
-    /// the robot: its own contact and collision thresholds compare with the wrench as before.
+    /// The arm must rest, and nothing may touch it. A tare is valid for the posture in which it was
+    /// taken. In another posture, an undeclared load, cables and errors of the model pull
+    /// differently, and friction differs after each motion. [`WrenchTare::turned`] reports how far
+    /// the arm has turned since; if this exceeds [`WrenchTare::NEAR`], take a new tare. The robot
+    /// itself does not change: its contact and collision thresholds apply to the wrench as before.
     ///
     /// ```no_run
     /// use franka_async::condition::force_z;
@@ -37,22 +37,22 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`TareError::Refused`] if the arm moves, is touched or guided, or if the robot has no
-    /// estimate in this posture. [`TareError::Read`] if states no longer come.
+    /// Returns [`TareError::Refused`] if the arm moves, is touched or guided, or if the robot has
+    /// no estimate in this posture. Returns [`TareError::Read`] if states no longer come.
     ///
     /// # Cancel safety
-    /// Dropping the future takes no tare; nothing moves and nothing is kept.
+    /// Dropping the future takes no tare and moves nothing.
     pub async fn tare(&self) -> Result<WrenchTare, TareError> {
         self.tare_over(WrenchTare::DURATION).await
     }
 
-    /// As [`Self::tare`], over another duration: 20 ms to a minute.
+    /// Takes a tare as [`Self::tare`] does, over another duration: 20 ms to a minute.
     ///
     /// # Errors
-    /// As [`Self::tare`]; a duration out of range is refused.
+    /// Returns the errors of [`Self::tare`], and refuses a duration out of range.
     ///
     /// # Cancel safety
-    /// As [`Self::tare`].
+    /// See [`Self::tare`].
     pub async fn tare_over(&self, duration: Duration) -> Result<WrenchTare, TareError> {
         let mut taring = Taring::over(duration)?;
         self.check_reference()?;
@@ -66,7 +66,8 @@ impl Robot {
         Ok(tare)
     }
 
-    /// Refuses while the reference moves: friction may still hold an arm that should move.
+    /// Returns an error while the reference moves, because friction may still hold an arm that
+    /// should move.
     fn check_reference(&self) -> Result<(), TareRefused> {
         let moves = |dq: &f64| dq.abs() > 1e-4;
         match self.reference() {

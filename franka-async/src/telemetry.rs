@@ -1,5 +1,5 @@
-//! The statistics of the control thread as `tracing` events, which this module emits, never the
-//! thread itself.
+//! Emits the statistics of the control thread as `tracing` events, so that the thread itself does
+//! not.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use franka_rt::stats::{CycleTimes, Stats};
 
 use crate::world::Instant;
 
-/// Watches the statistics for commands that left too late.
+/// Checks the statistics for commands that were sent too late.
 pub(crate) struct Telemetry {
     stats: Arc<Stats>,
     /// Number of overruns reported so far.
@@ -21,7 +21,7 @@ pub(crate) struct Telemetry {
 #[derive(Default)]
 struct Backoff {
     last: Option<Instant>,
-    /// Shortest time from that warning to the next.
+    /// Shortest time from the last warning to the next one.
     interval: Duration,
 }
 
@@ -48,14 +48,15 @@ impl Telemetry {
         }
     }
 
-    /// Warns of commands that were sent too late since the last warning: at once, and while more
-    /// follow, after a second, after two, and so on, finally twice a minute.
+    /// Warns about commands that were sent too late since the last warning. The first warning comes
+    /// at once. While more follow, warnings come after a second, after two, and so on, and finally
+    /// twice a minute.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
         if overruns == self.told {
             return;
         }
-        // The thread writes the cycle before it counts it.
+        // The thread writes the cycle before it counts the overrun.
         let Some(cycle) = self.stats.newest_overrun() else {
             return;
         };

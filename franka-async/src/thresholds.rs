@@ -1,12 +1,12 @@
-//! The collision thresholds of this program, compared with the forces of compliant control.
+//! Compares the collision thresholds of this program with the forces of compliant control.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use franka_proto::CollisionBehavior;
 use franka_rt::session::ForceCap;
 
-/// Largest share of friction alone in the robot's estimate of external forces, `[N]`. Source: the
-/// book's chapter "Target control on arms that stick".
+/// Largest force that friction alone adds to the robot's estimate of external forces, `[N]`.
+/// Source: the book's chapter "Target control on arms that stick".
 const FRICTION: f64 = 10.0;
 
 /// The thresholds that were set over one connection. Robots do not report their thresholds.
@@ -18,8 +18,9 @@ impl Thresholds {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(behavior);
     }
 
-    /// Returns the robot's threshold and the largest force that the robot may estimate under this
-    /// force cap, friction included, both in `[N]`. `None` unless that force exceeds the threshold.
+    /// Returns the robot's threshold, and the largest force, friction included, that the robot may
+    /// estimate under this force cap, both in `[N]`. Returns `None` unless that force exceeds the
+    /// threshold.
     pub(crate) fn within(&self, cap: ForceCap) -> Option<(f64, f64)> {
         let most = match cap {
             ForceCap::Default => ForceCap::DEFAULT_NEWTONS,

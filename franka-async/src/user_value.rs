@@ -7,8 +7,8 @@ use franka_rt::panic;
 /// A function of the user, with everything that it has captured. The bridge or another task frees
 /// it when its motion has ended or was refused.
 ///
-/// A panic of the function's destructor is logged and caught: it must not end the task that frees
-/// the function, which would end the connection, too.
+/// If the function's destructor panics, the panic is logged and caught. Otherwise it would end the
+/// task that frees the function, and with it the connection.
 #[derive(Debug)]
 pub(crate) struct UserValue<T> {
     /// The value; `None` only while it is being dropped.

@@ -11,7 +11,7 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
-/// A connected vacuum gripper. Handles and actions behave as for the
+/// A connected vacuum gripper. Its handles and actions behave as those of the
 /// [`Gripper`](crate::gripper::Gripper).
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
@@ -19,11 +19,12 @@ pub struct VacuumGripper {
 }
 
 impl VacuumGripper {
-    /// Connects to the gripper at `endpoint`: TCP, handshake, first state. Each step may take 1 s.
-    /// The default port is 1339.
+    /// Connects to the gripper at `endpoint`, and resolves when the first state has come. The TCP
+    /// connection, the handshake and the first state may take 1 s each. The default port is 1339.
     ///
     /// # Errors
-    /// [`ConnectError`]; nothing is left behind.
+    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
+    /// again.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -47,15 +48,15 @@ impl VacuumGripper {
         self.connection.state()
     }
 
-    /// Returns the newest state as it changes. The stream ends when the connection does.
+    /// Returns a receiver that waits for newer states. It ends with the connection.
     pub fn states(&self) -> States<State> {
         self.connection.states()
     }
 
-    /// Picks an object up by vacuum and holds it. Returns true if the vacuum was reached in time.
+    /// Picks up an object by vacuum and holds it. Returns true if the vacuum was reached in time.
     ///
     /// # Errors
-    /// [`VacuumGripperError`].
+    /// Returns [`VacuumGripperError`] if the gripper does not carry out the action.
     ///
     /// # Cancel safety
     /// Dropping the future stops the pump, unless a newer action has taken over or the future was
@@ -64,11 +65,11 @@ impl VacuumGripper {
         self.connection.act(Request::Vacuum(vacuum)).await
     }
 
-    /// Drops the object. Returns true if the gripper did so within `timeout`, which is sent in
+    /// Drops the object. Returns true if the gripper did this within `timeout`, which is sent in
     /// whole milliseconds.
     ///
     /// # Errors
-    /// [`VacuumGripperError`].
+    /// See [`Self::vacuum`].
     ///
     /// # Cancel safety
     /// See [`Self::vacuum`].
@@ -80,10 +81,10 @@ impl VacuumGripper {
     /// Stops the running action, which resolves as aborted. Returns true on success.
     ///
     /// # Errors
-    /// [`VacuumGripperError`].
+    /// See [`Self::vacuum`].
     ///
     /// # Cancel safety
-    /// Once the future is polled, the gripper still stops.
+    /// Once the future has been polled, the gripper stops even if the future is dropped.
     pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
         self.connection.act(Request::Stop).await
     }

@@ -1,5 +1,5 @@
-//! The world outside: network, clock, tasks and threads. `clippy.toml` forbids other ways to reach
-//! them, so a simulated world replaces one file only.
+//! Access to the outside world: network, clock, tasks and threads. `clippy.toml` forbids other
+//! ways, so that a simulated world must replace only this file.
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,
@@ -60,13 +60,13 @@ pub(crate) async fn look_up(
     Ok(found.into_iter())
 }
 
-/// The UDP port that a peer sends its states to.
+/// The UDP port to which a peer sends its states.
 pub(crate) struct StatePort {
     socket: std::net::UdpSocket,
     peer: IpAddr,
 }
 
-/// The type of a UDP socket for tasks.
+/// A UDP socket for tasks.
 pub(crate) type Datagrams = tokio::net::UdpSocket;
 
 impl StatePort {
@@ -76,7 +76,7 @@ impl StatePort {
         Ok(Self { socket, peer })
     }
 
-    /// Number of the port.
+    /// Returns the number of the port.
     pub(crate) fn number(&self) -> io::Result<u16> {
         Ok(self.socket.local_addr()?.port())
     }
@@ -87,7 +87,7 @@ impl StatePort {
         Datagrams::from_std(self.socket)
     }
 
-    /// Starts a control thread and passes it the port.
+    /// Starts a control thread and passes the port to it.
     pub(crate) fn control_thread(
         self,
         config: ThreadConfig,
@@ -98,14 +98,14 @@ impl StatePort {
     }
 }
 
-/// Wake-ups by a control thread, as a future.
+/// Wake-ups from a control thread, as a future.
 pub(crate) struct Wake(AsyncFd<EventFd>);
 
 impl Wake {
     /// Registers the eventfd of the thread with this runtime.
     ///
     /// # Errors
-    /// The runtime's poll does not accept the descriptor.
+    /// Returns an error if the poll of the runtime does not accept the descriptor.
     pub(crate) fn attach(event_fd: EventFd) -> io::Result<Self> {
         // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the
         // descriptor is open, and the same, for as long as the `EventFd` lives, and the `AsyncFd`
@@ -177,7 +177,7 @@ impl Runtime {
     /// Returns the runtime of the caller.
     ///
     /// # Panics
-    /// Outside of a runtime.
+    /// Panics outside of a runtime.
     pub(crate) fn current() -> Self {
         Self(runtime::Handle::current())
     }

@@ -15,14 +15,14 @@ use crate::world;
 /// they count up from 1.
 pub(super) const CLOSING: GoalId = GoalId(u64::MAX);
 
-/// Time for a motion to brake and finish when the last handle is dropped.
+/// Time limit for a motion to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
-/// Time for an arm on its way to a goal to stop when the connection is lost. After that, the thread
-/// that brakes the arm ends.
+/// Time limit for an arm on its way to a goal to stop when the connection is lost. After that, the
+/// thread that brakes the arm ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Time for the control thread to end. One cycle is normally enough.
+/// Time limit for the control thread to end. One cycle is normally enough.
 const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Bridge {
@@ -35,9 +35,9 @@ impl Bridge {
         self.phase = BridgePhase::Closing { until };
     }
 
-    /// Notes that robot or thread is out of reach. The connection then ends, after an arm on its
-    /// way to a goal has been braked: a thread without a connection would continue towards a goal
-    /// that no caller can cancel.
+    /// Notes that the robot or the thread is out of reach. The connection ends after an arm on its
+    /// way to a goal has been braked: otherwise the thread would continue towards a goal that no
+    /// caller can cancel.
     pub(super) fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
         // Report this before the motions resolve, so that the next call finds a lost connection.
@@ -72,7 +72,8 @@ impl Bridge {
                         MotionError::ConnectionClosed { reason },
                     );
                 }
-                // A caller that waits for another answer notices the end by its closed channel.
+                // A caller that waits for another answer notices the end because its channel
+                // closes.
                 _ => {}
             }
         }
@@ -81,7 +82,8 @@ impl Bridge {
             connection.close().await;
         }
         if !self.ends().await {
-            // The thread continues without this connection: it cannot be ended from outside.
+            // The thread continues without this connection, because nothing can end it from
+            // outside.
             tracing::error!(
                 "the control thread did not end, because its control function did not return"
             );

@@ -1,4 +1,4 @@
-//! Inputs of handles and motions to the bridge: goals to begin, to change and to end.
+//! Inputs of handles and motions to the bridge: to begin, change and end goals.
 
 use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Chunk, GoalId};
@@ -114,8 +114,8 @@ impl Bridge {
     }
 
     /// Reads the values that the control thread has published. The caller may react to an event
-    /// that is in the queue and not yet read by this task. Without wake-ups per state, the last
-    /// published state is old.
+    /// that is in the queue but not yet read by this task. Also, without wake-ups for every state,
+    /// the last published state is old.
     pub(super) fn catch_up(&mut self) {
         self.publisher.refresh();
         self.observe();
@@ -123,7 +123,7 @@ impl Bridge {
         self.take_notices();
     }
 
-    /// Begins a motion, along `path` if given, or refuses it.
+    /// Begins a motion, along `path` if there is one, or refuses the motion.
     pub(super) fn take_up(&mut self, motion: Beginning, path: Option<Chunk>, replies: Replies) {
         let id = motion.motion.id();
         let compliant = self.lifecycle.compliant_goal(&motion.motion);
@@ -184,7 +184,7 @@ impl Bridge {
         Ok(())
     }
 
-    /// Notes a goal that its session has not taken.
+    /// Records a goal that its session has not accepted.
     fn note_refusal(&self, goal: GoalId, taken: &Result<(), MotionError>) {
         if let Err(error) = taken {
             let refused = Err(error.clone());

@@ -1,7 +1,7 @@
 //! The bridge: one task between the async world, the command channel and the real-time thread.
 //!
 //! The bridge drives the lifecycle of motions, and is the only user of the thread's queues and
-//! slots. Waking other tasks takes locks, so the bridge does it and the thread never does.
+//! slots. Waking other tasks takes locks, so the bridge does this, never the thread.
 
 mod closing;
 mod inputs;
@@ -52,12 +52,12 @@ pub(crate) struct Bridge {
     callers: HashMap<GoalId, Caller>,
     started: Instant,
     phase: BridgePhase,
-    /// True if the thread that runs active control reads no states.
+    /// True if the thread that runs active control does not read states.
     stalled: bool,
     supervisor: Arc<Supervisor>,
     /// The motions whose paths are being planned, the newest one last.
     planning: Vec<Planning>,
-    /// State that the supervisor has seen last.
+    /// The state that the supervisor saw last.
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed; `None` once a newer state
     /// comes.
@@ -70,10 +70,9 @@ pub(crate) struct Bridge {
 enum BridgePhase {
     /// The bridge accepts inputs.
     Serving,
-    /// The bridge accepts no inputs, and ends when nothing moves any more, at the latest at
-    /// `until`.
+    /// The bridge accepts no inputs, and ends when nothing moves any more, or at `until`.
     Closing { until: Instant },
-    /// Robot or thread is out of reach, for good: the bridge ends now.
+    /// The robot or the thread is out of reach for good, so the bridge ends now.
     Lost,
 }
 
@@ -81,14 +80,14 @@ enum BridgePhase {
 struct Caller {
     replies: Replies,
     span: Span,
-    /// Reason why a target was refused, for which the goal is cancelled.
+    /// The reason why a target was refused, if the goal is cancelled for that reason.
     refused: Option<GoalError>,
 }
 
-/// A deadline of the lifecycle.
+/// A deadline of the lifecycle that is being awaited.
 struct Awaited {
     deadline: Duration,
-    /// `message_id` of the newest state, and the time since which no newer state has come.
+    /// `message_id` of the newest state; no newer state has come since the time `since`.
     newest: u64,
     since: Duration,
     /// Number of turns of the control thread when the deadline was set.
@@ -103,8 +102,8 @@ pub(crate) struct Prepared {
 }
 
 impl Prepared {
-    /// Runs the bridge as a task. The task ends when all its senders are gone, when the connection
-    /// is lost, or on request: by an input, or by `cancellation`.
+    /// Runs the bridge as a task. The task ends when all senders to it are gone, when the
+    /// connection is lost, or on request (an input or `cancellation`).
     pub(crate) fn start(self, cancellation: CancellationToken) {
         let Self {
             bridge,
@@ -157,7 +156,7 @@ impl Bridge {
         }
     }
 
-    /// Returns a sender to the bridge, which accepts nothing before it is started.
+    /// Returns a sender to the bridge, whose inputs wait until the bridge is started.
     pub(crate) fn prepare(
         self,
         reports: mpsc::UnboundedReceiver<Report>,
@@ -231,7 +230,7 @@ impl Bridge {
         }
         self.end(inbox, &mut done).await;
         for done in done {
-            // Fails if the caller was dropped.
+            // This fails if the caller was dropped.
             let _ = done.send(());
         }
     }
@@ -240,7 +239,7 @@ impl Bridge {
         world::now() - self.started
     }
 
-    /// Notes the time since when a deadline has been awaited.
+    /// Notes since when a deadline has been awaited.
     fn note_deadline(&mut self) {
         let deadline = self.lifecycle.deadline();
         if deadline == self.awaited.as_ref().map(|it| it.deadline) {
@@ -258,7 +257,8 @@ impl Bridge {
         });
     }
 
-    /// Returns the reason why no state could show the awaited change, if no state has come since.
+    /// If no state has come since then, returns the reason why no state could show the awaited
+    /// change.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
         if self.publisher.state().message_id != awaited.newest {
@@ -268,7 +268,7 @@ impl Bridge {
         Lifecycle::unseen(silence, self.stats.turns.get() != awaited.turns)
     }
 
-    /// Carries out the decisions of the lifecycle, in its order.
+    /// Carries out the decisions of the lifecycle in their order.
     fn carry_out(&mut self) {
         let now = self.now();
         self.lifecycle.on_state(&self.publisher.state(), now);
@@ -326,7 +326,7 @@ impl Bridge {
     }
 }
 
-/// Notes the end of a goal or program, which may have been detached.
+/// Logs the end of a goal or program, which may have been detached.
 fn log(goal: GoalId, outcome: &Outcome) {
     match outcome {
         Ok(_) if goal == closing::CLOSING => tracing::info!("the arm rests; releasing it"),

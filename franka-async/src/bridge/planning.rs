@@ -1,7 +1,7 @@
-//! Paths, which are planned before they begin. Planning takes up to a hundred milliseconds, so it
-//! runs on threads for blocking work, and the bridge serves stops meanwhile. A path begins when it
-//! is planned, and only then supersedes older goals. If the path is refused, the older goals stay
-//! as they were.
+//! Paths are planned before they begin. Planning takes up to a hundred milliseconds. Therefore it
+//! runs on threads for blocking work, and the bridge serves stops meanwhile. A path begins when its
+//! plan is ready, and supersedes older goals only then. If the path is refused, the older goals
+//! stay as they were.
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -21,28 +21,30 @@ pub(super) struct Planning {
     motion: Beginning,
     waypoints: Arc<[Waypoint]>,
     replies: Replies,
-    /// Joint positions that the path starts from, `[rad]`.
+    /// Joint positions at which the path starts, `[rad]`.
     start: [f64; 7],
-    /// Number of plans that may still be made if the arm has left the start meanwhile.
+    /// Number of plans that may still be made if the arm has left the start in the meantime.
     plans_left: u32,
     task: JoinHandle<Result<Chunk, PathError>>,
 }
 
-/// Distance of a joint from the start of a path, `[rad]`, beyond which the path is planned anew. If
-/// the arm moves, the path begins in motion: a joint at half of its speed moves by this distance in
-/// a hundred milliseconds.
+/// If a joint is further than this from the start of a path, `[rad]`, the path is planned anew. If
+/// the arm moves, the path begins in motion: a joint at half of its speed moves this far in a
+/// hundred milliseconds.
 const LEFT_START: f64 = 0.1;
 
-/// Number of plans after the first one. Then the path is refused, because the arm moves too fast.
+/// Number of plans after the first one. After these, the path is refused because the arm moves too
+/// fast.
 pub(super) const PLANS: u32 = 4;
 
-/// Largest number of paths that are being planned. One more supersedes the oldest one.
+/// Largest number of paths that are planned at the same time. A further path supersedes the oldest
+/// one.
 const PENDING_MAX: usize = 4;
 
-/// Returns the newest path, once it is planned. Without pending paths, waits forever.
+/// Waits for the plan of the newest path and returns it. Without pending paths, this waits forever.
 ///
 /// # Cancel safety
-/// Nothing is lost if the future is dropped.
+/// Dropping the future loses nothing.
 pub(super) async fn planned(pending: &mut [Planning]) -> Result<Chunk, PathError> {
     let Some(planning) = pending.last_mut() else {
         return std::future::pending().await;
@@ -75,7 +77,7 @@ fn session_of(motion: &NewMotion) -> Option<GoalId> {
 }
 
 impl Bridge {
-    /// Plans the path of a motion. The motion begins after that.
+    /// Plans the path of a motion, which begins after that.
     pub(super) fn plan(
         &mut self,
         motion: Beginning,
@@ -104,7 +106,7 @@ impl Bridge {
         });
     }
 
-    /// Begins the newest motion, whose path has been planned, or refuses it.
+    /// Begins or refuses the newest motion, whose path has been planned.
     pub(super) fn on_planned(&mut self, planned: Result<Chunk, PathError>) {
         let Some(planning) = self.planning.pop() else {
             return;
@@ -134,13 +136,13 @@ impl Bridge {
         }
     }
 
-    /// Returns the start of a path that begins now: joint positions, `[rad]`.
+    /// Returns the joint positions from which a path would start now, `[rad]`.
     fn start_of_a_path(&self) -> [f64; 7] {
         let reference = self.course.reference().map(|reference| reference.q);
         reference.unwrap_or_else(|| self.publisher.state().q)
     }
 
-    /// Checks that `motion` may supersede pending paths, by the rules for a running path.
+    /// Checks that `motion` may supersede pending paths, by the same rules as for a running path.
     pub(super) fn check_turn_of_plan(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let supersedes = matches!(motion, NewMotion::Goal { ticket: None, .. });
         match self.planning.is_empty() || supersedes {
@@ -149,8 +151,8 @@ impl Bridge {
         }
     }
 
-    /// Supersedes the pending paths, because a goal of this session, or outside of one, was
-    /// accepted.
+    /// Supersedes the pending paths of this session, or those outside of a session, because a goal
+    /// was accepted there.
     pub(super) fn supersede_plans(&mut self, session: Option<GoalId>) {
         self.take_back_plans(MotionError::Superseded, |plan| plan.session() == session);
     }
@@ -165,7 +167,7 @@ impl Bridge {
         self.take_back_plans(MotionError::Stopped, |plan| plan.session() == Some(session));
     }
 
-    /// Cancels all pending paths, for `reason`.
+    /// Cancels all pending paths with `reason`.
     pub(super) fn drop_plans(&mut self, reason: MotionError) {
         self.take_back_plans(reason, |_| true);
     }
@@ -174,14 +176,14 @@ impl Bridge {
         let taken: Vec<_> = self.planning.extract_if(.., |plan| of(plan)).collect();
         let any = !taken.is_empty();
         for planning in taken {
-            // The thread may continue to compute; its result is dropped.
+            // The thread may continue to compute, but its result is dropped.
             planning.task.abort();
             self.refuse(planning.id(), planning.replies, reason.clone());
         }
         any
     }
 
-    /// Pauses the path of this goal, which then begins paused, or resumes it.
+    /// Pauses or resumes the path of this goal. A paused path begins paused.
     pub(super) fn pause_plan(&mut self, id: GoalId, paused: bool) {
         for planning in &mut self.planning {
             if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion
@@ -192,7 +194,8 @@ impl Bridge {
         }
     }
 
-    /// Changes the tuning of the paths of a session. Plans them anew if limits or posture change.
+    /// Changes the tuning of the paths of a session. Plans them anew if the limits or the posture
+    /// change.
     pub(super) fn tune_plans(&mut self, session: GoalId, tuning: &Tuning) {
         let is_planned_anew = tuning.budget.is_some() || tuning.posture.is_some();
         for mut planning in std::mem::take(&mut self.planning) {

@@ -1,4 +1,4 @@
-//! Values that the control thread has published since the last wake-up: states, records and events.
+//! Reads what the control thread has published since the last wake-up: states, records and events.
 
 use franka_proto::RobotMode;
 use franka_rt::driver::Event;
@@ -13,8 +13,7 @@ impl Bridge {
     /// Reads everything that the thread has published.
     pub(super) fn on_wakeup(&mut self) {
         self.publisher.publish();
-        // Observe before a motion resolves, so that the next call finds a robot that is in a
-        // reflex.
+        // Observe before a motion resolves, so that the next call finds the robot in the reflex.
         self.observe();
         self.telemetry.watch(world::now());
         self.take_notices();
@@ -73,7 +72,8 @@ impl Bridge {
         self.thread.as_ref().is_none_or(Thread::has_ended)
     }
 
-    /// Shows the supervisor the newest state, if that state has news about the robot as a whole.
+    /// Shows the supervisor the newest state, if that state contains news about the robot as a
+    /// whole.
     pub(super) fn observe(&mut self) {
         let (newest, mode, seen) = {
             let state = self.publisher.state();
@@ -82,7 +82,7 @@ impl Bridge {
         let resumed = self.silent_since.is_some_and(|since| newest > since);
         if resumed || self.seen != seen {
             (self.seen, self.silent_since) = (seen, None);
-            // A recovery ends soon, and motions wait for its end.
+            // A recovery ends soon, and motions wait for that.
             self.publisher
                 .watch(mode == RobotMode::AutomaticErrorRecovery);
             self.supervisor.observe();

@@ -1,4 +1,4 @@
-//! The thread that turns journal entries into words.
+//! The thread that converts journal entries into words.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +15,7 @@ use crate::world;
 /// Number of entries that may wait for the thread.
 const ENTRIES: usize = 4096;
 
-/// The robots of a recording, by track.
+/// The robots of a recording, by track number.
 type Tracks = BTreeMap<usize, Recorded>;
 
 /// A robot of a recording.
@@ -25,8 +25,8 @@ pub(super) struct Recorded {
     pub(super) track: Track,
 }
 
-/// Sender of entries to the thread. Dropping it ends the thread once the waiting entries are passed
-/// on; the drop does not wait for that.
+/// Sender of entries to the thread. After the sender is dropped, the thread passes on the waiting
+/// entries and then ends; the drop does not wait for that.
 #[derive(Debug)]
 pub(super) struct EntryQueue {
     entries: EntrySender,
@@ -55,8 +55,8 @@ impl EntryQueue {
         })
     }
 
-    /// Sends everything that is written to `journal` from now on to the track `id`, with the cycles
-    /// of new connections. At most `cycles` cycles may wait.
+    /// Sends everything that is written to `journal` from now on to the track `id`, including the
+    /// cycles of new connections. At most `cycles` cycles may wait.
     pub(super) fn read(&self, journal: &Journal, id: usize, cycles: Option<usize>) {
         journal.read(Reader {
             track: id,
@@ -66,8 +66,8 @@ impl EntryQueue {
     }
 
     /// Begins the track `id` with this state, and sends everything that is written to `journal`
-    /// from now on there. States may be a tenth of a second apart. With the first state, entries
-    /// before the next state have a state, too. Returns true if the track is new.
+    /// from now on to that track. States may be a tenth of a second apart. Because of the first
+    /// state, entries before the next one belong to a state, too. Returns true if the track is new.
     pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) -> bool {
         if journal.is_read(id, &self.entries) {
             return false;
@@ -77,12 +77,12 @@ impl EntryQueue {
         true
     }
 
-    /// Reads or changes the tracks. The thread waits meanwhile.
+    /// Reads or changes the tracks, while the thread waits.
     pub(super) fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
         self.shared.with(act)
     }
 
-    /// Records `event` for the robot of this name, or for all robots, after the journal entries
+    /// Records `event` for the robot with this name, or for all robots, after all journal entries
     /// from before the call.
     pub(super) fn tell(&self, name: Option<&str>, event: &EventKind) {
         let wanted = |(id, recorded): (&usize, &Recorded)| {
@@ -122,7 +122,7 @@ impl Drop for EntryQueue {
 
 impl Shared {
     fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
-        // A panic in `act` leaves at most a track too many or too few.
+        // A panic in `act` adds or removes at most one track too many.
         act(&mut self.tracks.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

@@ -1,4 +1,4 @@
-//! Recorded form of the entries of a journal.
+//! Converts the entries of a journal into their recorded form.
 
 use franka_diagnosis::Diagnose;
 use franka_proto::{Request, gripper, vacuum};
@@ -21,7 +21,7 @@ pub(super) fn goal(given: &Given) -> EventKind {
     } = given;
     let target = match (destination, goal) {
         (Some(Destination::Target(target)), _) => place(*target),
-        // The arm's position at the start completes this destination; the cycles have that
+        // The arm's position at the start completes this destination, and the cycles contain that
         // position.
         (Some(_), _) => None,
         (None, Some(goal)) => place(goal.target),
@@ -133,7 +133,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
     }
 }
 
-/// Returns the diagnosis of a motion that the robot ended by a reflex, if it did.
+/// Returns the diagnosis of a motion that the robot ended by a reflex; `None` if it did not.
 pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     #[expect(
         clippy::disallowed_methods,
@@ -147,7 +147,7 @@ pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     }))
 }
 
-/// Returns the recorded form of an event of the robot; `None` for events with separate entries.
+/// Returns the recorded form of an event of the robot; `None` if the event has a separate entry.
 pub(super) fn happening(event: &supervision::Event) -> Option<EventKind> {
     use supervision::EventKind as Kind;
     let level = match &event.kind {
@@ -172,7 +172,7 @@ pub(super) fn note(level: Level, source: &str, text: String) -> EventKind {
     })
 }
 
-/// Returns the event of a request to the robot, with the reason if it was not carried out.
+/// Returns the event of a request to the robot, with the reason if the request was not carried out.
 pub(super) fn request(request: &Request, error: Option<String>) -> EventKind {
     let none = String::new();
     let (name, arguments) = match request {

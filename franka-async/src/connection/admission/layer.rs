@@ -1,4 +1,4 @@
-//! Layer of tower that checks requests.
+//! A tower layer that checks requests.
 
 use std::future::{Ready, ready};
 use std::net::SocketAddr;
@@ -11,7 +11,8 @@ use tower_service::Service;
 
 use super::{Admission, Refused};
 
-/// Layer that passes on the requests that an [`Admission`] admits; see [`Admission::layer`].
+/// A tower layer that passes on only the requests that an [`Admission`] admits: see
+/// [`Admission::layer`].
 #[derive(Clone, Debug)]
 pub struct AdmissionLayer<P, A> {
     admission: Admission,
@@ -19,7 +20,7 @@ pub struct AdmissionLayer<P, A> {
     refuse: A,
 }
 
-/// Service behind an [`AdmissionLayer`].
+/// The service inside an [`AdmissionLayer`].
 #[derive(Clone, Debug)]
 pub struct Admitted<S, P, A> {
     inner: S,

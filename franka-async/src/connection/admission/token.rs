@@ -1,4 +1,4 @@
-//! Secret that admits other computers to a service.
+//! A secret that admits other computers to a service.
 
 use std::env::{self, VarError};
 use std::fmt::{self, Write as _};
@@ -7,7 +7,7 @@ use std::{fs, io};
 
 use subtle::ConstantTimeEq as _;
 
-/// Secret that admits other computers to a service. `Debug` does not show it.
+/// A secret that admits other computers to a service. `Debug` does not show it.
 #[derive(Clone)]
 pub struct Token(String);
 
@@ -24,10 +24,10 @@ pub enum TokenError {
         /// Number of characters of the text.
         got: usize,
     },
-    /// The text has a character that addresses and headers do not carry unchanged.
+    /// The text contains a character that addresses and headers do not transmit unchanged.
     #[error("the token has the character {got:?}, expected letters, digits and - _ . ~")]
     Character {
-        /// First such character of the text.
+        /// The first such character of the text.
         got: char,
     },
     /// The file cannot be read.
@@ -41,7 +41,7 @@ pub enum TokenError {
     /// The environment variable is not UTF-8.
     #[error("the environment variable {TOKEN_VARIABLE} is not UTF-8 text")]
     Variable,
-    /// The operating system has no random numbers.
+    /// The operating system provides no random numbers.
     #[error("cannot get random numbers for a token")]
     Random {
         /// Error of the operating system.
@@ -50,10 +50,12 @@ pub enum TokenError {
 }
 
 impl Token {
-    /// Makes a token of at least 16 letters, digits and `-`, `_`, `.`, `~`. They should be random.
+    /// Makes a token from at least 16 letters, digits, `-`, `_`, `.` and `~`. The characters should
+    /// be random.
     ///
     /// # Errors
-    /// [`TokenError::Empty`], [`TokenError::Short`] or [`TokenError::Character`].
+    /// Returns [`TokenError::Empty`], [`TokenError::Short`] or [`TokenError::Character`] if the
+    /// text is not a token.
     pub fn new(text: impl Into<String>) -> Result<Self, TokenError> {
         let text = text.into();
         let is_odd = |c: &char| !(c.is_ascii_alphanumeric() || "-_.~".contains(*c));
@@ -68,7 +70,7 @@ impl Token {
     /// Makes a random token of 128 bits.
     ///
     /// # Errors
-    /// [`TokenError::Random`].
+    /// Returns [`TokenError::Random`] if the system provides no random numbers.
     pub fn generate() -> Result<Self, TokenError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| TokenError::Random {
@@ -81,10 +83,10 @@ impl Token {
         Ok(Self(text))
     }
 
-    /// Reads a token from a file. White space around it is ignored.
+    /// Reads a token from a file, without the white space around it.
     ///
     /// # Errors
-    /// [`TokenError::File`], and the errors of [`Self::new`].
+    /// Returns [`TokenError::File`] if the file cannot be read, and the errors of [`Self::new`].
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, TokenError> {
         let path = path.as_ref();
         let text = fs::read_to_string(path).map_err(|source| TokenError::File {
@@ -94,13 +96,13 @@ impl Token {
         Self::new(text.trim())
     }
 
-    /// Reads the token from `file`, or else from the environment variable [`TOKEN_VARIABLE`].
-    /// Returns `None` if neither is given. Services should not take a token as an argument: every
-    /// user of the computer can read the arguments of its programs.
+    /// Reads the token from `file`, or if there is none, from the environment variable
+    /// [`TOKEN_VARIABLE`]. Returns `None` if neither is given. Services should not take a token as
+    /// an argument: every user of the computer can read the arguments of its programs.
     ///
     /// # Errors
-    /// The errors of [`Self::from_file`] and [`TokenError::Variable`]. An empty variable is an
-    /// error.
+    /// Returns the errors of [`Self::from_file`], and [`TokenError::Variable`] if the variable is
+    /// not UTF-8. An empty variable is an error.
     pub fn configured(file: Option<&Path>) -> Result<Option<Self>, TokenError> {
         Self::given(file, env::var(TOKEN_VARIABLE))
     }
@@ -117,12 +119,12 @@ impl Token {
         }
     }
 
-    /// Returns the text of the token, for the people who may move the arm.
+    /// Returns the text of the token, to show it to people who may move the arm.
     pub fn reveal(&self) -> &str {
         &self.0
     }
 
-    /// Compares with `offered`, in a time that depends on the lengths only.
+    /// Compares the token with `offered`, in a time that depends only on their lengths.
     pub(super) fn is(&self, offered: &str) -> bool {
         self.0.as_bytes().ct_eq(offered.as_bytes()).into()
     }
@@ -137,7 +139,7 @@ impl fmt::Debug for Token {
 /// Environment variable that [`Token::configured`] reads.
 pub const TOKEN_VARIABLE: &str = "FRANKA_ACCESS_TOKEN";
 
-/// Least number of characters: if they are random, 16 cannot be guessed over a network.
+/// Smallest number of characters: 16 random characters cannot be guessed over a network.
 const TOKEN_MIN: usize = 16;
 
 #[cfg(test)]
