@@ -38,12 +38,12 @@ impl Engage {
     goal_options!();
 
     /// Keeps the arm out of these regions, given in the base frame; by default, there are none. The
-    /// reference slows down on its way to a region, and stops at a distance of
-    /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) from it. A goal that a region blocks is given
-    /// up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it waits
-    /// for other targets. An arm inside a region may leave it. The links of the arm and the Franka
-    /// Hand are kept out, but no other tool. The session is refused as
-    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) if there are more than
+    /// reference slows down on its way to a region, and stops
+    /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal that a region blocks is
+    /// given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it
+    /// waits for other targets. An arm inside a region may leave it. The links of the arm and the
+    /// Franka Hand are kept out, but no other tool. The session is refused as
+    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) for more than
     /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers or negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
@@ -61,10 +61,9 @@ impl Engage {
         self
     }
 
-    /// Binds the session to a deadman. While the time of the deadman has run out, and after the
-    /// deadman was dropped, the arm brakes and holds, and every goal resolves as
-    /// [`MotionError::Held`]. The time of the deadman must be 10 ms or more. See
-    /// [`Deadman::new`](crate::goal::Deadman::new).
+    /// Binds the session to a deadman. If the deadman's timer has run out, or the deadman was
+    /// dropped, the arm brakes and holds, and every goal resolves as [`MotionError::Held`]. The
+    /// timer must be 10 ms or longer. See [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
         self
@@ -100,8 +99,8 @@ impl Engage {
 /// A session of target control, which holds the arm and moves it between goals of any kind without
 /// stopping. [`Robot::engage`] begins one.
 ///
-/// This is a cheap handle: clones share the session, and a motion that is being awaited counts as a
-/// handle. Dropping the last handle brakes the arm and ends the session, in the background.
+/// This is a cheap handle: clones share the session, and an awaited motion counts as a handle.
+/// Dropping the last handle brakes the arm and ends the session, in the background.
 /// [`Self::disengage`] does so and can be awaited. [`Robot::stop`] and a reflex end the session,
 /// too. Later calls return the reason why it ended.
 ///
@@ -115,8 +114,7 @@ pub struct Arm {
 
 impl Robot {
     /// Begins a session of target control that holds the arm where it is, and resolves when the
-    /// session has begun. If an earlier motion or session was dropped, it first brakes and releases
-    /// the arm.
+    /// session has begun. A dropped motion or session first brakes and releases the arm.
     ///
     /// # Errors
     /// Returns [`MotionError::Busy`] if anything else controls the arm, [`MotionError::Goal`] if
@@ -203,8 +201,7 @@ impl Arm {
     }
 
     /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
-    /// Returns as soon as the session has accepted the goal. Use it in loops that set goals at
-    /// their own rate.
+    /// Returns as soon as the session has accepted the goal. Use it in loops with their own rate.
     ///
     /// If the target includes a velocity, the arm follows it without lag. If no new target comes,
     /// this target keeps moving for [`Target::MOVES_ON_MS`].
@@ -214,7 +211,7 @@ impl Arm {
     /// [deadman](Engage::deadman) holds the arm, and otherwise the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the goal takes effect even if the future is dropped.
+    /// Once polled, the goal takes effect even if the future is dropped.
     pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         self.take(destination.into()).await
     }
@@ -262,7 +259,7 @@ impl Arm {
 
     /// Waits until the arm rests at the last accepted target, or where that target was given up.
     /// The arm is at rest if for 250 ms the reference has not moved and no joint has moved by more
-    /// than half a milliradian. By then, the control law has compensated for the friction. Use it
+    /// than half a milliradian. By then, the control law has compensated for the friction. Use this
     /// after [`Self::set`]; after an awaited motion, the arm rests anyway.
     ///
     /// The wait has no time limit. It may last while the arm is pushed, is blocked by an obstacle,
@@ -312,16 +309,20 @@ impl Arm {
     /// point unless another chunk or goal follows.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::set`], and: [`MotionError::Held`] or [`MotionError::Braked`]
-    /// in the first call after a guard gave up the previous chunk.
-    /// [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed.
-    /// [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time comes from
-    /// another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation
-    /// of the previous chunk is newer. [`GoalError::Chunks`](crate::error::GoalError::Chunks) if
-    /// chunks come faster than the control thread takes them up.
+    /// Returns the errors of [`Self::set`], and:
+    ///
+    /// - [`MotionError::Held`] or [`MotionError::Braked`] in the first call after a guard gave up
+    ///   the previous chunk;
+    /// - [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed;
+    /// - [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time comes from
+    ///   another clock;
+    /// - [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation of the
+    ///   previous chunk is newer;
+    /// - [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the
+    ///   control thread accepts them.
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the chunk takes effect even if the future is dropped.
+    /// Once polled, the chunk takes effect even if the future is dropped.
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
         self.send_chunk(self.goal(chunk.target()), chunk).await
     }
@@ -343,19 +344,19 @@ impl Arm {
     /// Lets a person guide the arm by hand once the arm rests. No spring acts along the axes that
     /// are `free`, or at the elbow if it is free; the other axes are held. Guiding lasts until the
     /// next goal; [`Self::hold`] ends it. Returns as soon as the request is accepted. Declare the
-    /// load first, because an undeclared load pulls the arm down.
+    /// load first, or it pulls the arm down.
     ///
     /// # Errors
     /// Returns the errors of [`Self::set`].
     ///
     /// # Cancel safety
-    /// Once the future has been polled, guiding begins even if the future is dropped.
+    /// Once polled, guiding begins even if the future is dropped.
     pub async fn guide(&self, free: Free) -> Result<(), MotionError> {
         self.take(Target::Guide(free).into()).await
     }
 
     /// Follows the newest target in `targets` (poses or joint positions) until the sender is
-    /// dropped, and then stops at the last target. See [`Robot::follow`].
+    /// dropped, and then stops there. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -363,9 +364,9 @@ impl Arm {
         self.follow_targets(watched(targets))
     }
 
-    /// Follows the newest target that a stream yields (poses or joint positions) until the stream
-    /// ends, and then stops at the last target. While one target is being accepted, up to 256 newer
-    /// targets are skipped at once. This works for a stream that is always ready, too.
+    /// Follows the newest target of a stream (poses or joint positions) until the stream ends, and
+    /// then stops there. While one target is being accepted, up to 256 newer targets are skipped at
+    /// once. This works for a stream that is always ready, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -377,16 +378,16 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
-    /// Changes the tuning of the current goal and of later goals of the session. Options that are
-    /// `None` stay as they are. Options of a single motion take precedence. Gains, force cap and
-    /// leash change over 0.3 s, so that neither the reference nor the torques step.
+    /// Changes the tuning of the session's current goal and later goals. Options that are `None`
+    /// stay as they are. Options of a single motion take precedence. Gains, force cap and leash
+    /// change over 0.3 s, so that neither the reference nor the torques step.
     ///
     /// # Errors
     /// Returns [`MotionError::Goal`] if a value is out of its bounds; nothing changes then.
     /// Otherwise, returns the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the change takes effect even if the future is dropped.
+    /// Once polled, the change takes effect even if the future is dropped.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
         let (id, kept) = (self.session.id(), self.session.tuning().clone());
         let tuning = Box::new(tuning);
@@ -409,7 +410,7 @@ impl Arm {
     /// [`Robot::stop`] ([`MotionError::Stopped`]).
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the session ends even if the future is dropped.
+    /// Once polled, the session ends even if the future is dropped.
     pub async fn disengage(self) -> Result<MotionReport, MotionError> {
         let id = self.session.id();
         self.robot().send(Input::Disengage { id });
@@ -429,7 +430,6 @@ impl Arm {
         self.session.ended()
     }
 
-    /// True if a motion belongs to the session of this arm.
     pub(crate) fn owns(&self, session: Option<&Arc<Session>>) -> bool {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }
@@ -489,8 +489,7 @@ impl Arm {
 /// Cycles after which an accepted goal moves the reference, with one to spare.
 const TAKEN_UP: u64 = 3;
 
-/// Time without motion after which the arm counts as resting, `[ms]`; the same as for arrivals of
-/// motions.
+/// Time without motion after which the arm counts as resting, `[ms]`, as for arrivals of motions.
 const SETTLED: u64 = 250;
 
 /// Joint velocity below which the reference counts as resting, `[rad/s]`.

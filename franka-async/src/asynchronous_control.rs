@@ -201,8 +201,7 @@ impl AsynchronousControl {
     /// Returns the reason if the motion ended in another way.
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the motion ends; dropping the future stops the robot at
-    /// once.
+    /// Once polled, the motion ends; dropping the future stops the robot at once.
     pub async fn finish(self) -> Outcome {
         let newest = self.lock().newest;
         self.write(newest.unwrap_or(self.robot.state().q_d), true);

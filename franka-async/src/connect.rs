@@ -38,8 +38,8 @@ impl Builder {
     /// connection, and a third one for supervision.
     ///
     /// # Errors
-    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
-    /// again. No step is repeated, with supervision or without.
+    /// Returns [`ConnectError`] if there is no connection. No step is repeated, with supervision or
+    /// without.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.

@@ -60,7 +60,7 @@ impl Robot {
     /// without asking the robot.
     ///
     /// # Cancel safety
-    /// If the future is dropped, only the answer is lost.
+    /// Dropping the future loses only the answer.
     pub async fn load_model_library(
         &self,
         architecture: Architecture,
@@ -96,7 +96,7 @@ mod library {
         /// loaded.
         ///
         /// # Cancel safety
-        /// If the future is dropped, only the answer is lost.
+        /// Dropping the future loses only the answer.
         ///
         /// # Safety
         /// You must trust the robot to run code in this process: see [`ModelLibrary::load`].

@@ -133,7 +133,7 @@ impl Endpoint {
 }
 
 impl EndpointError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoHost { .. } => "endpoint-no-host",

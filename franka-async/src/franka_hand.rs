@@ -32,8 +32,7 @@ impl Gripper {
     /// connection, the handshake and the first state may take 1 s each. The default port is 1338.
     ///
     /// # Errors
-    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
-    /// again.
+    /// Returns [`ConnectError`] if there is no connection.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -110,7 +109,7 @@ impl Gripper {
     /// See [`Self::homing`].
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the fingers stop even if the future is dropped.
+    /// Once polled, the fingers stop even if the future is dropped.
     pub async fn stop(&self) -> Result<bool, GripperError> {
         self.connection.act(Request::Stop).await
     }

@@ -86,18 +86,18 @@
 //! `move_to` returns a [`Motion`]. Its methods set options, and **nothing is sent before it is
 //! awaited**. After that:
 //!
-//! * it resolves as `Ok` when the arm has arrived and rests, held by the robot's own controller.
-//!   Otherwise it resolves as a [`MotionError`] that states the reason;
+//! * it resolves as `Ok` when the arm has arrived and rests, held by the robot's own controller, or
+//!   as a [`MotionError`] with the reason;
 //! * **dropping the future brakes the arm** within the robot's limits: the arm still moves when
-//!   `drop` returns, and rests about a quarter of a second later. Therefore the arm stops when a
-//!   time limit expires, when another branch wins a `select!`, and when the client of a request
+//!   `drop` returns, and rests about a quarter of a second later. This stops the arm when a time
+//!   limit expires, when another branch wins a `select!`, and when the client of a request
 //!   disconnects;
 //! * a newer motion of the same robot takes over without stopping the arm, and the older motion
 //!   resolves as [`MotionError::Superseded`].
 //!
-//! If a motion should outlive its caller, spawn it as a task or [detach](Motion::detach) it. The
-//! outcome of a detached motion is only logged. A handle of the motion reports progress, and pauses
-//! or cancels the motion:
+//! If a motion should outlive its caller, spawn it as a task or [detach](Motion::detach) it. A
+//! detached motion only logs its outcome. A handle of the motion reports progress, and pauses or
+//! cancels the motion:
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -156,7 +156,7 @@
 //! # States
 //!
 //! [`Robot::state`] returns the newest state, whether the arm moves or not. [`Robot::states`] waits
-//! for changes, and [`Robot::state_stream`] yields every one of the thousand states per second.
+//! for changes, and [`Robot::state_stream`] yields each of the thousand states per second.
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -233,8 +233,8 @@
 //! along z of the base, in either direction. `relative` subtracts the force at the start of the
 //! motion. `elapsed` ignores the first 200 ms, because starting the motion causes torques.
 //! `contact` contains the time and the place of the contact. Without a contact, the arm arrives and
-//! `reacted` is `None`. `touched.then(pose)` makes the arm move elsewhere at once instead of
-//! stopping. See [`condition`] for other conditions.
+//! `reacted` is `None`. `touched.then(pose)` moves the arm elsewhere at once instead of stopping
+//! it. See [`condition`] for other conditions.
 //!
 //! # Errors and recovery
 //!
@@ -367,8 +367,8 @@
 //! # Cancel safety
 //!
 //! Every future of this crate may be dropped at any point. The robot still carries out a request
-//! that was already sent; its answer is discarded. Dropping a motion brakes the arm. Methods with
-//! other rules state them in their own section.
+//! that was sent; its answer is discarded. Dropping a motion brakes the arm. Methods with other
+//! rules state them in their own section.
 //!
 //! # What it does not do
 //!

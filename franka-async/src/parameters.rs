@@ -38,7 +38,7 @@ const PAYLOAD: f64 = 3.0;
 /// Time after the answer in which a state must show the new value, `[ms]`.
 const SHOWN_MS: u64 = 200;
 
-/// Time limit for the wait for these states, if none come.
+/// Time limit for this wait if no states come.
 const SHOWN_WITHIN: Duration = Duration::from_secs(5);
 
 impl Robot {
@@ -110,8 +110,8 @@ impl Robot {
     /// The vendor documents no range. The simulator refuses a frame more than 2 m away.
     ///
     /// # Errors
-    /// Returns [`CommandError`]; [`CommandError::LinkLost`] if the robot answers but sends no
-    /// states.
+    /// Returns [`CommandError`], for example [`CommandError::LinkLost`] if the robot answers but
+    /// sends no states.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -120,8 +120,8 @@ impl Robot {
         self.set(Request::SetEEToK(frame)).await
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. The range and the
-    /// resolution are as for [`Self::set_k`].
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. For the range, and for
+    /// the time when this resolves, see [`Self::set_k`].
     ///
     /// # Errors
     /// See [`Self::set_k`].
@@ -167,7 +167,7 @@ impl Robot {
     /// # Errors
     /// Returns [`CommandError`]. If a refusal names manual recovery, a person must recover the
     /// robot on site. Returns [`CommandError::LinkLost`] if the robot answers but sends no states.
-    /// Also returns it if answers and states both stay away for three seconds more than the link
+    /// Also returns it if neither answers nor states come for three seconds more than the link
     /// timeout.
     ///
     /// # Cancel safety
@@ -187,10 +187,11 @@ impl Robot {
     /// Returns the robot's description of itself, as URDF. Protocol 10 only.
     ///
     /// # Errors
-    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
+    /// Returns [`CommandError`], for example [`CommandError::Request`] if the version has no such
+    /// command.
     ///
     /// # Cancel safety
-    /// If the future is dropped, only the answer is lost.
+    /// Dropping the future loses only the answer.
     pub async fn urdf(&self) -> Result<String, CommandError> {
         urdf(&self.channel(), ANSWER).await
     }
@@ -200,7 +201,8 @@ impl Robot {
     /// the vendor: filter in this program instead.
     ///
     /// # Errors
-    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
+    /// Returns [`CommandError`], for example [`CommandError::Request`] if the version has no such
+    /// command.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -212,10 +214,11 @@ impl Robot {
     /// Protocol 5 only (Franka Emika Robot).
     ///
     /// # Errors
-    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command.
+    /// Returns [`CommandError`], for example [`CommandError::Request`] if the version has no such
+    /// command.
     ///
     /// # Cancel safety
-    /// If the future is dropped, only the answer is lost.
+    /// Dropping the future loses only the answer.
     pub async fn virtual_wall(&self, id: i32) -> Result<VirtualWall, CommandError> {
         let request = Request::GetCartesianLimit { id };
         match self.channel().call(request, ANSWER).await? {
@@ -542,7 +545,6 @@ fn is_near<const N: usize>(shown: &[f64; N], set: &[f64; N]) -> bool {
         .all(|(shown, set)| (shown - set).abs() < 1e-5)
 }
 
-/// Recovers the robot from a reflex.
 pub(crate) async fn recover(channel: &Channel) -> Result<(), CommandError> {
     let recovery = channel.call(Request::AutomaticErrorRecovery, RECOVERY);
     recovery.await.map(|_| ())

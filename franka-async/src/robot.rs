@@ -37,10 +37,10 @@ pub type Pose = nalgebra::Isometry3<f64>;
 
 /// A connected robot.
 ///
-/// This is a cheap handle: all clones share one connection, and any task or thread may use them. A
-/// newer motion supersedes the current one. Dropping the last handle brakes the arm, ends the
-/// motion and closes the connection, in the background. [`Robot::shutdown`] does the same and can
-/// be awaited. A motion in progress counts as a handle.
+/// This is a cheap handle: all clones share one connection, and may be used from any task or
+/// thread. A newer motion supersedes the current one. Dropping the last handle brakes the arm, ends
+/// the motion and closes the connection, in the background. [`Robot::shutdown`] does the same and
+/// can be awaited. A motion in progress counts as a handle.
 ///
 /// When a connection is lost, everything that belongs to it ends, including the control thread. The
 /// remaining handles then report the reason. Handles of a
@@ -114,9 +114,8 @@ impl Robot {
     }
 
     /// Returns a receiver that waits for newer states, whether the arm moves or not. It ends with
-    /// the connection. For a supervised robot it continues with the next connection, and ends when
-    /// there will be no other one. To receive every state, use [`Self::state_stream`] or
-    /// [`Self::read`].
+    /// the connection. For a supervised robot, it continues with the next connection, and ends when
+    /// there will be none. To receive every state, use [`Self::state_stream`] or [`Self::read`].
     ///
     /// The receiver begins with the state that is newest at the call. As long as a [`States`]
     /// exists, a task is woken for every state; drop it when it is no longer needed.
@@ -251,7 +250,7 @@ impl Robot {
     /// If several callers stop the arm, it brakes once, and all callers get the same outcome. If
     /// the driver has given up a motion that the robot still shows, each call sends another stop
     /// request. A stop does not last: a motion that another task begins later moves the arm again.
-    /// If this happens before the arm was seen to rest, the stop resolves as
+    /// If that happens before the arm was seen to rest, the stop resolves as
     /// [`MotionError::Superseded`]. For a stop that lasts, use [`Self::latch_stop`].
     ///
     /// If a person keeps the arm moving by hand, the driver sends the robot a stop request after
@@ -264,12 +263,13 @@ impl Robot {
     ///
     /// # Errors
     /// Returns [`MotionError`] if the motion ended in another way, for example by a reflex:
-    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds,
-    /// [`MotionError::NotAtRest`] if the robot shows no motion but the arm moves, guided by hand,
-    /// and [`MotionError::Superseded`] if another motion began (see above). Returns
-    /// [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
-    /// [`MotionError::ConnectionClosed`] if there is no connection. In both cases it is unknown
-    /// whether the arm rests.
+    ///
+    /// - [`MotionError::Protocol`] if the robot still shows a motion after two seconds;
+    /// - [`MotionError::NotAtRest`] if the robot shows no motion but a hand still moves the arm;
+    /// - [`MotionError::Superseded`] if another motion began first, see above;
+    /// - [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
+    ///   [`MotionError::ConnectionClosed`] if there is no connection. In both cases it is unknown
+    ///   whether the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the stop still brakes the arm if the future is dropped, but does not wait for
@@ -321,8 +321,7 @@ impl Robot {
             if !connected.await.unwrap_or(false) {
                 break;
             }
-            // This call does not latch the stop, and never releases a stop that another call has
-            // latched.
+            // This never latches the stop, nor releases a stop that another call has latched.
             outcome = self.brake_once(false).await;
         }
         outcome
@@ -383,7 +382,7 @@ impl Robot {
 
     /// Returns the events of the robot from now on. They report connections lost and made, reflexes
     /// with their diagnosis, recoveries, the user stop, guiding, brakes, motions and loads. The
-    /// stream ends when there is no connection and will be no other one. A robot that is not
+    /// stream ends when there is no connection and there will be none. A robot that is not
     /// supervised reports events, too. Changes that only a state shows are noticed within 50 ms.
     pub fn events(&self) -> Events {
         self.shared.supervisor.events()
@@ -427,7 +426,6 @@ impl Robot {
         drop(before);
     }
 
-    /// Returns the counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> crate::tally::Tally {
         self.shared.supervisor.tally()
@@ -478,7 +476,7 @@ impl Robot {
 }
 
 /// Waits until the robot is connected and sends states. First pauses, so that a connection that was
-/// just lost is shown as lost. Returns false if this is not so before `end`.
+/// just lost is shown as lost. Returns false if `end` comes first.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
     world::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);

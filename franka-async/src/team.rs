@@ -50,7 +50,6 @@ use crate::motion::Follow;
 use crate::move_to::Motion;
 use crate::robot::Robot;
 
-/// Outcome of the motion of one member.
 type Outcome = Result<MotionReport, MotionError>;
 
 /// `N` arms with one session each, and one stop for all. Members are numbered from 0, in the order
@@ -225,7 +224,7 @@ impl<const N: usize> Team<N> {
     /// with the outcome of each: see [`Arm::disengage`].
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the sessions end even if the future is dropped.
+    /// Once polled, the sessions end even if the future is dropped.
     pub async fn disengage(self) -> [Outcome; N] {
         let ended = join_all(self.arms.map(Arm::disengage)).await;
         ended.try_into().expect("one for each arm")
@@ -267,7 +266,6 @@ impl From<Follow> for MemberMotion {
     }
 }
 
-/// The running motion of one member.
 type Running = Pin<Box<dyn Future<Output = Outcome> + Send>>;
 
 impl MemberMotion {

@@ -23,8 +23,7 @@ impl VacuumGripper {
     /// connection, the handshake and the first state may take 1 s each. The default port is 1339.
     ///
     /// # Errors
-    /// Returns [`ConnectError`] if there is no connection; everything that was opened is closed
-    /// again.
+    /// Returns [`ConnectError`] if there is no connection.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.
@@ -84,7 +83,7 @@ impl VacuumGripper {
     /// See [`Self::vacuum`].
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the gripper stops even if the future is dropped.
+    /// Once polled, the gripper stops even if the future is dropped.
     pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
         self.connection.act(Request::Stop).await
     }

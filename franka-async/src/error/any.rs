@@ -95,8 +95,8 @@ impl From<TareError> for Error {
 }
 
 impl Error {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors, which
-    /// explains what to do. Every error of a call has a row.
+    /// Returns the name of this error's row in the book's `errors.md`, which explains what to do.
+    /// Every error of a call has a row.
     ///
     /// ```
     /// # use franka_async::{Error, MotionError};

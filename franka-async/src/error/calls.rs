@@ -65,7 +65,7 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(refusal) | Self::InvalidArgument { refusal, .. } => refusal.entry(),
@@ -123,7 +123,7 @@ pub enum ActionError<C: ServiceCommand> {
 }
 
 impl<C: ServiceCommand> ActionError<C> {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Failure(_) => "action-failure",
@@ -164,7 +164,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::LinkLost { .. } => "read-link-lost",
@@ -203,7 +203,7 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Motion(error) => error.entry(),
@@ -258,7 +258,7 @@ pub enum IdentifyError {
 }
 
 impl IdentifyError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Moved { .. } => "identify-moved",
@@ -290,7 +290,7 @@ pub enum TareError {
 }
 
 impl TareError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Refused(_) => "tare-refused",
@@ -322,7 +322,7 @@ pub enum ModelLibraryError {
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),

@@ -152,7 +152,7 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Realtime(error) => error.entry(),
@@ -296,7 +296,7 @@ pub enum ModelError {
 
 #[cfg(feature = "urdf")]
 impl ModelError {
-    /// Returns the name of this error's row in `errors.md`, the book's chapter on errors.
+    /// Returns the name of this error's row in the book's `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Command(error) => error.entry(),
