@@ -223,7 +223,7 @@ impl Arm {
     /// was accepted.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::set`].
+    /// See [`Self::set`].
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
         self.session.check_goal()?;
@@ -347,7 +347,7 @@ impl Arm {
     /// load first, or it pulls the arm down.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::set`].
+    /// See [`Self::set`].
     ///
     /// # Cancel safety
     /// Once polled, guiding begins even if the future is dropped.
@@ -420,7 +420,7 @@ impl Arm {
     /// Resolves with the outcome of the session when it has ended.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::disengage`].
+    /// See [`Self::disengage`].
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.

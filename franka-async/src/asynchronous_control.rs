@@ -133,7 +133,6 @@ pub struct AsynchronousControl {
     id: GoalId,
     targets: Mutex<Targets>,
     goal_tolerance: f64,
-    /// Outcome of the motion.
     end: Shared<BoxFuture<'static, Outcome>>,
 }
 

@@ -125,9 +125,9 @@ impl Builder {
         self
     }
 
-    /// Sets the time limit for each step of connecting; 1 s by default. The steps are: resolving
-    /// the host name, the TCP connection to each of its addresses, the handshake, the first state,
-    /// the description, and the states whose poses are compared with the model.
+    /// Sets the time limit for each step of connecting; 1 s by default. The steps are: finding the
+    /// host, the TCP connection to each address, the handshake, the first state, the description,
+    /// and the states whose poses are compared with the model.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
@@ -185,17 +185,18 @@ impl Builder {
 
     /// Sets how many of the last cycles an error contains when the robot ends a motion: see
     /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum is
-    /// 10000, which covers ten seconds. With 0, the text of the error contains no success rate. A
-    /// larger number is refused as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
-    /// [`Robot::records`](crate::Robot::records) yields the cycles of whole motions.
+    /// 10000, which covers ten seconds; a larger number is refused as
+    /// [`ConnectError::LogSize`](crate::error::ConnectError::LogSize). With 0, the text of the
+    /// error contains no success rate. [`Robot::records`](crate::Robot::records) yields the cycles
+    /// of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
     }
 
     /// Sets an earlier result of [`Robot::identify`] for this arm, so that the first motion is
-    /// compensated like later motions. Only the part of the identified load counts that is not
-    /// declared when that motion begins. By default, nothing is known. A result of another kind of
+    /// compensated like later motions. Of the identified load, only the part that is not declared
+    /// when that motion begins counts. By default, nothing is known. A result of another kind of
     /// arm, or with implausible numbers, is refused as
     /// [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
@@ -210,7 +211,7 @@ impl Builder {
     ///
     /// After each reconnect, once the robot is idle, the driver sends the settings of this program
     /// again (load, frames, thresholds, impedance, guiding mode, filters). It compares them with
-    /// the robot's states, if the states show them. Motions begin after that. If the robot does not
+    /// the robot's states, if the states show them. Motions wait for this. If the robot does not
     /// accept a setting, motions are refused as
     /// [`Unready::NotConfigured`](crate::error::Unready::NotConfigured) until it does; see
     /// [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
@@ -224,8 +225,8 @@ impl Builder {
     /// [diagnosis](crate::diagnosis::Diagnose). Implies
     /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a thread
     /// for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)). Only the recovery waits
-    /// for the answer, and a runtime that is dropped. An answer that comes too late has no effect:
-    /// see [`Robot::agree`]. If the function panics, it does not agree. Without
+    /// for the answer, and so does dropping the runtime. An answer that comes too late has no
+    /// effect: see [`Robot::agree`]. If the function panics, it does not agree. Without
     /// [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(

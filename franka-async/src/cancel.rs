@@ -31,7 +31,6 @@ pub struct Canceller {
 }
 
 impl Canceller {
-    /// Returns a canceller of the motion `id` of this robot.
     pub(crate) fn new(robot: &Robot, id: GoalId) -> Self {
         Self {
             robot: robot.downgrade(),

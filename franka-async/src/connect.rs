@@ -34,12 +34,12 @@ impl Robot {
 
 impl Builder {
     /// Connects to the robot: real-time check, TCP, handshake, first state, and description. Call
-    /// it on a Tokio runtime with I/O and time enabled. That runtime then runs the two tasks of the
+    /// it on a Tokio runtime with I/O and time enabled, which then runs the two tasks of the
     /// connection, and a third one for supervision.
     ///
     /// # Errors
-    /// Returns [`ConnectError`] if there is no connection. No step is repeated, with supervision or
-    /// without.
+    /// Returns [`ConnectError`] if there is no connection. No step is repeated, even with
+    /// supervision.
     ///
     /// # Cancel safety
     /// Dropping the future closes everything that was opened.

@@ -25,8 +25,8 @@ use crate::state_model::nominal;
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
 /// Returns the model of the arm and a hash of the robot's description. The model comes from the
-/// description if the robot has one and it is wanted. Otherwise, it contains the constants of the
-/// kind of robot.
+/// description, if there is one and it is wanted. Otherwise, it contains the constants of the kind
+/// of robot.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -56,8 +56,8 @@ impl Robot {
     /// the format of the system. Protocol 5 only.
     ///
     /// # Errors
-    /// Returns [`CommandError`]; [`CommandError::Request`] if the version has no such command,
-    /// without asking the robot.
+    /// Returns [`CommandError`]; without asking the robot, [`CommandError::Request`] if the version
+    /// has no such command.
     ///
     /// # Cancel safety
     /// Dropping the future loses only the answer.

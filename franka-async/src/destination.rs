@@ -46,7 +46,6 @@ impl Destination {
         }
     }
 
-    /// Returns the target, given the present poses.
     pub(crate) fn seen_from(&self, now: &Now) -> Target {
         let target = now.target;
         match *self {

@@ -245,7 +245,6 @@ where
         States::new(self.states.clone(), self.closing.clone())
     }
 
-    /// Returns the journal of the actions that have ended.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> &Journal {
         &self.journal

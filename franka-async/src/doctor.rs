@@ -120,7 +120,6 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
     }
 }
 
-/// Returns the two likeliest causes on `host`.
 fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
     let robot: Option<Ipv4Addr> = match robot {
         IpAddr::V4(address) => Some(address),
@@ -129,7 +128,6 @@ fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
     likely_causes(&Readings::new(host, robot), evidence)
 }
 
-/// Returns the diagnosis from the log.
 #[expect(
     clippy::disallowed_methods,
     reason = "this is a thread for blocking work, and no task"

@@ -40,8 +40,8 @@ pub struct Follow {
 
 impl Robot {
     /// Follows the newest target in `targets` (poses or joint positions `[rad]`) until the sender
-    /// is dropped, and then stops at the last target. Targets may come at any rate, and any
-    /// distance apart: the arm moves within its limits.
+    /// is dropped, and then stops there. Targets may come at any rate, and any distance apart: the
+    /// arm moves within its limits.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -96,12 +96,12 @@ impl Follow {
         self
     }
 
-    /// Ends the motion if no target has come for `silence`: whole milliseconds, at least 10. The
-    /// arm then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
+    /// Sets a watchdog that acts if no target has come for `silence`: whole milliseconds, at least 10.
+    /// The arm then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
     /// ([`OnTimeout::Brake`]). When the arm rests, the future resolves as [`MotionError::Held`] or
     /// [`MotionError::Braked`], unless targets come again before that. A target counts even if it
-    /// equals the previous one. The control thread measures this time, so it does not depend on the
-    /// program. Without a watchdog, the arm holds the last target indefinitely.
+    /// equals the previous one. The control thread measures this time. Without a watchdog, the arm
+    /// holds the last target indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,

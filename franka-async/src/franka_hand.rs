@@ -12,16 +12,16 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
 /// A connected Franka Hand. The Hand has its own server, independent of the robot's.
 ///
-/// This is a cheap handle: all clones share one connection, and any task or thread may use them.
-/// One action runs at a time: a newer action or [`Gripper::stop`], from any handle, aborts it.
-/// Dropping the last handle closes the connection; a grasped object stays grasped.
+/// This is a cheap handle: all clones share one connection, and may be used from any task or
+/// thread. One action runs at a time: a newer action or [`Gripper::stop`], from any handle, aborts
+/// it. Dropping the last handle closes the connection; a grasped object stays grasped.
 ///
-/// Actions have no deadline, because some take long: a move that an obstacle blocks takes minutes.
-/// To limit the time of an action, use `tokio::time::timeout`; when it expires, the fingers stop.
-/// If the Hand is out of reach, the keepalive of the connection ends its actions within seconds.
+/// Actions have no deadline, because some take long: a blocked move takes minutes. To limit the
+/// time of an action, use `tokio::time::timeout`; when it expires, the fingers stop. If the Hand is
+/// out of reach, the keepalive of the connection ends its actions within seconds.
 ///
-/// Connecting needs a Tokio runtime with I/O and time enabled. That runtime then runs the task of
-/// the connection. Everything else may be called and awaited from anywhere.
+/// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the
+/// connection. Everything else may be called and awaited from anywhere.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     connection: DeviceConnection<Version>,

@@ -122,7 +122,6 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    /// Begins the comparison with the first state.
     pub(crate) fn new(model: Model, first: &RobotState) -> Self {
         Self {
             best: GeometryCheck::of(&model, first),
@@ -136,7 +135,6 @@ impl Comparison {
         self.left > 0 && !self.best.agrees()
     }
 
-    /// Compares one more state.
     pub(crate) fn look_at(&mut self, state: &RobotState) {
         self.left = self.left.saturating_sub(1);
         let newer = GeometryCheck::of(&self.model, state);

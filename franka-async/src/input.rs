@@ -181,7 +181,6 @@ pub(crate) fn unserved<E>(_: E) -> Outcome {
 pub(crate) struct Replies {
     /// Receives a message when a program or a session has begun.
     pub(crate) began: Option<oneshot::Sender<()>>,
-    /// Receives the outcome.
     pub(crate) ended: EndReply,
 }
 

@@ -268,7 +268,6 @@ impl EntrySender {
         self.entries.send((track, entry)).is_ok()
     }
 
-    /// Returns the number of entries for which there was no room.
     pub(crate) fn lost(&self) -> u64 {
         self.counts.lost.load(Ordering::Relaxed)
     }

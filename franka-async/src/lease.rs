@@ -78,7 +78,7 @@ impl Lease {
     /// only the holder itself ends the lease.
     ///
     /// # Errors
-    /// [`Taken`] if another client holds the lease.
+    /// Returns [`Taken`] if another client holds the lease.
     pub fn take(
         &self,
         name: impl Into<String>,

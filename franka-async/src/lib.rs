@@ -335,25 +335,25 @@
 //! | [`pose`] | poses from quaternions, arrays and matrices, and back |
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; conditions that end a motion |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
-//! | [`team`] | several arms as one, with one stop |
-//! | [`state`] | every state, or the newest as it changes; external wrenches minus the offset of an untouched arm |
-//! | [`error`], [`diagnosis`] | errors, by who can act on them; why the robot ended a motion |
+//! | [`team`] | motions of several arms, with one stop for all |
+//! | [`state`] | every state, or the newest state as it changes; external wrenches without the offset of an untouched arm |
+//! | [`error`], [`diagnosis`] | errors, grouped by who can act on them; why the robot ended a motion |
 //! | [`supervision`] | automatic reconnects, recovery by a policy, events and health |
-//! | [`control`] | control at 1 kHz by functions of the program |
+//! | [`control`] | control at 1 kHz by code of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with its own connection |
-//! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
+//! | [`settings`], [`identify`] | load, thresholds and other settings; measured friction, bias and load |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | records of every cycle |
 //! | `recording` | states, cycles and requests to the robot, in files; logs of libfranka (feature `record`) |
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
-//! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
-//! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
+//! | `replay`, `export` | replays of recorded motions; recordings as tables and datasets (features `record`, `export`) |
+//! | `cassette` | sessions recorded byte for byte, and played back as the robot (features `record`, `pcap`) |
 //! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
-//! | [`connection::lease`] | one client of a service at a time moves the arm |
+//! | [`connection::lease`] | the right of one client of a service at a time to move the arm |
 //! | `connection::admission` | checks of the clients of a service (feature `admission`) |
-//! | `blocking` | programs without async (feature `blocking`) |
+//! | `blocking` | calls for programs without async (feature `blocking`) |
 //!
 //! # How it works
 //!

@@ -92,10 +92,10 @@ impl Robot {
         self.move_to(q.into())
     }
 
-    /// Returns a motion of the end effector by `offset`, from the target if a motion is under way,
-    /// and otherwise from the measured pose. Otherwise it is like [`Self::move_to`]. For several
-    /// such motions in a row, [engage](Self::engage) the arm, because the arm moves a little
-    /// whenever it is released.
+    /// Returns a motion of the end effector by `offset` from the target, or from the measured pose
+    /// if no motion is under way. Apart from that, it is like [`Self::move_to`]. For several such
+    /// motions in a row, [engage](Self::engage) the arm, because the arm moves a little whenever it
+    /// is released.
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -203,11 +203,10 @@ impl Motion {
         MotionHandle(self.canceller.clone())
     }
 
-    /// Returns a preview of the motion as if it began now, or the error with which it would be
-    /// refused. Nothing moves, and nothing is sent. The preview treats a motion to one target as a
-    /// path with one waypoint; this is exact if the motion begins at rest. [`Preview::blocked`]
-    /// reports whether the arm would come too close to itself or to a keep-out region. The call
-    /// takes milliseconds.
+    /// Returns a preview of the motion as if it began now. Nothing moves, and nothing is sent. The
+    /// preview treats a motion to one target as a path with one waypoint; this is exact if the
+    /// motion begins at rest. [`Preview::blocked`] reports whether the arm would come too close to
+    /// itself or to a keep-out region. The call takes milliseconds.
     ///
     /// # Errors
     /// Returns [`MotionError::Path`] or [`MotionError::Goal`] if the motion would be refused.

@@ -51,7 +51,6 @@ impl Newest {
         }
     }
 
-    /// Returns the newest state.
     pub(crate) fn state(&self) -> RobotState {
         // Nothing was read: nothing is newer than `first`, or the kernel has stopped this thread in
         // the middle of each attempt.

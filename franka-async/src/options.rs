@@ -254,7 +254,6 @@ mod tests {
         assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
     }
 
-    /// A type with options.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Built {
         options: GoalOptions,
@@ -265,7 +264,6 @@ mod tests {
         goal_options!(target);
     }
 
-    /// Calls two setters, in both orders.
     fn both(first: fn(Built) -> Built, second: fn(Built) -> Built) -> GoalOptions {
         let built = second(first(Built::default()));
         assert_eq!(built, first(second(Built::default())));

@@ -89,7 +89,7 @@ pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
 /// like [`from_matrix`].
 ///
 /// # Errors
-/// Returns the errors of [`from_matrix`].
+/// See [`from_matrix`].
 pub fn from_array(column_major: &[f64; 16]) -> Result<Pose, NotRigid> {
     from_matrix(&Matrix4::from_column_slice(column_major))
 }

@@ -65,7 +65,6 @@ impl Course {
         }
     }
 
-    /// Stores the target of target control.
     pub(crate) fn head_for(&self, heading: Option<(GoalId, Target)>) {
         let mut noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         *noted = heading;

@@ -182,7 +182,6 @@ impl Arm {
     }
 }
 
-/// Returns the reason why a session ended.
 fn over(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Disengaged)
 }

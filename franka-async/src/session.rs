@@ -60,7 +60,6 @@ impl Session {
         self.id
     }
 
-    /// Returns the tuning of later goals.
     pub(crate) fn tuning(&self) -> &KeptTuning {
         &self.tuning
     }
@@ -72,7 +71,6 @@ impl Session {
         }
     }
 
-    /// Returns the joint positions at the start, `[rad]`, if known.
     pub(crate) fn posture(&self) -> Option<[f64; 7]> {
         self.posture.get().copied()
     }

@@ -20,8 +20,8 @@ use crate::robot::Robot;
 pub struct Reading {
     /// The state.
     pub state: RobotState,
-    /// Number of states between the last state of this stream and this one. Each of them was lost,
-    /// or the control thread skipped it for a newer one, or it came while the reader lagged too far
+    /// Number of states between the last state of this stream and this one. Each was lost, or the
+    /// control thread skipped it for a newer one, or it came while the reader lagged too far
     /// behind. For the first state of a stream, this counts from the creation of the stream.
     pub missed: u64,
 }

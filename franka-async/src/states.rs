@@ -57,17 +57,16 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
         })
     }
 
-    /// Waits for a state that satisfies `condition`, including the present one, and returns it. A
-    /// state that a newer one replaces before this task runs is not tested; to test every state,
-    /// use [`Robot::read`](crate::Robot::read). The wait has no time limit except the end of the
+    /// Waits for a state that satisfies `condition`, including the present one, and returns it.
+    /// States that are replaced before this task runs are not tested; to test every state, use
+    /// [`Robot::read`](crate::Robot::read). The wait has no time limit except the end of the
     /// connection, because only the caller knows when the state should come.
     ///
     /// # Errors
     /// Returns [`ReadError::ConnectionClosed`] if the connection has ended.
     ///
     /// # Cancel safety
-    /// A later call does not test again the states that were tested before the future was dropped,
-    /// except the newest one.
+    /// A later call does not repeat the test of earlier states, except that of the newest one.
     pub async fn wait_for(
         &mut self,
         mut condition: impl FnMut(&S) -> bool,

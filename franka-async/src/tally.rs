@@ -84,7 +84,6 @@ fn name_of_error(error: &MotionError) -> &'static str {
     }
 }
 
-/// The names of all outcomes.
 const OUTCOMES: [&str; 11] = [
     "done",
     "superseded",

@@ -11,8 +11,8 @@ use crate::robot::Robot;
 
 impl Robot {
     /// Averages the robot's estimate of external forces and torques over half a second of its
-    /// clock. The program subtracts this average later, because robots report a newton or two with
-    /// nothing attached. [`Self::tare_over`] averages over another duration.
+    /// clock. Subtract this average later, because robots report a newton or two with nothing
+    /// attached. [`Self::tare_over`] averages over another duration.
     ///
     /// The arm must rest, and nothing may touch it. A tare is valid for the posture in which it was
     /// taken. In another posture, an undeclared load, cables and errors of the model pull

@@ -107,7 +107,7 @@ impl<const N: usize> Team<N> {
     /// real robot stops by itself after 20 ms without commands.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::engage`].
+    /// See [`Self::engage`].
     ///
     /// # Cancel safety
     /// See [`Self::engage`].

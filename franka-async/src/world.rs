@@ -30,7 +30,6 @@ pub(crate) trait ByteStream: AsyncRead + AsyncWrite + Unpin + Send + fmt::Debug 
 
 impl<T: AsyncRead + AsyncWrite + Unpin + Send + fmt::Debug> ByteStream for T {}
 
-/// Opens a TCP connection.
 pub(crate) async fn connect(address: SocketAddr) -> io::Result<Stream> {
     let stream = tokio::net::TcpStream::connect(address).await?;
     if let Err(error) = stream.set_nodelay(true) {
@@ -66,7 +65,6 @@ pub(crate) struct StatePort {
     peer: IpAddr,
 }
 
-/// A UDP socket for tasks.
 pub(crate) type Datagrams = tokio::net::UdpSocket;
 
 impl StatePort {
@@ -76,7 +74,6 @@ impl StatePort {
         Ok(Self { socket, peer })
     }
 
-    /// Returns the number of the port.
     pub(crate) fn number(&self) -> io::Result<u16> {
         Ok(self.socket.local_addr()?.port())
     }
@@ -128,7 +125,6 @@ impl Wake {
 
 pub(crate) type Instant = tokio::time::Instant;
 
-/// Reads the clock.
 pub(crate) fn now() -> Instant {
     Instant::now()
 }
@@ -206,7 +202,6 @@ pub(crate) fn background() -> io::Result<runtime::Runtime> {
         .build()
 }
 
-/// Starts a thread.
 #[cfg(feature = "record")]
 pub(crate) fn start_thread(
     name: &str,

@@ -268,7 +268,6 @@ impl Bridge {
         Lifecycle::unseen(silence, self.stats.turns.get() != awaited.turns)
     }
 
-    /// Carries out the decisions of the lifecycle in their order.
     fn carry_out(&mut self) {
         let now = self.now();
         self.lifecycle.on_state(&self.publisher.state(), now);

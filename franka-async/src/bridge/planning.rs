@@ -77,7 +77,6 @@ fn session_of(motion: &NewMotion) -> Option<GoalId> {
 }
 
 impl Bridge {
-    /// Plans the path of a motion, which begins after that.
     pub(super) fn plan(
         &mut self,
         motion: Beginning,
@@ -162,12 +161,10 @@ impl Bridge {
         self.take_back_plans(MotionError::Stopped, |plan| plan.id() == goal)
     }
 
-    /// Cancels the paths of a session that have not begun.
     pub(super) fn end_plans_of(&mut self, session: GoalId) {
         self.take_back_plans(MotionError::Stopped, |plan| plan.session() == Some(session));
     }
 
-    /// Cancels all pending paths with `reason`.
     pub(super) fn drop_plans(&mut self, reason: MotionError) {
         self.take_back_plans(reason, |_| true);
     }

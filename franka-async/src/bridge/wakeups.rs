@@ -10,7 +10,6 @@ use super::Bridge;
 use crate::{telemetry, world};
 
 impl Bridge {
-    /// Reads everything that the thread has published.
     pub(super) fn on_wakeup(&mut self) {
         self.publisher.publish();
         // Observe before a motion resolves, so that the next call finds the robot in the reflex.

@@ -92,8 +92,8 @@ pub enum ConnectError<P: Protocol = Version> {
     },
     /// Robot: its system uses a protocol version that this driver does not support. Caller: the
     /// requested version is not the version of the robot, see
-    /// [`VersionPolicy`](crate::connection::VersionPolicy). The text names the robot's system
-    /// version and the remedy; libfranka's text names versions of libfranka instead.
+    /// [`VersionPolicy`](crate::connection::VersionPolicy). The text names the robot's system and
+    /// the remedy, while libfranka's text names versions of libfranka.
     #[error(
         "libfranka: Incompatible library version (server version: {}, library version: {}): {}",
         .0.server_version, .0.library_version.number(), .0.explanation()
@@ -266,8 +266,7 @@ impl From<StartError> for ConnectError {
     }
 }
 
-/// This is written by hand because the refusal must not be an error source: its own text is
-/// libfranka's.
+/// Written by hand, because the refusal must not be an error source: its own text is libfranka's.
 impl<P: Protocol> From<IncompatibleVersion<P>> for ConnectError<P> {
     fn from(refusal: IncompatibleVersion<P>) -> Self {
         Self::IncompatibleVersion(refusal)

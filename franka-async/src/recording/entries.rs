@@ -96,7 +96,6 @@ impl EntryQueue {
         }
     }
 
-    /// Returns the number of entries for which there was no room.
     pub(super) fn lost(&self) -> u64 {
         self.entries.lost()
     }

@@ -140,7 +140,7 @@ impl Recorder {
     /// or a guard ends a motion.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::to_file`].
+    /// See [`Self::to_file`].
     pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
         Self::around(recorder::Recorder::black_box(black_box)?)
     }
@@ -149,7 +149,7 @@ impl Recorder {
     /// [`Self::serve`]. Also returns the address of the server.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::serve`].
+    /// See [`Self::serve`].
     #[cfg(feature = "foxglove")]
     pub fn live(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
         let (inner, address) = recorder::Recorder::live(live)?;
@@ -163,7 +163,7 @@ impl Recorder {
     ///
     /// # Errors
     /// Returns [`RecordError::Live`] if the server cannot listen there, [`RecordError::Option`] if
-    /// an option is out of range, and [`RecordError::Ended`] if the recording has ended.
+    /// an option is out of range, and [`RecordError::Ended`] after the end.
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
         self.inner.serve(live)
@@ -260,7 +260,7 @@ impl Recorder {
     /// does.
     ///
     /// # Errors
-    /// [`TrackError::Unknown`], [`TrackError::Attached`].
+    /// See [`Self::attach_gripper`].
     pub fn attach_vacuum_gripper(
         &self,
         gripper: &VacuumGripper,
@@ -318,8 +318,7 @@ impl Recorder {
     }
 
     /// Ends the recording and waits until everything that happened before the call is on the disk,
-    /// at most 10 s. This call blocks: in async code, use [`tokio::task::spawn_blocking`] if other
-    /// tasks must not wait.
+    /// at most 10 s. This call blocks: in async code, use [`tokio::task::spawn_blocking`].
     ///
     /// # Errors
     /// Returns [`RecordError`] if the files could not be written completely. The part that was

@@ -11,7 +11,6 @@ use serde::Serialize;
 use crate::destination::Destination;
 use crate::journal::{ActionEnd, Given};
 
-/// Returns the event of a goal that was requested.
 pub(super) fn goal(given: &Given) -> EventKind {
     let Given {
         id,
@@ -74,7 +73,6 @@ fn options(goal: &Goal, destination: Option<Destination>) -> String {
     )
 }
 
-/// Returns the event of the end of a goal, a session or a program.
 pub(super) fn outcome(goal: GoalId, outcome: &Outcome) -> EventKind {
     let (ending, text, duration) = match outcome {
         Ok(report) => {
@@ -195,7 +193,6 @@ pub(super) fn request(request: &Request, error: Option<String>) -> EventKind {
     answered(name, arguments, error)
 }
 
-/// Returns the event of an action of the Hand that has ended.
 pub(super) fn hand(request: &gripper::Request, ended: ActionEnd) -> EventKind {
     let (name, arguments) = match request {
         gripper::Request::Homing => ("gripper.homing", String::new()),
@@ -207,7 +204,6 @@ pub(super) fn hand(request: &gripper::Request, ended: ActionEnd) -> EventKind {
     answered(name, arguments, failure(ended))
 }
 
-/// Returns the event of an action of a vacuum gripper that has ended.
 pub(super) fn vacuum(request: &vacuum::Request, ended: ActionEnd) -> EventKind {
     let (name, arguments) = match request {
         vacuum::Request::Vacuum(vacuum) => ("vacuum.vacuum", json(vacuum)),
@@ -234,7 +230,6 @@ fn answered(name: &str, arguments: String, error: Option<String>) -> EventKind {
     })
 }
 
-/// Returns the value as JSON.
 fn json(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("no map in it has keys that are no text")
 }

@@ -147,13 +147,11 @@ impl Supervisor {
         self.health.clone()
     }
 
-    /// Returns the journal of requests to the robot and of its events.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> Journal {
         self.lock().journal.clone()
     }
 
-    /// Returns the counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> Tally {
         self.lock().tally.clone()
@@ -482,7 +480,6 @@ impl Inner {
         self.journal.ended(goal, &Err(error.clone()));
     }
 
-    /// Passes a motion to a connection.
     fn begin(&mut self, motion: Beginning, replies: Replies, link: &Link, now: Duration) {
         let goal = motion.motion.id();
         // Note the motion before passing it on, because the robot must not be recovered until the

@@ -160,9 +160,9 @@ impl Admission {
         }
     }
 
-    /// Checks a request for a resource that is not secret, such as a file of a page, and that
-    /// changes nothing. `Origin` and the token are not checked, because other sites may link to the
-    /// page, and the page may then ask for the token.
+    /// Checks a request that changes nothing and whose answer is not secret, such as for a file of
+    /// a page. `Origin` and the token are not checked, because other sites may link to the page,
+    /// and the page may then ask for the token.
     ///
     /// # Errors
     /// Returns [`Refused`], but never [`Refused::Origin`] or [`Refused::Token`].

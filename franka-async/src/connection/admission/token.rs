@@ -1,4 +1,4 @@
-//! A secret that admits other computers to a service.
+//! Token of a service.
 
 use std::env::{self, VarError};
 use std::fmt::{self, Write as _};
@@ -7,7 +7,7 @@ use std::{fs, io};
 
 use subtle::ConstantTimeEq as _;
 
-/// A secret that admits other computers to a service. `Debug` does not show it.
+/// Secret that admits other computers to a service. `Debug` does not show it.
 #[derive(Clone)]
 pub struct Token(String);
 
@@ -55,7 +55,7 @@ impl Token {
     ///
     /// # Errors
     /// Returns [`TokenError::Empty`], [`TokenError::Short`] or [`TokenError::Character`] if the
-    /// text is not a token.
+    /// text is no token.
     pub fn new(text: impl Into<String>) -> Result<Self, TokenError> {
         let text = text.into();
         let is_odd = |c: &char| !(c.is_ascii_alphanumeric() || "-_.~".contains(*c));
@@ -70,7 +70,7 @@ impl Token {
     /// Makes a random token of 128 bits.
     ///
     /// # Errors
-    /// Returns [`TokenError::Random`] if the system provides no random numbers.
+    /// Returns [`TokenError::Random`] if that fails.
     pub fn generate() -> Result<Self, TokenError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| TokenError::Random {
