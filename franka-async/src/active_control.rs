@@ -118,7 +118,7 @@ impl Robot {
 /// refused as [`MotionError::Busy`].
 ///
 /// Commands are neither filtered nor limited. All methods block; do not call them from async code.
-/// The driver sets the real-time scheduling of its own thread only. For the calling thread, use
+/// The driver sets real-time scheduling only for its own thread. For the calling thread, use
 /// [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
 /// **Dropping this value** before the last command stops the robot.

@@ -37,7 +37,7 @@ pub struct Engage {
 impl Engage {
     goal_options!();
 
-    /// Keeps the arm out of these regions, given in the base frame; by default, there are none. The
+    /// Keeps the arm out of these regions, given in the base frame; by default, out of none. The
     /// reference slows down on its way to a region, and stops
     /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal that a region blocks is
     /// given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it

@@ -36,7 +36,8 @@ impl Destination {
         Self::Orientation(orientation)
     }
 
-    /// Returns the target as far as it is known without the current one; its kind is final.
+    /// Returns the target to the extent that it is known without the current one; its kind is
+    /// final.
     pub(crate) fn kind(&self) -> Target {
         match self {
             Self::Target(target) => *target,

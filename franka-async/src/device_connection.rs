@@ -399,7 +399,7 @@ impl<D: Device> DeviceTask<D> {
                 self.session.abandon(stop.id());
                 codec::send(&mut self.stream, stop).await
             }
-            // Without the connection, the device stops by itself.
+            // Without the connection, the device stops on its own.
             Err(error) => {
                 tracing::warn!(%error, "too many pending requests to send a stop; closing the \
                     connection instead");

@@ -136,7 +136,7 @@ fn diagnosis(error: &MotionError) -> Option<Diagnosis> {
     error.diagnose()
 }
 
-/// Returns the evidence in an error that packets did not come in time; `None` if there is none.
+/// Returns the evidence in an error that packets did not come in time; `None` without evidence.
 fn evidence(error: &MotionError) -> Option<Evidence> {
     match error {
         MotionError::LinkLost { .. } => Some(Evidence::LinkLost),

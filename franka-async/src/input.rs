@@ -153,7 +153,7 @@ impl Waiting {
         self.lock().is_none()
     }
 
-    /// Returns the result of `look` on the waiting motion; `None` if there is none.
+    /// Returns the result of `look` on the waiting motion; `None` without one.
     #[cfg(feature = "record")]
     pub(crate) fn peek<T>(&self, look: impl FnOnce(&Beginning) -> T) -> Option<T> {
         self.lock().as_deref().map(look)

@@ -56,7 +56,7 @@ pub struct Lost {
 struct State {
     /// The newest time that a call has passed.
     now: Option<Instant>,
-    /// How many times the lease was taken.
+    /// Number of times that the lease was taken.
     taken: u64,
     held: Option<Held>,
 }

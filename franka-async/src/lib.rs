@@ -34,7 +34,7 @@
 //! The address is a host name or an IP address. A [`Robot`] is a handle that is cheap to clone:
 //! give each task or request its own clone. Dropping the last handle brakes the arm and closes the
 //! connection. [`Robot::shutdown`] does the same and waits until the connection is closed. If the
-//! program is killed, the robot stops by itself. By default, connecting fails on a host without a
+//! program is killed, the robot stops on its own. By default, connecting fails on a host without a
 //! real-time kernel. A real robot needs such a kernel; a simulated robot does not.
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` connects without such a kernel.
 //! Every error of this crate converts into [`Error`]; if `main` returns one through `anyhow`, the

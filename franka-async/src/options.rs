@@ -87,8 +87,8 @@ macro_rules! goal_options {
             self
         }
 
-        /// Replaces the limits, which [`Self::speed`] then scales. By default, the limits of
-        /// [`Budget::of`](crate::goal::Budget::of) apply, or those of the session.
+        /// Replaces the limits, which [`Self::speed`] then scales. By default, the limits of the
+        /// session or of [`Budget::of`](crate::goal::Budget::of) apply.
         pub fn limits(mut self, budget: crate::goal::Budget) -> Self {
             self.options.tuning.budget = Some(budget);
             self

@@ -53,7 +53,7 @@ pub enum NotRigid {
          the last row"
     )]
     RowMajor,
-    /// The last row is not that of a homogeneous matrix.
+    /// The last row is not the last row of a homogeneous matrix.
     #[error("the last row is not 0 0 0 1, as expected of a pose")]
     LastRow,
     /// The upper left block is scaled, sheared or mirrored.

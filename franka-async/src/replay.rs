@@ -163,8 +163,8 @@ impl Arm {
         })
     }
 
-    /// Returns the reason why a replay ended: that of the session if the session has ended,
-    /// otherwise `error`. A session refuses goals only when it is about to end.
+    /// Returns the reason why a replay ended: the end of the session if it has ended, otherwise
+    /// `error`. A session refuses goals only when it is about to end.
     fn over(&self, error: MotionError) -> MotionError {
         match (self.session_error(), error) {
             (Some(ended), _) => ended,

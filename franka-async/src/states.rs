@@ -66,7 +66,7 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
     /// Returns [`ReadError::ConnectionClosed`] if the connection has ended.
     ///
     /// # Cancel safety
-    /// A later call does not repeat the test of earlier states, except that of the newest one.
+    /// A later call tests none of the earlier states again, except the newest.
     pub async fn wait_for(
         &mut self,
         mut condition: impl FnMut(&S) -> bool,

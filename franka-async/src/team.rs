@@ -104,7 +104,7 @@ impl<const N: usize> Team<N> {
 
     /// Engages the arms as [`Self::engage`] does, but sets the silence of a robot after which the
     /// other robots brake; the default is [`SILENCE`]. Use this for simulators on a busy machine. A
-    /// real robot stops by itself after 20 ms without commands.
+    /// real robot stops on its own after 20 ms without commands.
     ///
     /// # Errors
     /// See [`Self::engage`].

@@ -11,7 +11,7 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
-/// A connected vacuum gripper. Its handles and actions behave as those of the
+/// A connected vacuum gripper. Its handles and actions behave as for the
 /// [`Gripper`](crate::gripper::Gripper).
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {

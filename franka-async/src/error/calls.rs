@@ -43,14 +43,14 @@ pub enum CommandError {
     Timeout {
         /// Command without an answer.
         command: Command,
-        /// How long the driver waited for the answer.
+        /// Time for which the driver waited for the answer.
         deadline: Duration,
     },
     /// Link: the robot sends no states. It is unknown whether the command was carried out.
     #[error("no robot state for {} ms: the command may have taken effect, read the state when the \
         robot is back", .silence.as_millis())]
     LinkLost {
-        /// How long the robot has been silent so far.
+        /// Time for which the robot has been silent so far.
         silence: Duration,
     },
     /// Peer: the robot's answer cannot be read.
@@ -152,7 +152,7 @@ pub enum ReadError {
     /// Link: the robot has stopped sending states. The text begins as in libfranka.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
-        /// How long the robot has been silent so far.
+        /// Time for which the robot has been silent so far.
         silence: Duration,
     },
     /// The connection has ended. Who can act depends on the reason.

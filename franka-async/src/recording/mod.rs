@@ -225,7 +225,7 @@ impl Recorder {
     /// Records the arms of a team, each as [`Self::attach`] does, with the member number of each.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::attach`]. Members before the one that failed stay attached.
+    /// Returns the errors of [`Self::attach`]. Members before the failed member stay attached.
     ///
     /// # Cancel safety
     /// If the future is dropped, some members may be attached.

@@ -18,8 +18,8 @@ pub(crate) const CAPACITY: usize = 256;
 pub struct Notification {
     /// The event.
     pub event: Event,
-    /// Number of events between the last event of this stream and this one that were dropped
-    /// because the listener was more than 256 events behind.
+    /// Number of events that were dropped just before this event, because the listener was more
+    /// than 256 events behind.
     pub missed: u64,
 }
 

@@ -563,7 +563,7 @@ impl Inner {
             _ => None,
         };
         if let Some(events) = &self.events {
-            // Sending fails if nobody listens.
+            // Sending fails without listeners.
             let _ = events.send(event);
         }
         if let Some(reason) = reason {

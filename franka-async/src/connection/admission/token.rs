@@ -96,7 +96,7 @@ impl Token {
         Self::new(text.trim())
     }
 
-    /// Reads the token from `file`, or if there is none, from the environment variable
+    /// Reads the token from `file`, or without a file, from the environment variable
     /// [`TOKEN_VARIABLE`]. Returns `None` if neither is given. Services should not take a token as
     /// an argument: every user of the computer can read the arguments of its programs.
     ///
