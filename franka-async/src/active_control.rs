@@ -38,8 +38,8 @@ impl Robot {
     }
 
     /// Begins control by joint positions, with the given controller. With
-    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Otherwise it is
-    /// like [`Self::active_torques`].
+    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Apart from
+    /// that, it is like [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -53,7 +53,8 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by joint velocities. Otherwise it is like [`Self::active_joint_positions`].
+    /// Begins control by joint velocities. Apart from that, it is like
+    /// [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -67,7 +68,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by poses of the end effector. Otherwise it is like
+    /// Begins control by poses of the end effector. Apart from that, it is like
     /// [`Self::active_joint_positions`].
     ///
     /// # Errors
@@ -82,7 +83,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by twists of the end effector. Otherwise it is like
+    /// Begins control by twists of the end effector. Apart from that, it is like
     /// [`Self::active_joint_positions`].
     ///
     /// # Errors

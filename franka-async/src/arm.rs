@@ -173,19 +173,20 @@ impl Arm {
         Motion::within(&self.session, destination.into())
     }
 
-    /// Returns a motion of the joints to `q`, `[rad]`. Otherwise it is like [`Self::move_to`].
+    /// Returns a motion of the joints to `q`, `[rad]`. Apart from that, it is like
+    /// [`Self::move_to`].
     pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
         self.move_to(q.into())
     }
 
     /// Returns a motion of the end effector by `offset` from the present target, or from the arm.
-    /// Otherwise it is like [`Self::move_to`].
+    /// Apart from that, it is like [`Self::move_to`].
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
 
     /// Returns a motion through several poses or joint positions, without stops at waypoints that
-    /// are [rounded](Waypoint::blend). Otherwise it is like [`Self::move_to`]; see
+    /// are [rounded](Waypoint::blend). Apart from that, it is like [`Self::move_to`]; see
     /// [`Robot::move_through`].
     pub fn move_through<W: Into<Waypoint>>(
         &self,
@@ -217,10 +218,10 @@ impl Arm {
     }
 
     /// Sets a goal as [`Self::set`] does, without waiting for an answer. Use it in plain threads,
-    /// in callbacks, and in loops with their own rate. If goals come faster than the session
-    /// accepts them, only the newest one counts. This call checks the goal. Later refusals are only
-    /// logged: a goal for another [`Backend`], or an offset that was set before the previous goal
-    /// was accepted.
+    /// callbacks, and loops with their own rate. If goals come faster than the session accepts
+    /// them, only the newest one counts. This call checks the goal. Later refusals are only logged:
+    /// a goal for another [`Backend`], or an offset that was set before the previous goal was
+    /// accepted.
     ///
     /// # Errors
     /// See [`Self::set`].
@@ -356,7 +357,7 @@ impl Arm {
     }
 
     /// Follows the newest target in `targets` (poses or joint positions) until the sender is
-    /// dropped, and then stops there. See [`Robot::follow`].
+    /// dropped, and then stops at the last target. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -365,8 +366,8 @@ impl Arm {
     }
 
     /// Follows the newest target of a stream (poses or joint positions) until the stream ends, and
-    /// then stops there. While one target is being accepted, up to 256 newer targets are skipped at
-    /// once. This works for a stream that is always ready, too.
+    /// then stops at the last target. While one target is being accepted, up to 256 newer targets
+    /// are skipped at once. This works for a stream that is always ready, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,

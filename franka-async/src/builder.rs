@@ -238,10 +238,9 @@ impl Builder {
         self
     }
 
-    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does. Use it in
-    /// programs that end all their tasks with one token. To know when the connection has ended,
-    /// also await `shutdown`. The token does not cancel `connect` itself; to do so, drop its
-    /// future.
+    /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does. Use it if one
+    /// token ends all tasks of the program. To know when the connection has ended, also await
+    /// `shutdown`. The token does not cancel `connect` itself; to do so, drop its future.
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self

@@ -49,7 +49,7 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns a motion that `function` controls with joint velocities. Otherwise it is like
+    /// Returns a motion that `function` controls with joint velocities. Apart from that, it is like
     /// [`Self::control_joint_positions`].
     pub fn control_joint_velocities<R: Into<Next<JointVelocities>>>(
         &self,
@@ -58,8 +58,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns a motion that `function` controls with poses of the end effector. Otherwise it is
-    /// like [`Self::control_joint_positions`].
+    /// Returns a motion that `function` controls with poses of the end effector. Apart from that,
+    /// it is like [`Self::control_joint_positions`].
     pub fn control_cartesian_pose<R: Into<Next<CartesianPose>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -67,8 +67,8 @@ impl Robot {
         self.control_motion(function)
     }
 
-    /// Returns a motion that `function` controls with twists of the end effector. Otherwise it is
-    /// like [`Self::control_joint_positions`].
+    /// Returns a motion that `function` controls with twists of the end effector. Apart from that,
+    /// it is like [`Self::control_joint_positions`].
     pub fn control_cartesian_velocities<R: Into<Next<CartesianVelocities>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,

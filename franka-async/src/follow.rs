@@ -40,8 +40,8 @@ pub struct Follow {
 
 impl Robot {
     /// Follows the newest target in `targets` (poses or joint positions `[rad]`) until the sender
-    /// is dropped, and then stops there. Targets may come at any rate, and any distance apart: the
-    /// arm moves within its limits.
+    /// is dropped, and then stops at the last target. Targets may come at any rate, and any
+    /// distance apart: the arm moves within its limits.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -49,8 +49,8 @@ impl Robot {
         Follow::new(self.clone(), None, watched(targets))
     }
 
-    /// Follows the newest target that a stream yields. Otherwise it is like [`Self::follow`]. See
-    /// also [`Arm::follow_stream`](crate::Arm::follow_stream).
+    /// Follows the newest target that a stream yields. Apart from that, it is like
+    /// [`Self::follow`]. See also [`Arm::follow_stream`](crate::Arm::follow_stream).
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,

@@ -67,7 +67,7 @@ impl Link {
         self.subscriptions().silence(newest)
     }
 
-    /// Waits until the link has been given up for the time `more` without a state. Returns the
+    /// Waits until the link has been given up and no state has come for another `more`. Returns the
     /// whole silence.
     ///
     /// # Cancel safety

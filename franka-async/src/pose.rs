@@ -85,8 +85,8 @@ pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     })
 }
 
-/// Returns the pose nearest to 16 numbers in column-major order, as in `O_T_EE`. Otherwise it is
-/// like [`from_matrix`].
+/// Returns the pose nearest to 16 numbers in column-major order, as in `O_T_EE`. Apart from that,
+/// it is like [`from_matrix`].
 ///
 /// # Errors
 /// See [`from_matrix`].

@@ -102,9 +102,9 @@ impl<const N: usize> Team<N> {
         Self::engage_tolerating(SILENCE, robots).await
     }
 
-    /// Engages the arms as [`Self::engage`] does, but sets the silence of a robot after which the
-    /// other robots brake; the default is [`SILENCE`]. Use this for simulators on a busy machine. A
-    /// real robot stops on its own after 20 ms without commands.
+    /// Engages the arms as [`Self::engage`] does, but sets how long a robot may be silent before
+    /// the other robots brake; the default is [`SILENCE`]. Use this for simulators on a busy
+    /// machine. A real robot stops on its own after 20 ms without commands.
     ///
     /// # Errors
     /// See [`Self::engage`].

@@ -252,7 +252,7 @@ pub enum IdentifyError {
     /// A motion did not arrive. The arm stays where it stopped.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// Robot: something held or pushed the arm, so its torques measure nothing useful.
+    /// Robot: something held or pushed the arm, so the measured torques cannot be used.
     #[error(transparent)]
     Fit(#[from] FitError),
 }

@@ -121,7 +121,7 @@ impl Drop for EntryQueue {
 
 impl Shared {
     fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
-        // A panic in `act` adds or removes at most one track too many.
+        // After a panic in `act`, there is at most one track too many or too few.
         act(&mut self.tracks.lock().unwrap_or_else(PoisonError::into_inner))
     }
 

@@ -238,7 +238,7 @@ impl Supervisor {
         });
     }
 
-    /// Writes the end of a goal or program that the supervision does not follow to the journal.
+    /// Records in the journal the end of a goal or program that the supervision does not follow.
     #[cfg(feature = "record")]
     pub(crate) fn write_down(&self, goal: GoalId, outcome: &Outcome) {
         self.with(|inner, _| inner.journal.ended(goal, outcome));
