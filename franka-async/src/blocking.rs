@@ -84,7 +84,7 @@ pub trait Wait: IntoFuture + Sized {
     /// Panics as [`Self::wait`] does.
     fn wait_for(self, timeout: Duration) -> Option<Self::Output> {
         let future = self.into_future();
-        // The timer must begin within the runtime.
+        // The timer needs the runtime.
         background().block_on(async move { world::timeout(timeout, future).await.ok() })
     }
 }

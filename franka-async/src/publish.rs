@@ -61,7 +61,7 @@ pub(crate) struct Subscriptions {
 }
 
 impl Publisher {
-    /// Returns a publisher. All receivers of `states` count as subscribers.
+    /// All receivers of `states` count as subscribers of this publisher.
     pub(crate) fn new(
         newest: StateReader,
         sequence: StateSequence,

@@ -186,7 +186,6 @@ impl Runtime {
     }
 }
 
-/// True within a runtime.
 #[cfg(feature = "doctor")]
 pub(crate) fn has_runtime() -> bool {
     runtime::Handle::try_current().is_ok()

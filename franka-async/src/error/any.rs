@@ -9,9 +9,8 @@ use super::{
     ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, TareError,
 };
 
-/// Any error of a robot or its end effectors. Return it from code with many kinds of calls. Every
-/// error of this crate converts into it, for example through `?`, and `Display` prints the error
-/// inside.
+/// Any error of a robot or its end effectors. Every error of this crate converts into it, for
+/// example through `?`, and `Display` prints the error inside.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
