@@ -225,7 +225,7 @@ pub struct Attempt<P: Protocol = Version> {
     pub error: ConnectError<P>,
 }
 
-/// Returns the usual reason why a connection ends before the robot has answered.
+/// True if the connection ended as it does if the robot already has a client.
 fn likely_taken(reason: &CloseReason) -> bool {
     matches!(
         reason,
