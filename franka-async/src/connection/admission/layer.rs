@@ -78,6 +78,7 @@ mod tests {
     use std::convert::Infallible;
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::task::Waker;
 
     use futures::FutureExt as _;
     use http::StatusCode;
@@ -101,6 +102,33 @@ mod tests {
             self.0.fetch_add(1, Ordering::Relaxed);
             ready(Ok(Response::default()))
         }
+    }
+
+    /// Is never ready for a request.
+    struct Busy;
+
+    impl Service<Request<()>> for Busy {
+        type Response = Response<String>;
+        type Error = Infallible;
+        type Future = Ready<Result<Response<String>, Infallible>>;
+
+        fn poll_ready(&mut self, _: &mut Context<'_>) -> Poll<Result<(), Infallible>> {
+            Poll::Pending
+        }
+
+        fn call(&mut self, _: Request<()>) -> Self::Future {
+            unreachable!("it is not ready")
+        }
+    }
+
+    #[test]
+    fn service_is_ready_only_if_the_inner_one_is() {
+        let refuse = |_: Refused| Response::default();
+        let layer = Admission::default().layer(|_: &Extensions| None, refuse);
+        let mut context = Context::from_waker(Waker::noop());
+        let mut idle = layer.layer(Counter::default());
+        assert!(idle.poll_ready(&mut context).is_ready());
+        assert!(layer.layer(Busy).poll_ready(&mut context).is_pending());
     }
 
     #[test]
