@@ -152,6 +152,20 @@ fn taken_back_round_stops_only_if_it_is_the_newest() {
 }
 
 #[test]
+fn fault_in_the_round_after_a_stop_stops_it() {
+    let (coordinator, [mut first, mut second]) = team();
+    for _ in 0..3 {
+        let round = coordinator.begin();
+        assert_eq!(first.pass(round, 0), Passage::Waiting);
+        assert_eq!(second.pass(round, 0), Passage::Open);
+        first.give_up(round, MemberFault::GivenUp);
+        let stop = stop_of(0, MemberFault::GivenUp);
+        assert_eq!(second.take_stop(), Some(stop), "{round:?}");
+        assert_eq!(first.take_stop(), Some(stop), "{round:?}");
+    }
+}
+
+#[test]
 fn fault_under_way_stops_the_round_that_waits() {
     for fault in FAULTS {
         let (coordinator, [mut first, mut second]) = team();
@@ -206,6 +220,15 @@ fn waiting_ends_at_the_timeout() {
     assert_eq!(first.pass(round, last - 1), Passage::Waiting);
     let stop = stop_of(0, MemberFault::TimedOut);
     assert_eq!(first.pass(round, last), Passage::Stopped(stop));
+}
+
+#[test]
+fn stop_names_its_member_and_fault() {
+    let requested = TeamStop::Requested.to_string();
+    assert_eq!(requested, "the team was stopped on request");
+    let silent = stop_of(1, MemberFault::Silent).to_string();
+    let expected = "member 1 of the team: no states arrive from its robot";
+    assert_eq!(silent, expected);
 }
 
 #[test]
