@@ -223,6 +223,25 @@ fn a_time_too_long_for_a_duration_does_not_panic() {
     assert_eq!(step.trace.remaining, Duration::MAX);
 }
 
+/// The state shows that a tool is mounted, but not its shape.
+#[test]
+fn room_for_the_hand_is_kept_only_with_a_tool() {
+    let end = |m_ee: f64| {
+        let mut arm = Arm::new();
+        arm.state.m_ee = m_ee;
+        let mut q: [f64; 7] = READY.into();
+        q[1] += 1.7;
+        let limits = Model::fr3().joint_limits();
+        let goal = Goal::new(GoalId(1), q.into(), OnArrival::ReportAndHold, limits);
+        arm.goals.write(goal);
+        arm.settles(Gate::Open).1
+    };
+    let bare = end(0.0);
+    assert!(matches!(bare, Settlement::Arrived(_)), "{bare:?}");
+    let blocked = Settlement::Braked(Lapse::Blocked { region: None });
+    assert_eq!(end(0.73), blocked);
+}
+
 #[test]
 fn a_budget_has_least_limits_with_which_a_plan_ends() {
     let (model, state) = (Model::fr3(), Arm::new().state);
