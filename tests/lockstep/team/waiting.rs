@@ -291,3 +291,21 @@ fn arm_taking_an_object_in_motion_goes_on_from_there() {
     let off = robot.arm_pose().translation.vector - up(0.15).translation.vector;
     assert!(off.norm() < 2e-3, "{off}");
 }
+
+/// Its target lies 0.3 m beside the target of the hand.
+#[test]
+fn line_of_a_carried_object_begins_at_the_object() {
+    let mut robot = Lockstep::ready();
+    let object = Isometry3::translation(0.0, 0.3, 0.0);
+    let up = Translation3::new(0.0, 0.0, 0.1) * robot.arm_pose() * object;
+    let goal = robot.goal(up.into(), OnArrival::ReportAndFinish);
+    let goal = Goal {
+        grasp: Some(object),
+        ..goal
+    };
+    let goal = robot.submit(goal).expect("within reach");
+    let report = robot.until_resolved(goal, 8000).expect("it arrives");
+    let beside = report.line_deviation.expect("a goal to a pose");
+    println!("{beside:.5} m beside its line");
+    assert!(beside < 2e-3, "{beside} m");
+}
