@@ -1,6 +1,7 @@
 //! Motions that wait for their robot.
 
-use std::future::{Future as _, IntoFuture as _, poll_fn};
+use std::fmt::Debug;
+use std::future::{IntoFuture as _, poll_fn};
 use std::pin::Pin;
 use std::task::Poll;
 
@@ -9,6 +10,7 @@ use franka_async::state::RobotMode;
 use franka_async::supervision::Condition;
 use franka_async::{Engage, Motion, MotionError, MotionReport, Pose};
 use franka_sim::Sim;
+use tokio::sync::watch;
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
 
@@ -33,8 +35,7 @@ async fn motions_wait_for_a_robot_and_begin_only_if_awaited() {
     assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
     // Without a connection the arm's motion is unknown: the stop waits for a connection.
     let mut stop = Box::pin(robot.stop());
-    let first = poll_fn(|context| Poll::Ready(stop.as_mut().poll(context))).await;
-    assert!(first.is_pending(), "{first:?}");
+    waits(&mut stop).await;
     drop(stop);
     assert_eq!(stopped.await.unwrap(), Err(MotionError::Stopped));
     // Dropped, detached, and cancelled.
@@ -119,6 +120,32 @@ async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
     sim.stop().await;
 }
 
+/// A stream of targets that changes and ends while its motion waits.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn waiting_stream_begins_with_its_last_target_and_its_end() {
+    let _alone = alone();
+    let (sim, mut way) = relayed(Sim::fr3()).await;
+    let robot = supervised_at(way.addr(), policy().motions_wait(SOON)).await;
+    let q = robot.state().q;
+    let mut last = q;
+    last[5] += 0.05;
+    way.cut().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    let (sender, targets) = watch::channel(q);
+    let mut following = robot.follow(targets).into_future();
+    waits(&mut following).await;
+    sender.send(last).unwrap();
+    drop(sender);
+    waits(&mut following).await;
+    way.mend().await;
+    let outcome = timeout(SOON, following).await.expect("it ends");
+    outcome.expect("it arrives");
+    let moved = sim.state().await.unwrap().q[5] - q[5];
+    assert!((moved - 0.05).abs() < 2e-3, "{moved}");
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn waiting_motion_does_not_begin_on_a_restarted_robot() {
     let _alone = alone();
@@ -177,7 +204,12 @@ async fn a_line_that_is_refused_leaves_the_motion_that_waits() {
 /// Has a motion asked for by its first poll, and awaits it in another task. It waits for its robot.
 async fn asked_for(motion: Motion) -> JoinHandle<Result<MotionReport, MotionError>> {
     let mut moving = motion.into_future();
-    let first = poll_fn(|context| Poll::Ready(Pin::new(&mut moving).poll(context))).await;
-    assert!(first.is_pending(), "{first:?}");
+    waits(&mut moving).await;
     tokio::spawn(moving)
+}
+
+/// Polls a future that is not ready.
+async fn waits<F: Future<Output: Debug> + Unpin>(future: &mut F) {
+    let polled = poll_fn(|context| Poll::Ready(Pin::new(&mut *future).poll(context))).await;
+    assert!(polled.is_pending(), "{polled:?}");
 }
