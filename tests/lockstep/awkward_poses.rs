@@ -124,24 +124,35 @@ fn a_distant_pose_is_reached_or_refused_before_it() {
     assert!(reached > cases * 6 / 10);
 }
 
-#[test]
-fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
+/// A robot that tolerates contact, the height of a soft ceiling 5 cm above its hand, and a target
+/// 20 cm above the hand.
+fn below_a_ceiling() -> (Lockstep, f64, Target) {
     let mut lockstep = Lockstep::ready();
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
     lockstep.run(5);
-    // A soft ceiling 5 cm above the hand; the target is 20 cm above it.
     let start = lockstep.arm_pose();
-    let ceiling = start.translation.z + 0.05;
-    let goal = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.2) * start));
+    let target = Translation3::new(0.0, 0.0, 0.2) * start;
+    (lockstep, start.translation.z + 0.05, target.into())
+}
+
+/// A cycle below the ceiling.
+fn press(lockstep: &mut Lockstep, ceiling: f64) {
+    let pressed = (lockstep.arm_pose().translation.z - ceiling).max(0.0);
+    lockstep.robot.let_go();
+    lockstep
+        .robot
+        .push_end_effector(Wrench::new(0.0, 0.0, -3000.0 * pressed, 0.0, 0.0, 0.0), 2);
+    lockstep.tick();
+}
+
+#[test]
+fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
+    let (mut lockstep, ceiling, target) = below_a_ceiling();
+    let goal = lockstep.begin(target);
     let mut leashed = 0;
     while lockstep.client.outcome(goal).is_none() {
-        let pressed = (lockstep.arm_pose().translation.z - ceiling).max(0.0);
-        lockstep.robot.let_go();
-        lockstep
-            .robot
-            .push_end_effector(Wrench::new(0.0, 0.0, -3000.0 * pressed, 0.0, 0.0, 0.0), 2);
-        lockstep.tick();
+        press(&mut lockstep, ceiling);
         leashed += u64::from(lockstep.client.record.bindings.contains(Guard::Leash));
         let most = STALL_TIMEOUT + Settling::default().timeout + Duration::from_secs(3);
         assert!(lockstep.now() < most.as_millis() as u64, "{leashed}");
@@ -153,6 +164,27 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
         "{error:?}"
     );
     assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
+}
+
+/// The session goes on, and so does the law, but the goal has ended.
+#[test]
+fn stalled_goal_does_not_resume_once_the_arm_is_free() {
+    let (mut lockstep, ceiling, target) = below_a_ceiling();
+    let engaged = lockstep.engage();
+    let goal = lockstep.within(engaged, target, OnArrival::ReportAndHold);
+    let goal = goal.expect("within reach");
+    while lockstep.client.outcome(goal).is_none() {
+        press(&mut lockstep, ceiling);
+        assert!(lockstep.now() < 20_000, "it is resolved");
+    }
+    let error = lockstep.until_resolved(goal, 1).unwrap_err();
+    let not_reached = matches!(error, MotionError::TargetNotReached(_));
+    assert!(not_reached, "{error:?}");
+    lockstep.robot.let_go();
+    lockstep.run(3000);
+    let risen = lockstep.arm_pose().translation.z - ceiling;
+    println!("{risen:.4} m above the ceiling");
+    assert!(risen < 0.05, "{risen} m");
 }
 
 /// The closer a joint is to the end of its range, the less velocity the robot allows. A plan has to
