@@ -194,7 +194,10 @@ fn an_arm_comes_to_where_the_robot_reports_it_to_be() {
             let target = Translation3::new(0.0, 0.0, metres) * home;
             let goal = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
             let report = lockstep.until_resolved(goal.expect("within reach"), 8000);
-            assert!(report.is_ok(), "{}: {report:?}", case.name);
+            let report = report.unwrap_or_else(|error| panic!("{}: {error}", case.name));
+            let off = report.line_deviation.expect("a goal to a pose");
+            let most = if case.is_ideal { 1e-3 } else { 1e-2 };
+            assert!(off < most, "{}: {off} m beside its line", case.name);
             case.is_at("goal", lockstep, &target);
         }
         let tilt = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.1, 0.2));
