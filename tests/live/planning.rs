@@ -13,7 +13,7 @@ use franka_sim::Running;
 use tokio::runtime::{Builder, Runtime};
 use tokio::task::JoinHandle;
 
-use crate::{alone, robot_time, simulated};
+use crate::{alone, robot_time, simulated, under_way};
 
 type Outcome = Result<MotionReport, MotionError>;
 
@@ -157,6 +157,40 @@ fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
             assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
         }
         scene.robot.shutdown().await;
+    });
+}
+
+/// A motion under way leaves the start of the plan. The new plan begins where the arm is.
+#[test]
+fn path_of_an_arm_that_has_moved_on_is_planned_anew() {
+    let _alone = alone();
+    runtime().block_on(async {
+        let scene = Scene::new().await;
+        let robot = &scene.robot;
+        let turned = |by: f64| {
+            let mut q = scene.q;
+            q[0] += by;
+            q
+        };
+        let moving = robot.move_joints(turned(0.4)).speed(0.2);
+        let moving = tokio::spawn(moving.into_future());
+        under_way(robot).await;
+        let release = hold();
+        let path = robot.move_through([turned(0.45), turned(0.5)]);
+        let path = tokio::spawn(path.into_future());
+        moving.await.unwrap().expect("it arrives meanwhile");
+        assert!(!path.is_finished());
+
+        drop(release);
+        let mut least = f64::INFINITY;
+        while !path.is_finished() {
+            robot_time(robot, 1).await;
+            least = least.min(robot.state().q[0]);
+        }
+        path.await.unwrap().expect("it arrives");
+        let back = turned(0.4)[0] - least;
+        assert!(back < 0.01, "it turned back by {back} rad");
+        robot.shutdown().await;
     });
 }
 
