@@ -1,5 +1,6 @@
 //! Ends of a robot, a client, a token, or a runtime, in every phase of a motion.
 
+use std::future::IntoFuture as _;
 use std::time::{Duration, Instant};
 
 use franka_async::connection::{CancellationToken, Version};
@@ -9,6 +10,7 @@ use franka_async::{MotionError, Pose, Realtime, Robot};
 use franka_proto::framing::next_message;
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, client};
 use franka_sim::Sim;
+use futures::future::join;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::{sleep, timeout};
@@ -146,6 +148,18 @@ async fn the_end_of_a_connection_can_be_awaited_with_its_reason() {
     let (robot, _sim) = simulated().await;
     robot.shutdown().await;
     assert_eq!(robot.closed().await, CloseReason::ClosedByUs);
+}
+
+/// The connection ends before the task that serves it reads the motion.
+#[tokio::test]
+async fn motion_asked_for_behind_a_shutdown_is_told_of_it() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let motion = robot.move_joints(robot.state().q).into_future();
+    let ((), outcome) = join(robot.shutdown(), motion).await;
+    let reason = CloseReason::ClosedByUs;
+    assert_eq!(outcome, Err(MotionError::ConnectionClosed { reason }));
+    sim.stop().await;
 }
 
 #[tokio::test]
