@@ -296,6 +296,30 @@ fn a_pushed_arm_keeps_its_reference_on_the_leash_and_returns() {
 }
 
 #[test]
+fn arm_pushed_away_after_its_arrival_returns() {
+    for_each_robot(|ready| {
+        let mut lockstep = tolerant(ready);
+        let target = Translation3::new(0.0, 0.0, 0.08) * lockstep.arm_pose();
+        let engaged = lockstep.engage();
+        let goal = lockstep.within(engaged, target.into(), OnArrival::ReportAndHold);
+        let goal = goal.expect("within reach");
+        lockstep.until_resolved(goal, 8000).expect("it arrives");
+        lockstep.robot.push_end_effector(downward(40.0), 250);
+        let off = |lockstep: &Lockstep| {
+            let arm = lockstep.arm_pose().translation.vector;
+            (arm - target.translation.vector).norm()
+        };
+        lockstep.run(250);
+        let pushed = off(&lockstep);
+        assert!(pushed > 0.05, "{pushed} m");
+        lockstep.run(5000);
+        let left = off(&lockstep);
+        println!("{pushed:.5} m, then {left:.5} m off");
+        assert!(left < 3e-3, "{left} m");
+    });
+}
+
+#[test]
 fn bad_goals_are_named_and_change_nothing() {
     let (mut lockstep, goal) = moving(&Lockstep::ready);
     let mut beyond: [f64; 7] = READY.into();
