@@ -42,19 +42,21 @@ pub(crate) fn brake(
     limits: &JointLimits,
     most: &JointVector,
 ) -> (JointVector, bool) {
-    let mut binds = false;
-    if dq.amax() <= FASTER {
-        return (*tau, binds);
+    let width = |i: usize| (1.0 - ONSET) * limits.velocity[i];
+    // Speed up to which a joint is not braked at any position.
+    let ahead = |i: usize| {
+        let reference = if dq[i] > 0.0 { dq_ref[i] } else { -dq_ref[i] };
+        (reference.max(0.0) + FASTER).min(limits.velocity[i] - width(i))
+    };
+    // Nearly always no joint is that much faster than its reference, and no envelope is needed.
+    if (0..7).all(|i| dq[i].abs() <= ahead(i)) {
+        return (*tau, false);
     }
+    let mut binds = false;
     let (lower, upper) = limits.velocity_envelope(q, 0.0);
     let braked = JointVector::from_fn(|i, _| {
-        let (fastest, width) = (limits.velocity[i], (1.0 - ONSET) * limits.velocity[i]);
-        let (here, reference) = match dq[i] > 0.0 {
-            true => (upper[i], dq_ref[i]),
-            false => (-lower[i], -dq_ref[i]),
-        };
-        let ahead = (reference.max(0.0) + FASTER).min(fastest - width);
-        let beyond = (dq[i].abs() - (here - width).max(ahead)) / width;
+        let here = if dq[i] > 0.0 { upper[i] } else { -lower[i] };
+        let beyond = (dq[i].abs() - (here - width(i)).max(ahead(i))) / width(i);
         if beyond <= 0.0 {
             return tau[i];
         }
