@@ -188,6 +188,48 @@ impl Compensation {
     ) {
         let (v, e) = (demand.dq_ref[i], demand.error[i]);
         let bound = demand.bounds[i];
+        let settled = match self.approach {
+            Approach::Arriving { .. } => 0.0,
+            Approach::Settled(settled) => settled[i],
+        };
+        // A joint that settles may creep to its target, but not one that is pushed away.
+        let creeps = || {
+            let towards = demand.dq[i] * e.signum();
+            matches!(self.approach, Approach::Arriving { .. })
+                && 0.0 < towards
+                && towards < CREEP * e.abs()
+        };
+        let rests = !held && v.abs() < MOVING && (demand.dq[i].abs() < REST_VELOCITY || creeps());
+        self.rested[i] = match rests {
+            true => self.rested[i].saturating_add(1),
+            false => 0,
+        };
+        let sticks = friction > 0.0;
+        let grows = self.rested[i] > RESTED[usize::from(sticks)] && e.abs() > DEAD_ZONE[i];
+        if held || v.abs() > MOVING {
+            let rest = &mut self.rest[i];
+            *rest -= (*rest - settled) * CYCLE / FORGET;
+        } else if grows {
+            let (least, most) = self.range(i, (friction, bias), demand);
+            let rest = &mut self.rest[i];
+            let rate = (INTEGRAL * demand.springs[i].abs()).max(BREAK_AWAY * friction);
+            // An integral that pulls away from the target resisted something that has ended.
+            let rate = rate * if *rest * e < 0.0 { UNWIND } else { 1.0 };
+            let grown = *rest + rate.copysign(e) * CYCLE;
+            self.is_working |= (least < grown && grown < most) || grown.abs() < rest.abs();
+            *rest = grown.clamp(least.min(*rest), most.max(*rest));
+        } else if !sticks && self.rest[i].abs() < UNBIASED {
+            // Without friction and load the springs bring the joint to its target exactly.
+            self.rest[i] -= self.rest[i] * CYCLE / FORGET;
+        }
+        // Clamp in every cycle, so that shrinking bounds do not step the integral.
+        self.rest[i] = self.rest[i].clamp(-bound, bound);
+    }
+
+    /// Returns the least and the greatest integral of one joint with this friction and this bias,
+    /// `[N m]`.
+    fn range(&self, i: usize, (friction, bias): (f64, f64), demand: &Demand<'_>) -> (f64, f64) {
+        let bound = demand.bounds[i];
         // Springs and integral together need no more than the friction, known or not, and the
         // change of a bias from pose to pose. For a while the unknown torques of the arm and a
         // possible new grip are added. Any greater resistance has another cause.
@@ -210,35 +252,7 @@ impl Compensation {
             true => (settled.min(0.0), settled.max(0.0)),
             false => (settled, settled),
         };
-        let (least, most) = (within(low - room), within(high + room));
-        // A joint that settles may creep to its target, but not one that is pushed away.
-        let towards = demand.dq[i] * e.signum();
-        let creeps = matches!(self.approach, Approach::Arriving { .. })
-            && 0.0 < towards
-            && towards < CREEP * e.abs();
-        let slow = creeps || demand.dq[i].abs() < REST_VELOCITY;
-        let rests = !held && v.abs() < MOVING && slow;
-        self.rested[i] = match rests {
-            true => self.rested[i].saturating_add(1),
-            false => 0,
-        };
-        let sticks = friction > 0.0;
-        let rest = &mut self.rest[i];
-        if held || v.abs() > MOVING {
-            *rest -= (*rest - settled) * CYCLE / FORGET;
-        } else if self.rested[i] > RESTED[usize::from(sticks)] && e.abs() > DEAD_ZONE[i] {
-            let rate = (INTEGRAL * demand.springs[i].abs()).max(BREAK_AWAY * friction);
-            // An integral that pulls away from the target resisted something that has ended.
-            let rate = rate * if *rest * e < 0.0 { UNWIND } else { 1.0 };
-            let grown = *rest + rate.copysign(e) * CYCLE;
-            self.is_working |= (least < grown && grown < most) || grown.abs() < rest.abs();
-            *rest = grown.clamp(least.min(*rest), most.max(*rest));
-        } else if !sticks && rest.abs() < UNBIASED {
-            // Without friction and load the springs bring the joint to its target exactly.
-            *rest -= *rest * CYCLE / FORGET;
-        }
-        // Clamp in every cycle, so that shrinking bounds do not step the integral.
-        *rest = rest.clamp(-bound, bound);
+        (within(low - room), within(high + room))
     }
 
     /// Learns the torque of a joint that is compensated by `compensated`, while its reference moves
