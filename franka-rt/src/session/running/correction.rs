@@ -49,16 +49,16 @@ impl RunningSession {
     /// Makes goals move the hand shifted by `correction`. The joint reference stays as it is, and
     /// the goal must be planned from there.
     pub(super) fn correct(&mut self, correction: Isometry3<f64>) {
-        self.correction = correction;
+        self.correction = (correction != Isometry3::identity()).then_some(correction);
         self.place_object();
     }
 
     /// Sets the frame that goals move.
     pub(super) fn place_object(&mut self) {
-        let object = self.grasp.unwrap_or_default();
-        self.arm.pose = self.arm.modelled * self.correction;
+        let [correction, object] = [self.correction, self.grasp].map(Option::unwrap_or_default);
+        self.arm.pose = self.arm.modelled * correction;
         self.arm.object = self.arm.pose * object;
-        self.ee = geometry::corrected(&self.hand, &(self.correction * object));
+        self.ee = geometry::corrected(&self.hand, &(correction * object));
     }
 
     /// Ends a course whose plan belongs to the previous frame.
@@ -83,4 +83,10 @@ impl RunningSession {
         }
         renewed
     }
+}
+
+/// Returns the pose of a frame that is `by` from the frame at `pose`, if the two differ.
+#[inline]
+pub(super) fn moved(pose: Isometry3<f64>, by: Option<&Isometry3<f64>>) -> Isometry3<f64> {
+    by.map_or(pose, |by| pose * by)
 }

@@ -47,6 +47,7 @@ use super::{
     Lapse, Reacted, SessionCommand, SessionEvent, SessionStep, Trace, end_effector_of, load_of,
     rigid,
 };
+use correction::moved;
 use goals::Bearing;
 use line::Line;
 use progress::Progress;
@@ -60,8 +61,8 @@ pub(super) struct RunningSession {
     hand: EndEffector,
     /// Frame that goals move: the hand as the robot reports it, or an object in the hand.
     ee: EndEffector,
-    /// Pose of the reported hand relative to the hand.
-    correction: Isometry3<f64>,
+    /// Pose of the reported hand relative to the hand; `None` if the two agree.
+    correction: Option<Isometry3<f64>>,
     /// True once the correction was renewed after the reference has arrived.
     is_refined: bool,
     grasp: Option<Isometry3<f64>>,
@@ -248,7 +249,7 @@ impl RunningSession {
             load,
             hand: ee,
             ee,
-            correction: Isometry3::identity(),
+            correction: None,
             is_refined: false,
             grasp: None,
             waits: false,
@@ -399,7 +400,7 @@ impl RunningSession {
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.hand, &self.load, &GRAVITY_EARTH);
         let modelled = rigid(&dynamics.pose);
-        let pose = modelled * self.correction;
+        let pose = moved(modelled, self.correction.as_ref());
         self.arm = Measured {
             time: state.message_id,
             q,
@@ -407,7 +408,7 @@ impl RunningSession {
             modelled,
             reported: state.O_T_EE,
             pose,
-            object: pose * self.grasp.unwrap_or_default(),
+            object: moved(pose, self.grasp.as_ref()),
             jacobian: dynamics.jacobian,
         };
         self.watch_line();

@@ -67,7 +67,7 @@ impl RunningSession {
                 };
                 let target = landing.target();
                 let reference = model.pose(Frame::EndEffector, &self.reference.q, &self.hand);
-                let reference = rigid(&reference) * self.correction;
+                let reference = rigid(&reference) * self.correction.unwrap_or_default();
                 let out_of_reach =
                     !self.obstructed && landing.is_short_at(&reference, &self.arm.pose);
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
