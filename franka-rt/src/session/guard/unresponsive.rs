@@ -75,7 +75,7 @@ impl Unresponsive {
         let (ignored, refused) = match commanded {
             Commanded::Torques(torques) => {
                 let off = |i: usize| (torques[i] - external[i]).abs();
-                ((0..7).any(|i| off(i) > RESISTS[i]), false)
+                (stands && (0..7).any(|i| off(i) > RESISTS[i]), false)
             }
             Commanded::Setpoint {
                 controller,
@@ -85,17 +85,17 @@ impl Unresponsive {
                 let refused = self.is_refused(&state.q_d, differs);
                 self.changed = changed;
                 let apart = |i: usize| (state.q_d[i] - q[i]).abs() > APART && untouched(i);
-                let ignored = match controller {
+                let ignored = || match controller {
                     Controller::JointImpedance => (0..7).any(apart),
                     Controller::CartesianImpedance => {
-                        distance(state) > AWAY && (0..7).all(untouched)
+                        (0..7).all(untouched) && distance(state) > AWAY
                     }
                 };
-                (ignored, refused)
+                (stands && ignored(), refused)
             }
         };
         let counted = |cycles: u32, on: bool| if on { cycles.saturating_add(1) } else { 0 };
-        self.still = counted(self.still, stands && ignored);
+        self.still = counted(self.still, ignored);
         self.refusing = counted(self.refusing, stands && refused);
         self.still >= HOLD || self.refuses()
     }
