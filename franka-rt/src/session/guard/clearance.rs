@@ -108,8 +108,9 @@ impl Clearance {
             }
             if candidates == known.candidates {
                 let there = known.bound.candidates(&self.spacing, &half, &still);
-                let half = self.spacing.at(&half);
-                return self.on_the_way(now, (&half, there), (end, candidates));
+                let middle = (!there.is_empty()).then(|| self.spacing.at(&half));
+                let middle = middle.as_ref().map(|middle| (middle, there));
+                return self.on_the_way(now, middle, (end, candidates));
             }
         }
         let middle = self.spacing.at(&half);
@@ -120,7 +121,7 @@ impl Clearance {
         if candidates.is_empty() {
             return Ahead::Clear;
         }
-        self.on_the_way(now, (&middle, there), (end, candidates))
+        self.on_the_way(now, Some((&middle, there)), (end, candidates))
     }
 
     /// Returns the first distance that is too small at `next` and smaller than at `now`.
@@ -134,21 +135,21 @@ impl Clearance {
     }
 
     /// Checks the path from `now` to `half` and to `end`. Only distances of the candidates may be
-    /// small on it.
+    /// small on it; `half` is `None` if none may be there.
     ///
     /// Only distances that are small on the path are compared with their present values. Once an
     /// obstacle is known to be near, only distances that would be too small can change the result.
     fn on_the_way(
         &self,
         now: &JointVector,
-        half: (&Arrangement<'_>, CandidateMask),
+        half: Option<(&Arrangement<'_>, CandidateMask)>,
         end: (&JointVector, CandidateMask),
     ) -> Ahead {
         let mut ahead = Ahead::Clear;
         let mut limit = SLOW_ZONE;
         let mut here = None;
         let (end, candidates) = (self.spacing.at(end.0), end.1);
-        for (there, candidates) in [half, (&end, candidates)] {
+        for (there, candidates) in half.into_iter().chain([(&end, candidates)]) {
             for item in self.spacing.items(candidates) {
                 let Some(then) = there.margin_below(item, limit) else {
                     continue;
