@@ -241,11 +241,10 @@ fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
 /// constants. Every matrix that passes is also valid for `franka_model::transform`.
 fn is_rigid(pose: &[f64; 16]) -> bool {
     let [x, y, z] = [0, 4, 8].map(|i| [pose[i], pose[i + 1], pose[i + 2]]);
-    if [pose[3], pose[7], pose[11], pose[15]] != [0.0, 0.0, 0.0, 1.0] {
+    if (pose[3], pose[7], pose[11], pose[15]) != (0.0, 0.0, 0.0, 1.0) {
         return false;
     }
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let right_handed = dot(cross(x, y), z) > 0.0;
     let off = [
         dot(x, x) - 1.0,
         dot(y, y) - 1.0,
@@ -254,7 +253,10 @@ fn is_rigid(pose: &[f64; 16]) -> bool {
         dot(y, z),
         dot(z, x),
     ];
-    right_handed && off.iter().all(|off| off.abs() <= DISTORTION_MAX)
+    // Without branches: several places read the commanded pose in each cycle.
+    let near = |near, off: &f64| near & (off.abs() <= DISTORTION_MAX);
+    let right_handed = dot(cross(x, y), z) > 0.0;
+    right_handed & off.iter().fold(true, near)
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
