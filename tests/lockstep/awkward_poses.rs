@@ -166,7 +166,7 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
     assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
 }
 
-/// The session goes on, and so does the law, but the goal has ended.
+/// The session continues to hold the arm, but the goal has ended.
 #[test]
 fn stalled_goal_does_not_resume_once_the_arm_is_free() {
     let (mut lockstep, ceiling, target) = below_a_ceiling();

@@ -208,7 +208,7 @@ async fn asked_for(motion: Motion) -> JoinHandle<Result<MotionReport, MotionErro
     tokio::spawn(moving)
 }
 
-/// Polls a future that is not ready.
+/// Polls a future, which must not be ready.
 async fn waits<F: Future<Output: Debug> + Unpin>(future: &mut F) {
     let polled = poll_fn(|context| Poll::Ready(Pin::new(&mut *future).poll(context))).await;
     assert!(polled.is_pending(), "{polled:?}");
