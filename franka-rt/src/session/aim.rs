@@ -4,23 +4,23 @@ use franka_otg::AxisLimits;
 
 use super::{Budget, GoalId, Leash, Target};
 
-/// Present aim of the reference: its target and limits. A goal has more fields; only the aim is
-/// copied in each cycle.
+/// Present target and limits of the reference. A goal has more fields, but only the aim is copied
+/// in each cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
     /// Goal of the aim.
     pub(super) goal: GoalId,
     pub(super) target: Target,
     pub(super) budget: Budget,
-    /// True to stop on the way.
+    /// True if the reference must stop on the way.
     pub(super) paused: bool,
     /// The leash of hand guiding in this cycle: how far the reference may be from the arm.
     pub(super) leash: Leash,
 }
 
 impl Aim {
-    /// Returns the aim with its velocities scaled by `share`; the joints' velocities only for a
-    /// joint target.
+    /// Returns the aim with its velocity limits scaled by `share`. The joints' limits are scaled
+    /// only for a joint target.
     pub(super) fn slowed(&self, share: f64) -> Self {
         let slow = |limits: AxisLimits| AxisLimits {
             velocity: limits.velocity * share,

@@ -1,4 +1,4 @@
-//! Arrival of goals, and release of the arm afterwards.
+//! Arrival at a goal, and release of the arm after it.
 
 use core::time::Duration;
 
@@ -10,14 +10,14 @@ use crate::session::{LimitedTorque, Settlement, Tolerance};
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
 pub(crate) const REST_VELOCITY: f64 = 0.01;
 
-/// Conditions under which an arm counts as settled at its target once its reference has arrived.
+/// Conditions under which an arm counts as settled at its target, after its reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settling {
-    /// Time for which the arm must stay within the tolerance and at rest, whole milliseconds, at
-    /// least 1. A swing through the target does not count.
+    /// Time for which the arm must stay within the tolerance and at rest, in whole milliseconds, at
+    /// least 1. A swing through the target does not count as settled.
     pub hold: Duration,
-    /// Longest time for settling, from `hold` to [`Self::TIMEOUT_MAX`]. A goal without progress is
-    /// given up earlier.
+    /// Longest time for settling, from `hold` to [`Self::TIMEOUT_MAX`]. A goal that makes no
+    /// progress is given up earlier.
     pub timeout: Duration,
 }
 
@@ -39,8 +39,8 @@ impl Settling {
 /// Cycles of rest after which an arm without a target counts as stopped.
 const HOLD_AT_REST: u64 = 100;
 
-/// Longest time for that. The reference rests, so an arm that still moves is moved from outside.
-/// The timeout of a goal does not extend its stop.
+/// Longest time until an arm without a target must have stopped. The reference rests, so if the arm
+/// still moves, something outside moves it. The timeout of a goal does not extend this time.
 const REST_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Cycles without progress after which an arm at rest counts as stuck short of its target.
@@ -52,11 +52,11 @@ const PROGRESS: f64 = 0.02;
 /// Cycles over which the spring between arm and reference is released.
 const RELEASE: u32 = 100;
 
-/// Time after which the robot must stop an arm that was released and does not rest. If the motion
-/// finished then, it would end in a reflex.
+/// Time after which the robot must stop a released arm that does not come to rest. If the motion
+/// finished while the arm moved, it would end in a reflex.
 pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Distance of the measured end effector from its target.
+/// Distance between the measured end effector and its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PoseError {
@@ -67,7 +67,7 @@ pub struct PoseError {
 }
 
 impl PoseError {
-    /// Returns the distance of `pose` from `target`.
+    /// Returns the distance between `pose` and `target`.
     pub fn between(pose: &Isometry3<f64>, target: &Isometry3<f64>) -> Self {
         Self {
             translation: (pose.translation.vector - target.translation.vector).norm(),
@@ -79,23 +79,23 @@ impl PoseError {
         self.in_parts_of(tolerance) <= 1.0
     }
 
-    /// Returns the greater of the two errors, relative to their tolerances.
+    /// Returns the greater of the two errors, each divided by its tolerance.
     fn in_parts_of(&self, tolerance: &Tolerance) -> f64 {
         let translation = self.translation / tolerance.translation;
         translation.max(self.rotation / tolerance.rotation)
     }
 }
 
-/// State of an arm that rests short of its target.
+/// State of an arm that rests away from its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Shortfall {
     /// Distance from the target.
     pub error: PoseError,
-    /// Wrench towards the target at the end effector, base axes, `[N, N m]`; an obstacle exerts the
-    /// opposite. `None` if the robot's controller turns setpoints into torques.
+    /// Wrench that pulls the end effector toward the target, in base axes, `[N, N m]`. An obstacle
+    /// exerts the opposite wrench. `None` if the robot's controller turns setpoints into torques.
     pub pull: Option<[f64; 6]>,
-    /// Torque limit of the goal that prevents the arm from pulling harder, if any.
+    /// Torque limit of the goal that keeps the arm from pulling harder, if any.
     pub limited: Option<LimitedTorque>,
 }
 
@@ -136,15 +136,15 @@ pub(super) struct Landing {
     settling: Settling,
     cycles: u64,
     held: u64,
-    /// The least error so far, relative to the tolerance, and the cycles without a change since
-    /// then.
+    /// The least error so far, divided by the tolerance, and the number of cycles since it last
+    /// fell.
     nearest: f64,
     stuck: u64,
 }
 
 pub(super) enum Verdict {
     Settling,
-    /// Result of the settling, and cycles since then.
+    /// Result of the settling, and the number of cycles since then.
     Settled(Settlement, u64),
 }
 
@@ -171,8 +171,8 @@ impl Landing {
         self.target
     }
 
-    /// True if the arm, measured at one pose, rests at the pose of its `reference`, and the
-    /// reference is short of the target.
+    /// True if the arm, measured at one pose, rests at the pose of its `reference` while the
+    /// reference is still away from the target.
     pub(super) fn is_short_at(
         &self,
         reference: &Isometry3<f64>,
@@ -183,7 +183,7 @@ impl Landing {
         near(measured) && self.target.is_some_and(|target| !near(&target))
     }
 
-    /// Judges one cycle. `working` is true while the law is still increasing its torques to move an
+    /// Evaluates one cycle. `working` is true while the law still increases its torques to move an
     /// arm at rest.
     pub(super) fn judge(
         &mut self,
@@ -220,9 +220,9 @@ impl Landing {
     }
 }
 
-/// Releases the spring: the reference moves to the arm's position, so that the motion ends without
-/// a step in torque. The springs stay active: if the load differs from the declared load, they hold
-/// the arm, which does not fall.
+/// Releases the spring between arm and reference. The reference moves to the arm's position, so
+/// that the motion ends without a step in torque. The springs stay active: if the load differs from
+/// the declared load, they keep the arm from falling.
 #[derive(Debug)]
 pub(super) struct Release {
     target: Option<Isometry3<f64>>,
@@ -232,8 +232,8 @@ pub(super) struct Release {
 }
 
 impl Release {
-    /// Creates the release of a spring between the arm at `arm` and the reference, both `[rad]`,
-    /// for a goal with this target.
+    /// Creates the release for an arm at `arm` and its reference, both in `[rad]`, for a goal with
+    /// this target.
     pub(super) fn new(
         target: Option<Isometry3<f64>>,
         arm: JointVector,
@@ -254,7 +254,7 @@ impl Release {
         self.arm + self.length * (f64::from(remaining) / f64::from(RELEASE))
     }
 
-    /// Returns the distance of `pose` from the target, if there is one.
+    /// Returns the distance between `pose` and the target, if there is a target.
     pub(super) fn error(&self, pose: &Isometry3<f64>) -> Option<PoseError> {
         self.target.map(|target| PoseError::between(pose, &target))
     }
@@ -264,7 +264,7 @@ impl Release {
         self.cycle >= RELEASE && at_rest
     }
 
-    /// True if the arm does not stop in time.
+    /// True if the arm has not stopped in time.
     pub(super) fn is_in_vain(&self) -> bool {
         u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
     }
@@ -312,7 +312,7 @@ mod tests {
     fn arm_without_progress_falls_short_after_half_a_second() {
         let mut landing = landing(Settling::default());
         let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
-        // The arm creeps, moves, and the law works on it.
+        // The arm creeps, the arm moves, and the law works on the arm.
         for i in 0..20 {
             let on_its_way = at(0.03 - 1e-4 * f64::from(i));
             assert_eq!(judge_for(&mut landing, 50, &on_its_way, RESTS), None);

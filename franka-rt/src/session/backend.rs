@@ -1,5 +1,5 @@
-//! Backends of a session: the session's own law, or one of the robot's controllers, turns setpoints
-//! into torques.
+//! Backends of a session. The backend turns setpoints into torques: it is the session's own law or
+//! one of the robot's controllers.
 
 use core::fmt;
 
@@ -20,31 +20,31 @@ use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 /// |---|---|---|
 /// | clearance, lead, watchdog, deadman, reaction | yes | yes |
 /// | joints' bounds on the way to a pose | yes | yes |
-/// | leash, deviation, velocity barrier | yes | no: an arm that was held back or pushed away springs back to its setpoint |
+/// | leash, deviation, velocity barrier | yes | no: after something held the arm back or pushed it away, it springs back to its setpoint |
 /// | force cap | yes | no: the session refuses a goal with a force cap |
-/// | torque clamp and rate | yes | no: the torques are the robot's |
+/// | torque clamp and rate | yes | no: the robot computes the torques |
 /// | limiter of setpoints (backstop) | no | yes |
 ///
-/// [`Self::has`] returns the same for each [`Guard`]. In addition, the robot has its own limits,
-/// reflexes and collision thresholds under every backend.
+/// [`Self::has`] returns the same information for each [`Guard`]. Under every backend, the robot's
+/// own limits, reflexes and collision thresholds also apply.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {
-    /// The law of the session, on this host.
+    /// The session's own law, computed on this host.
     #[default]
     Torques,
     /// One of the robot's own controllers, which receives the setpoints. Every controller accepts
-    /// every kind of setpoints. The robot sets its stiffness: see `set_joint_impedance` and
-    /// `set_cartesian_impedance`. The gains of goals have no effect, and a goal with a force cap is
-    /// refused.
+    /// every kind of setpoints. The stiffness is a setting of the robot: see `set_joint_impedance`
+    /// and `set_cartesian_impedance`. The gains of goals have no effect, and a goal with a force
+    /// cap is refused.
     ///
     /// Setpoints continue from the robot's own setpoint. If commands were lost and the robot
-    /// continued alone, the reference moves to the robot's setpoint. The robot's limiter is the
-    /// backstop.
+    /// continued alone, the reference moves to the robot's setpoint. The last guard (backstop) is
+    /// the limiter that the robot applies to setpoints.
     RobotController {
         /// Controller that follows the setpoints.
         controller: Controller,
-        /// Kind of setpoints.
+        /// Kind of the setpoints.
         setpoints: Setpoints,
     },
 }
@@ -53,16 +53,16 @@ pub enum Backend {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Controller {
-    /// A spring and damper per joint. It moves the arm nearer to its target than the Cartesian
-    /// controller.
+    /// A spring and a damper for each joint. This controller moves the arm nearer to its target
+    /// than the Cartesian controller does.
     JointImpedance,
-    /// Springs and dampers at the end effector. An arm with friction rests further from its target,
-    /// and its posture is held softly. Targets in joint positions are reached only at the end
-    /// effector.
+    /// Springs and dampers at the end effector. An arm with friction rests further from its target
+    /// than under joint impedance, and its posture is held softly. With a joint target, only the
+    /// end effector reaches its place.
     CartesianImpedance,
 }
 
-/// Setpoints for the robot's controller.
+/// Kinds of setpoints for the robot's controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Setpoints {
@@ -70,23 +70,24 @@ pub enum Setpoints {
     JointPositions,
     /// Joint velocities, which the robot integrates. Supports every goal except hand guiding.
     ///
-    /// Each setpoint is the velocity of the reference. The robot may have integrated to another
-    /// position. A small difference is corrected slowly, so that the arm ends exactly at its
-    /// target. After a large difference, the reference continues from the robot's position.
+    /// Each setpoint is the velocity of the reference. The position that the robot has integrated
+    /// may differ from the reference. A small difference is corrected slowly, so that the arm ends
+    /// exactly at its target. After a large difference, the reference continues from the robot's
+    /// position.
     JointVelocities,
     /// Poses of the end effector. Supports only goals with poses.
     ///
-    /// Each pose comes with its elbow, the angle of joint 3, so that the robot's own inverse
-    /// kinematics has no choice. Its joints match the reference, and keep their limits. The session
-    /// refuses a stretched arm. Joint 4 stays on its side of [`FLIP_ANGLE`], because the robot
-    /// keeps the elbow's side from the beginning.
+    /// Each pose comes with its elbow, the angle of joint 3, so that the robot's inverse kinematics
+    /// has only one solution. The joints of that solution match the reference and stay within their
+    /// limits. The session refuses a stretched arm. Joint 4 stays on its side of [`FLIP_ANGLE`],
+    /// because the robot keeps the side of the elbow that it had at the beginning.
     ///
-    /// An elbow determines the other joints poorly while joint 3 rests and the arm moves around its
-    /// pose, which requires wide turns of joints 3 and 5. Only the robot's own check applies there.
-    /// Joint setpoints are then the better choice.
+    /// While joint 3 rests and the arm moves around its pose, the elbow determines the other joints
+    /// only poorly. Such motions require wide turns of joints 3 and 5, and only the robot's own
+    /// check applies to them. Prefer joint setpoints for them.
     CartesianPoses,
     /// Twists of the end effector, which the robot integrates, each with its elbow. The notes on
-    /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] apply here.
+    /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] also apply here.
     CartesianVelocities,
 }
 
@@ -120,7 +121,7 @@ impl Setpoints {
 }
 
 impl Backend {
-    /// Every controller of the robot with every kind of setpoint.
+    /// Every controller of the robot, combined with every kind of setpoints.
     pub const ROBOT_CONTROLLERS: [Self; 8] = {
         let [q, dq, poses, twists] = Setpoints::ALL;
         [
@@ -135,7 +136,7 @@ impl Backend {
         ]
     };
 
-    /// Returns the robot's joint impedance controller with these setpoints.
+    /// Returns the backend that uses the robot's joint impedance controller with these setpoints.
     pub const fn joint_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::JointImpedance,
@@ -143,7 +144,8 @@ impl Backend {
         }
     }
 
-    /// Returns the robot's Cartesian impedance controller with these setpoints.
+    /// Returns the backend that uses the robot's Cartesian impedance controller with these
+    /// setpoints.
     pub const fn cartesian_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::CartesianImpedance,
@@ -151,7 +153,7 @@ impl Backend {
         }
     }
 
-    /// Returns the motion request for the robot.
+    /// Returns the motion request that starts this backend on a robot with protocol `version`.
     pub fn request(self, version: Version) -> MoveRequest {
         let Self::RobotController {
             controller,
@@ -174,8 +176,8 @@ impl Backend {
         MoveRequest::new(controller, generator)
     }
 
-    /// True if the robot's inverse kinematics converts the setpoints into joint positions. Such a
-    /// backend accepts only poses.
+    /// True if the robot's inverse kinematics converts the setpoints into joint positions. A
+    /// backend with such setpoints accepts only poses.
     pub fn is_cartesian(self) -> bool {
         use Setpoints::{CartesianPoses, CartesianVelocities};
         matches!(
@@ -187,11 +189,11 @@ impl Backend {
         )
     }
 
-    /// True if commands of a session with this backend pass through `guard`.
+    /// True if the commands of a session with this backend pass through `guard`.
     ///
-    /// The guards of the reference apply under every backend. The guards of the torques, and the
-    /// two that move the reference along with a pushed arm, exist only under the session's own law.
-    /// The robot's controller has its own springs, bounds and reflexes.
+    /// The guards of the reference apply under every backend. The guards of the torques apply only
+    /// under the session's own law, and so do the two guards that move the reference along with a
+    /// pushed arm. The robot's controller has its own springs, bounds and reflexes.
     pub fn has(self, guard: Guard) -> bool {
         let own_law = self == Self::Torques;
         match guard {
@@ -217,10 +219,10 @@ impl Backend {
         }
     }
 
-    /// Checks that this backend can pursue `goal`.
+    /// Checks that this backend supports `goal`.
     ///
     /// # Errors
-    /// [`GoalError::Backend`].
+    /// Returns [`GoalError::Backend`] if it does not.
     pub(crate) fn check(self, goal: &Goal) -> Result<(), GoalError> {
         if self == Self::Torques {
             return Ok(());
@@ -245,10 +247,10 @@ impl Backend {
         Err(self.refuses(got, expected))
     }
 
-    /// Checks that this backend can take over an arm at these joint positions.
+    /// Checks that this backend can take control of an arm at these joint positions.
     ///
     /// # Errors
-    /// [`GoalError::Backend`].
+    /// Returns [`GoalError::Backend`] if it cannot.
     pub(crate) fn check_start(self, q: &JointVector) -> Result<(), GoalError> {
         if self.is_cartesian() && side(q) > 0.0 {
             let got = "a start from a stretched arm, with joint 4 above -0.467 rad";
@@ -265,8 +267,8 @@ impl Backend {
         }
     }
 
-    /// Returns the limits of the joints of `model` under this backend. The elbow that accompanies
-    /// poses has its own limits, because no backstop protects these joints.
+    /// Returns `model` with the joint limits that apply under this backend, if they differ. The
+    /// elbow of a pose has its own limits, because no backstop protects the joints that it moves.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
         if !self.is_cartesian() {
             return None;
@@ -282,8 +284,8 @@ impl Backend {
         Some(model.clone().with_joint_limits(limits))
     }
 
-    /// True if the robot's desired state, from which setpoints continue, is finite in the parts
-    /// that are read.
+    /// True if the robot's desired state, from which setpoints continue, is finite in all parts
+    /// that this backend reads.
     pub(super) fn can_read(self, state: &RobotState) -> bool {
         if self == Self::Torques {
             return true;
@@ -301,8 +303,8 @@ impl Backend {
         joints == [true; 3] && (!self.is_cartesian() || pose())
     }
 
-    /// Returns the answer that holds the arm: the robot's desired setpoint, or zero torques in
-    /// addition to its gravity compensation.
+    /// Returns the answer that holds the arm. This is the robot's desired setpoint, or zero torque
+    /// in addition to the robot's gravity compensation.
     pub(super) fn holding(self, state: &RobotState) -> SessionCommand {
         match self {
             Self::Torques => SessionCommand::Torques(Torques([0.0; 7])),
@@ -350,14 +352,15 @@ pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }
 
-/// Returns the side of the stretched arm on which joint 4 is: as [`franka_model::elbow::elbow`],
-/// but -1 or +1 also at the flip angle itself.
+/// Returns the side of the stretched arm on which joint 4 is. Same as
+/// [`franka_model::elbow::elbow`], but returns -1 or +1 also at the flip angle itself.
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
 
-/// Backend for goals that no controller of the robot supports.
+/// Name of the backend for goals that no controller of the robot supports.
 const OWN_LAW: &str = "Backend::Torques";
 
-/// Share of the elbow's velocity that joint 3 may use, if that is less than its own limit.
+/// Share of the elbow's velocity limit that joint 3 may use, if that is below the joint's own
+/// limit.
 const ELBOW: f64 = 0.95;

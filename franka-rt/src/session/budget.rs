@@ -1,4 +1,4 @@
-//! Speed limits of an approach: per joint, and for the norm of translation and rotation.
+//! Speed limits of an approach: for each joint, and for the norms of translation and rotation.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{Model, Twist};
@@ -7,11 +7,12 @@ use nalgebra::Vector3;
 
 use crate::session::GoalError;
 
-/// Limits of the reference: the speed of the approach to a goal.
+/// Limits of the reference, which set the speed of the approach to a goal.
 ///
-/// A stop may use more acceleration and jerk than the budget has, up to the robot's limits. So may
-/// a goal that begins while the arm moves faster than its budget allows. On the way to a pose each
-/// joint may use three times its velocity limit, and the robot's acceleration limit.
+/// A stop may use more acceleration and jerk than the budget, up to the robot's limits. The same
+/// holds for a goal that begins while the arm moves faster than the goal's budget allows. On the
+/// way to a pose, each joint may use three times its velocity limit in the budget, and the robot's
+/// acceleration limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
     /// Limits of each joint, `[rad/s, rad/s^2, rad/s^3]`.
@@ -49,8 +50,8 @@ impl Budget {
         }
     }
 
-    /// Returns the budget for the same paths at `factor` times the speed: velocities times
-    /// `factor`, accelerations times its square, jerks times its cube.
+    /// Returns a budget that moves along the same paths at `factor` times the speed: velocities are
+    /// multiplied by `factor`, accelerations by its square, and jerks by its cube.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         let scale = |l: AxisLimits| AxisLimits {
@@ -65,19 +66,19 @@ impl Budget {
         }
     }
 
-    /// Lowest velocity, acceleration and jerk of every axis, in its units. The default budget at
-    /// [`Self::SPEED_MIN`] is above them. At these limits a joint needs days for a third of a
-    /// radian.
+    /// Lowest accepted velocity, acceleration and jerk of every axis, in its units. The default
+    /// budget at [`Self::SPEED_MIN`] is above these limits. With them a joint needs days for a
+    /// third of a radian.
     pub const LIMITS_MIN: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
     /// Lowest factor that [`Self::at_speed`] accepts.
     pub const SPEED_MIN: f64 = 1e-4;
 
-    /// Same as [`Self::scaled`], for factors that keep the robot's limits.
+    /// Same as [`Self::scaled`], for factors that keep all limits within the robot's limits.
     ///
     /// # Errors
-    /// [`GoalError::Speed`] with the greatest valid factor, unless `factor` is between
-    /// [`Self::SPEED_MIN`] and that value.
+    /// Returns [`GoalError::Speed`], with the greatest valid factor, unless `factor` is between
+    /// [`Self::SPEED_MIN`] and that greatest factor.
     pub fn at_speed(self, factor: f64, model: &Model) -> Result<Self, GoalError> {
         let most = self.fastest(model);
         if (Self::SPEED_MIN..=most).contains(&factor) {
@@ -89,7 +90,7 @@ impl Budget {
         })
     }
 
-    /// Returns the greatest factor for which all scaled limits stay inside the robot's limits.
+    /// Returns the greatest factor with which all scaled limits stay within the robot's limits.
     fn fastest(&self, model: &Model) -> f64 {
         let (robot, cartesian) = (model.joint_limits(), model.cartesian_limits());
         let joints = self.joints.iter().enumerate().map(|(i, own)| {
@@ -108,12 +109,12 @@ impl Budget {
                 let acceleration = (acceleration / own.acceleration).sqrt();
                 velocity.min(acceleration).min((jerk / own.jerk).cbrt())
             });
-        // Minus the rounding error that scaling may add to a limit.
+        // Subtracts the rounding error that scaling may add to a limit.
         fastest.fold(f64::INFINITY, f64::min) * (1.0 - 1e-12)
     }
 
-    /// Returns the budget with the accelerations and jerks of translation and rotation raised as in
-    /// [`able_to_stop`], if a motion at `twist` and `acceleration` exceeds them.
+    /// Returns the budget, with its accelerations and jerks of translation and rotation raised as
+    /// in [`able_to_stop`] if a motion at `twist` and `acceleration` exceeds them.
     pub(crate) fn able_to_stop(
         &self,
         twist: &Twist,
@@ -140,8 +141,8 @@ impl Budget {
         }
     }
 
-    /// Returns the limits of the six axes of translation and rotation for a plan from `velocity`
-    /// along `way`. Even with all axes at their limits at once, the motion stays inside the budgets
+    /// Returns the limits of the six axes of translation and rotation for a plan that follows the
+    /// two legs. Even if all axes are at their limits at once, the motion stays within the budgets
     /// of the norms.
     pub(crate) fn axes(&self, translation: &Leg, rotation: &Leg) -> [AxisLimits; 6] {
         let (t, r) = (translation.shares(), rotation.shares());
@@ -160,19 +161,19 @@ impl Budget {
     }
 }
 
-/// Time for braking a motion that leaves its budget or that must stop, `[s]`. A stop from the
-/// default joint velocities with the default joint accelerations takes the same time.
+/// Time to brake a motion that exceeds its budget or that must stop, `[s]`. A stop from the default
+/// joint velocities with the default joint accelerations takes the same time.
 const STOP_TIME: f64 = 0.25;
 
-/// Time for building up or removing the acceleration of that stop, `[s]`.
+/// Time to build up or remove the acceleration of that stop, `[s]`.
 const RAMP_TIME: f64 = 0.025;
 
-/// Raises acceleration and jerk of `limits` enough to stop from `velocity` and `acceleration` in
-/// about [`STOP_TIME`], up to the robot's limits `most`.
+/// Raises acceleration and jerk of `limits` so that a stop from `velocity` and `acceleration` takes
+/// about [`STOP_TIME`]. They are raised to the robot's limits, `most`, at the highest.
 ///
-/// A goal with a smaller budget may arrive while the arm moves faster than that budget allows. Its
-/// small acceleration would then brake over an unexpectedly long distance. Its small jerk would
-/// first let the present acceleration of the arm continue.
+/// A goal with a smaller budget may arrive while the arm moves faster than that budget allows. With
+/// the small acceleration, the arm would brake over an unexpectedly long distance. With the small
+/// jerk, its present acceleration would at first continue.
 pub(crate) fn able_to_stop(
     limits: AxisLimits,
     velocity: f64,
@@ -190,19 +191,20 @@ pub(crate) fn able_to_stop(
 /// Share of a velocity limit that is reserved for catching up with a moving target.
 const RESERVE: f64 = 0.1;
 
-/// Returns the speed of a frame that moves with a target at `speed`, and the rest of the limit
-/// `most` for motions in any direction within the frame.
+/// Returns the speed of a frame that moves with a target at `speed`. Also returns the part of the
+/// limit `most` that is left for motions within the frame, in any direction.
 pub(crate) fn beside(speed: f64, most: f64) -> (f64, f64) {
     let kept = speed.min((1.0 - RESERVE) * most);
     (kept, most - kept)
 }
 
-/// True if a motion at `velocity` and `acceleration` keeps `limits`, to one per cent.
+/// True if a motion at `velocity` and `acceleration` stays within `limits`, with a tolerance of one
+/// per cent.
 pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bool {
     velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration
 }
 
-/// Distance of three axes to their target, and their motion at its start.
+/// Distance of three axes from their target, and their motion at the start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg {
     pub(crate) way: Vector3<f64>,
@@ -211,13 +213,12 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    /// Returns the share of a norm budget for each axis. The squares sum to 1.
+    /// Returns the share of a norm budget for each axis. The squares of the shares sum to 1.
     ///
-    /// With a third for each axis, a motion along one axis would use only 58 % of the budget.
-    /// Therefore the shares follow the direction to the target. On a straight line each axis gets
-    /// its part of the line, and the line gets the whole budget. While the axes move elsewhere,
-    /// part of the budget follows the velocity and part is spread evenly, so that a sideways motion
-    /// can be braked.
+    /// If each axis got a third, a motion along one axis would use only 58 % of the budget.
+    /// Therefore the shares follow the direction to the target: a motion on a straight line uses
+    /// the whole budget. If the axes start in another direction, part of the budget follows the
+    /// velocity and part is spread evenly, so that a sideways motion can be braked.
     fn shares(&self) -> Vector3<f64> {
         let (along_way, along_velocity) = if self.is_straight() {
             (0.99, 0.0)
@@ -239,8 +240,8 @@ impl Leg {
         squares.map(f64::sqrt)
     }
 
-    /// True if velocity and acceleration lie on the line to the target, to a millionth of their
-    /// size.
+    /// True if velocity and acceleration lie on the line to the target, to within a millionth of
+    /// their size.
     fn is_straight(&self) -> bool {
         let on_line =
             |v: &Vector3<f64>| self.way.cross(v).norm() <= 1e-6 * self.way.norm() * v.norm();
@@ -265,7 +266,8 @@ mod tests {
     fn impossible_speed_is_refused_with_the_possible_range() {
         for model in [Model::fr3(), Model::fer()] {
             let budget = Budget::of(model.joint_limits());
-            // The default is a fifth of the joints' jerks, and those grow with the cube.
+            // The default uses a fifth of the joints' jerk limits, and jerk grows with the cube of
+            // the factor.
             let most = 5.0_f64.cbrt();
             for factor in [Budget::SPEED_MIN, 0.5, 1.0, most - 1e-9] {
                 assert_eq!(budget.at_speed(factor, model), Ok(budget.scaled(factor)));

@@ -1,4 +1,5 @@
-//! From a reference to torques: the law, then the guards of the torques, then the robot's limits.
+//! Computes torques from a reference. The law comes first, then the guards of the torques, then the
+//! robot's limits.
 //!
 //! ```text
 //! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> clamp -> velocity barrier -> low-pass -> rate
@@ -22,31 +23,32 @@ use crate::session::reference::Reference;
 use crate::session::{Bindings, Goal, Guard};
 use crate::shaping::filter;
 
-/// Memory of the law between cycles.
+/// Values of the law that the next cycle needs.
 #[derive(Debug)]
 pub(super) struct Effort {
     fade: Fade<BlendedGains>,
-    /// Reference velocity after its low-pass, `[rad/s]`.
+    /// Low-passed reference velocity, `[rad/s]`.
     feedforward: JointVector,
     inertia: Inertia,
     compensation: Compensation,
     /// Compensation in the last cycle, `[N m]`.
     compensated: JointVector,
-    /// Torques of springs, dampers and compensation in the last cycle, after clamp and force cap,
-    /// `[N m]`.
+    /// Torques of springs, dampers and compensation in the last cycle, after the clamp and the
+    /// force cap, `[N m]`.
     interaction: JointVector,
     /// Torques of springs and compensation in the last cycle, before the clamp, `[N m]`.
     asked: JointVector,
-    /// Torques that the law demanded in the last cycle, before low-pass and rate limit, `[N m]`.
+    /// Torques that the law demanded in the last cycle, before the low-pass and the rate limit,
+    /// `[N m]`.
     demanded: JointVector,
-    /// True if clamp or force cap changed a torque in the last cycle.
+    /// True if the clamp or the force cap changed a torque in the last cycle.
     bound: bool,
 }
 
-/// Response of the law to an obstacle that holds back an arm at rest.
+/// How the law responds to an obstacle that holds back an arm at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Resistance {
-    /// The law assumes friction, and overcomes it.
+    /// The law assumes that friction holds the arm, and increases its torques.
     Overcome,
     /// The arm rests on the obstacle, and presses on it with its springs alone.
     Yield,
@@ -54,11 +56,11 @@ pub(super) enum Resistance {
     Release,
 }
 
-/// The reference's acceleration that is fed forward as a torque.
+/// The reference's acceleration, which is fed forward as a torque.
 ///
-/// While the leash moves the reference with a pushed arm, the reference accelerates as fast as the
-/// joints' bounds allow, and torques for that would push back. Therefore the feedforward fades out
-/// then. It fades in again while the reference is free.
+/// The leash can move the reference with a pushed arm. The reference then accelerates as fast as
+/// the joints' bounds allow, and torques for that acceleration would push back. Therefore the
+/// feedforward fades out meanwhile. It fades in again while the leash does not hold the reference.
 #[derive(Debug)]
 struct Inertia {
     /// Acceleration, `[rad/s^2]`.
@@ -68,7 +70,8 @@ struct Inertia {
 }
 
 impl Inertia {
-    /// Returns the acceleration to feed forward in a cycle with this `reference`.
+    /// Returns the acceleration to feed forward in a cycle with this `reference`. `leashed` is true
+    /// if the leash holds the reference.
     fn step(&mut self, reference: &JointVector, leashed: bool) -> JointVector {
         self.free = if leashed {
             0
@@ -85,11 +88,12 @@ impl Inertia {
 /// Keeps the wrench finite at a singular posture, `[m^2]`.
 const SINGULAR: f64 = 1e-6;
 
-/// Number of cycles with a free reference after which its whole acceleration counts again.
+/// Number of cycles without the leash after which the whole acceleration of the reference counts
+/// again.
 const RETURN: u32 = 300;
 
-/// Share of the difference to its new value by which the acceleration changes in a cycle: it fades
-/// in about ten cycles.
+/// Part of the remaining difference that the acceleration covers in one cycle: it fades in about
+/// ten cycles.
 const FADE: f64 = 0.1;
 
 impl Effort {
@@ -111,7 +115,7 @@ impl Effort {
         }
     }
 
-    /// Sets the known values of the arm.
+    /// Sets the values that earlier sessions learned about the arm.
     pub(super) fn know(&mut self, learned: Learned) {
         self.compensation = Compensation::new(learned);
     }
@@ -140,14 +144,15 @@ impl Effort {
         damped.cholesky().map_or(pull, |factor| factor.solve(&pull))
     }
 
-    /// Returns the joint that a torque limit reduced most in the last cycle, compared with the
-    /// torque of its springs and compensation, if any.
+    /// Returns the joint whose torque a limit reduced most in the last cycle, compared with the
+    /// torque of its springs and its compensation, if any.
     pub(super) fn limited(&self) -> Option<LimitedTorque> {
         let most = JointVector::from(self.fade.now().torque_limits);
         LimitedTorque::worst(&self.asked, &most)
     }
 
-    /// True if the compensation still grows, to move a joint that rests away from its target.
+    /// True if the compensation still grows in order to move a joint that rests away from its
+    /// target.
     pub(super) fn is_working(&self) -> bool {
         self.compensation.is_working()
     }
@@ -158,8 +163,8 @@ impl Effort {
             .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));
     }
 
-    /// Returns the torques of one cycle, `[N m]`; `dynamics` is computed at the measured positions
-    /// and velocities. `met` is true if the goal has reacted to a contact.
+    /// Returns the torques of one cycle, `[N m]`. `dynamics` must be computed at the measured
+    /// positions and velocities. `met` is true if the goal has reacted to a contact.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
@@ -202,7 +207,7 @@ impl Effort {
         let (tau, clamped) = clamp(&(springs + dampers), &most);
         let (tau, capped) = match (tuning.force_cap(), &space) {
             (Some(cap), Some(space)) => {
-                // The dampers get the part of the clamp that the springs leave.
+                // The dampers get the part of the clamp that the springs have not used.
                 let (springs, _) = clamp(&springs, &most);
                 force_cap::hold(&springs, &(tau - springs), cap, jacobian, space)
             }
@@ -210,8 +215,8 @@ impl Effort {
         };
         self.bound = clamped || capped;
         self.interaction = tau;
-        // The torques of the motion itself are added after clamp and cap, which bound the
-        // interaction.
+        // The clamp and the cap bound only the interaction, so the torques of the motion itself are
+        // added after them.
         let acceleration = self.inertia.step(&reference.ddq, leashed);
         let mass = dynamics.mass + MassMatrix::from_diagonal(&ROTORS.into());
         let inertial = mass * (acceleration * tuning.feedforward);
@@ -230,8 +235,8 @@ impl Effort {
     }
 }
 
-/// Low-passes `tau`, with weight `share`, against the last torques that the robot accepted,
-/// `tau_J_d` of its state.
+/// Applies a low-pass to `tau`: returns the mean of `tau`, with weight `share`, and of the last
+/// torques that the robot accepted, `tau_J_d` of its state.
 pub(super) fn low_pass(share: f64, tau: &JointVector, last: &JointVector) -> JointVector {
     tau.zip_map(last, |tau, last| filter::mix(share, tau, last))
 }
@@ -250,7 +255,7 @@ mod tests {
         assert_eq!(inertia.step(&asked, false), asked);
         let mut last = 5.0;
         for cycle in 0..1000 {
-            // A leash that comes and goes.
+            // The leash holds the reference in some cycles and not in others.
             let leashed = cycle < 200 && cycle % 7 < 5;
             let now = inertia.step(&asked, leashed)[0];
             assert!((now - last).abs() <= 5.0 * FADE + 1e-9, "{cycle}: {now}");

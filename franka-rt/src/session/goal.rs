@@ -12,7 +12,7 @@ use crate::session::{
 };
 use crate::team::Round;
 
-/// Identifies one goal for the life of a connection. Updates of a followed target keep the id of
+/// Identifies one goal during the life of a connection. Updates of a followed target keep the id of
 /// their goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,23 +22,23 @@ pub struct GoalId(pub u64);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Target {
-    /// Rest: the joints brake in about a quarter of a second. The brake uses up to the robot's jerk
-    /// limit, however gentle the goal's budget is.
+    /// Rest: the joints brake in about a quarter of a second. Braking may use the robot's full jerk
+    /// limit, even if the goal's budget is lower.
     Rest,
     /// Joint positions, `[rad]`.
     Joints([f64; 7]),
     /// Pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
-    /// Moving joint positions: the arm catches up with them and keeps moving with them. Only for
-    /// goals that are held. The motion is extrapolated for [`Self::MOVES_ON_MS`] after the newest
-    /// target; then the arm brakes on its path.
+    /// Moving joint positions: the arm catches up with them and then moves with them. Accepted only
+    /// for goals that are held. The motion is extrapolated for [`Self::MOVES_ON_MS`] after the
+    /// newest target; then the arm brakes on its path.
     MovingJoints {
         /// Positions at the instant when the session accepts the target, `[rad]`.
         q: [f64; 7],
         /// Velocities of the positions, `[rad/s]`.
         dq: [f64; 7],
     },
-    /// A moving pose; otherwise as [`Self::MovingJoints`].
+    /// A moving pose. Apart from the pose, it works like [`Self::MovingJoints`].
     MovingPose {
         /// `O_T_EE` at the instant when the session accepts the target, metres.
         pose: Isometry3<f64>,
@@ -83,8 +83,8 @@ impl From<(Isometry3<f64>, Twist)> for Target {
 }
 
 impl Target {
-    /// Time for which a moving target is extrapolated, `[ms]` of the robot's clock. The arm follows
-    /// a stream of 5 Hz without a pause.
+    /// Time for which a moving target is extrapolated, `[ms]` of the robot's clock. Therefore the
+    /// arm follows a stream of 5 Hz without a pause.
     pub const MOVES_ON_MS: u64 = 200;
 
     /// True if the target moves.
@@ -92,7 +92,7 @@ impl Target {
         matches!(self, Self::MovingJoints { .. } | Self::MovingPose { .. })
     }
 
-    /// Returns the target at rest at its present place.
+    /// Returns the present place of the target, as a target at rest.
     #[must_use]
     pub fn place(self) -> Self {
         match self {
@@ -132,9 +132,10 @@ pub(crate) fn moved(pose: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f
 /// Axes that are free under hand guiding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Free {
-    /// Axes of the base frame at the end effector: x y z, about x y z.
+    /// Axes of the base frame at the end effector: translation along x, y, z, then rotation about
+    /// x, y, z.
     pub axes: [bool; 6],
-    /// True if the elbow is free; the end effector stays.
+    /// True if the elbow is free while the end effector stays where it is.
     pub elbow: bool,
 }
 
@@ -146,7 +147,7 @@ impl Free {
     };
 }
 
-/// Action of the session once the reference has arrived.
+/// What the session does when the reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnArrival {
     /// Holds the target until the next goal, and reports nothing.
@@ -164,17 +165,18 @@ pub struct Goal {
     pub id: GoalId,
     /// Target of the motion.
     pub target: Target,
-    /// Action of the session once the reference has arrived.
+    /// What the session does when the reference has arrived.
     pub on_arrival: OnArrival,
     /// Limits of velocity, acceleration and jerk.
     pub budget: Budget,
     /// Stiffness and damping.
     pub gains: Gains,
-    /// Tolerance of the arrival. `None` uses the accuracy of the law on an arm with friction: see
-    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object together with other
-    /// arms of its team has also arrived if it stops within 5 mm and 10 mrad.
+    /// Tolerance of the arrival. `None` uses the accuracy that the law reaches on an arm with
+    /// friction: see [`Tolerance::of`] and [`Tolerance::under`]. If the arm holds an object
+    /// together with other arms of its team, stopping within 5 mm and 10 mrad also counts as
+    /// arrival.
     pub tolerance: Option<Tolerance>,
-    /// Reaction to a stream of updates that stops; only for goals that are held.
+    /// Reaction when a stream of updates stops. Accepted only for goals that are held.
     pub watchdog: Option<Watchdog>,
     /// Limit of the force that springs and dampers may exert at the end effector.
     pub force_cap: ForceCap,
@@ -182,35 +184,36 @@ pub struct Goal {
     pub lead: Option<Lead>,
     /// Limit of the distance between arm and reference.
     pub leash: Leash,
-    /// Limit of the distance that the arm may be pushed off its path.
+    /// Limit of how far the arm may be pushed off its path.
     pub deviation: Deviation,
     /// Conditions under which the arm counts as settled.
     pub settling: Settling,
-    /// Joint positions for the elbow's free direction, `[rad]`, while the end effector moves to a
-    /// pose. The joints get as near to them as the pose allows. With a posture, the elbow also
-    /// moves while the end effector rests, and a goal arrives when both rest. `None` keeps the
-    /// elbow near its place at the session's start while the end effector moves.
+    /// Joint positions that the elbow moves toward, `[rad]`, while the end effector moves to a
+    /// pose. The joints get as near to them as the pose allows. With a posture, the elbow can also
+    /// move while the end effector rests, and a goal arrives when both rest. With `None`, the elbow
+    /// stays near its place at the session's start while the end effector moves.
     pub posture: Option<[f64; 7]>,
     /// True if the goal follows a path to its target. The path is sent separately, as a chunk.
-    /// Without the chunk the arm rests.
+    /// Until the chunk arrives, the arm rests.
     pub along_path: bool,
-    /// True if the arm must stop on its path, within the budget, and stay there until this is false
-    /// again.
+    /// True if the arm must stop on its path, within the budget, and stay there until `paused` is
+    /// false again.
     pub paused: bool,
-    /// Condition that ends the motion early. A goal keeps the condition that it began with.
+    /// Condition that ends the motion early. A goal keeps its first condition: updates do not
+    /// change it.
     pub reaction: Option<Reaction>,
-    /// Joint motion of a team that the goal belongs to. The goal begins together with the goals of
-    /// the other members, and a fault of one member aborts all of them. Only for sessions with a
-    /// [`Member`].
+    /// The joint motion of a team that the goal belongs to. The goal begins together with the goals
+    /// of the other members, and a fault of one member aborts all of them. Accepted only for
+    /// sessions with a [`Member`].
     ///
     /// [`Member`]: crate::team::Member
     pub round: Option<Round>,
-    /// Pose of the held object in the frame of the end effector. The target is then a pose of the
-    /// object, and the object moves on the straight line. Springs and force cap act at the hand. In
-    /// a joint motion of a team, the reference waits for the arms of the other members.
+    /// Pose of the held object in the frame of the end effector. With a grasp, the target is a pose
+    /// of the object, and the object moves on the straight line. Springs and force cap act at the
+    /// hand. In a joint motion of a team, the reference waits for the arms of the other members.
     pub grasp: Option<Isometry3<f64>>,
-    /// Incremented by each new target and each new [`on_arrival`](Self::on_arrival), not by tuning.
-    /// Only a new revision restarts the watchdog's time.
+    /// Number of changes of the target or of [`on_arrival`](Self::on_arrival). A change of gains or
+    /// limits does not increment it. Only a new revision restarts the watchdog's timer.
     pub revision: u64,
 }
 
@@ -218,9 +221,8 @@ impl Goal {
     /// Shortest timeout of a watchdog or a deadman.
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
-    /// Creates a goal for an arm with these limits. It has the default budget and the default force
-    /// cap. The joints are stiff for joint targets; for other targets the end effector is
-    /// compliant.
+    /// Creates a goal for an arm with these limits. The goal has the default budget and the default
+    /// force cap. Joint targets get stiff joints; other targets get a compliant end effector.
     pub fn new(id: GoalId, target: Target, on_arrival: OnArrival, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -257,8 +259,8 @@ impl Goal {
         }
     }
 
-    /// Returns the goal with rest as its target, without a path, a reaction or a team. Gains for
-    /// guiding are replaced by gains that hold.
+    /// Returns the goal with [`Target::Rest`] as its target, and without path, reaction and team.
+    /// Gains for guiding are replaced by gains that hold the arm.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),

@@ -10,22 +10,22 @@ use crate::session::{Backend, Budget, Chunk, Goal};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GoalError {
-    /// The target has a number that is not finite.
+    /// The target contains a number that is not finite.
     #[error("got a number that is not finite in the target's {what}")]
     NotFinite {
-        /// The part of the target.
+        /// The part of the target that contains the number.
         what: &'static str,
     },
     /// The stream of targets ended before its first target.
     #[error("the stream of targets ended before its first target")]
     NoTarget,
-    /// Commands for an external controller came without torques, which that controller needs.
+    /// Commands for an external controller contained no torques. An external controller needs them.
     #[error(
         "got commands without torques, expected torques too for an external controller: use \
          `with_torques`"
     )]
     NoTorques,
-    /// The target moves, so there is no arrival to wait for.
+    /// The target moves, so the motion cannot wait for an arrival.
     #[error(
         "got a target with a velocity, expected a target at rest, where the motion can end: use \
          `set` or `follow` for moving targets"
@@ -46,7 +46,7 @@ pub enum GoalError {
         /// Upper end of the range, `[rad]`.
         upper: f64,
     },
-    /// No joint positions inside their ranges reach the position.
+    /// No joint positions inside the joints' ranges reach the position.
     #[error("the pose at {} is out of reach: no joint positions within their ranges reach it with \
         its orientation", place([*x, *y, *z]))]
     Unreachable {
@@ -57,8 +57,8 @@ pub enum GoalError {
         /// Coordinate z of the requested position.
         z: f64,
     },
-    /// The arm reaches the pose, but not on a straight line from its present place. Joints reach
-    /// the ends of their ranges on the way, with every posture that was tried.
+    /// The arm can reach the pose, but not on a straight line from its present place. On the way,
+    /// some joint reaches the end of its range, with every posture that was tried.
     #[error(
         "the arm cannot move to {} in a straight line{hindrance}: {}",
         place([*x, *y, *z]),
@@ -73,14 +73,14 @@ pub enum GoalError {
         z: f64,
         /// Reason why the straight line is not possible with the elbow in its present place.
         hindrance: Hindrance,
-        /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; the
-        /// search ignores keep-out regions. `None` if none were found.
+        /// Joint positions that reach the pose, and to which the joints can move, `[rad]`. The
+        /// search ignores keep-out regions. `None` if the search found none.
         posture: Option<[f64; 7]>,
     },
-    /// A limit of the budget is less than [`Budget::LIMITS_MIN`], or exceeds the robot's.
+    /// A limit of the budget is below [`Budget::LIMITS_MIN`], or above the robot's own limit.
     #[error("limit of the {what} is {got}, expected between {least} and {most}")]
     Budget {
-        /// The limit.
+        /// Name of the limit.
         what: &'static str,
         /// The given value.
         got: f64,
@@ -89,7 +89,7 @@ pub enum GoalError {
         /// The robot's own limit.
         most: f64,
     },
-    /// A speed is not positive, or raises a limit above the robot's.
+    /// A speed is not positive, or raises a limit above the robot's limit.
     #[error(
         "speed is {got}, expected between {least} and {most:.3}, as a factor of the motion's \
          limits",
@@ -98,13 +98,13 @@ pub enum GoalError {
     Speed {
         /// The given factor.
         got: f64,
-        /// The greatest factor that keeps all limits inside the robot's.
+        /// The greatest factor with which all limits stay within the robot's limits.
         most: f64,
     },
     /// A stiffness or damping is out of bounds.
     #[error(transparent)]
     Gains(#[from] GainError),
-    /// Gains whose joint springs act only in the null space of the end effector have no spring at
+    /// The joint springs act only in the null space of the end effector, and there is no spring at
     /// the end effector. Nothing would pull the arm to its target.
     #[error(
         "the gains leave the end effector free: got no end-effector stiffness, and joint \
@@ -115,7 +115,7 @@ pub enum GoalError {
     /// A number of the goal is out of bounds.
     #[error("{what} is {got} {unit}, expected {} {unit}", between(*.least, *.most))]
     Number {
-        /// The number.
+        /// Name of the number.
         what: &'static str,
         /// The given value.
         got: f64,
@@ -132,18 +132,18 @@ pub enum GoalError {
         /// Length of the quaternion.
         length: f64,
     },
-    /// The last point of a chunk has passed, so the arm has nothing left to follow.
+    /// The last point of a chunk is in the past, so the arm has nothing to follow.
     #[error("the last point of the chunk was due {} ms ago by the robot's clock, expected a point in the future: send chunks earlier", .by.as_millis())]
     Late {
-        /// Time since that point, by the robot's clock.
+        /// Time since the last point, by the robot's clock.
         by: Duration,
     },
-    /// The time origin of a chunk is too far in the robot's future, probably because it is from
+    /// The time origin of a chunk is too far in the robot's future. Probably it was taken from
     /// another clock.
     #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at \
         most: pass times of the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {
-        /// Time from the robot's newest state to the origin.
+        /// Time from the robot's newest state to the time origin.
         by: Duration,
     },
     /// The observation of a chunk is older than the observation of the chunk that the arm follows.
@@ -156,29 +156,28 @@ pub enum GoalError {
     /// Too many chunks arrived within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
-    /// The backend of the session does not support the goal.
+    /// The session's backend does not support the goal.
     #[error("{backend} does not support {got}: use {expected}")]
     Backend {
-        /// The backend.
+        /// Backend of the session.
         backend: Backend,
-        /// The unsupported request.
+        /// Unsupported request.
         got: &'static str,
-        /// A backend that supports it, or the supported requests.
+        /// A backend that supports the request, or the requests that this backend supports.
         expected: &'static str,
     },
-    /// A keep-out region is invalid, or there are too many.
+    /// A keep-out region is invalid, or there are too many regions.
     #[error("keep-out region {region} {why}")]
     KeepOut {
         /// The region, from 1.
         region: usize,
-        /// The reason.
+        /// Reason why the region is invalid.
         why: &'static str,
     },
     /// The condition of a reaction, or the target after it, is not accepted.
     #[error(transparent)]
     Condition(#[from] ConditionError),
-    /// The timeout of a watchdog or a deadman is so short that a lossy network alone could exceed
-    /// the timeout.
+    /// The timeout of a watchdog or a deadman is too short: packet loss alone could exceed it.
     #[error("the timeout of a watchdog or deadman is {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
         /// The given timeout.
@@ -187,8 +186,8 @@ pub enum GoalError {
     /// The target for a held object is not a pose.
     #[error("got a target that is not a pose, expected a pose for an object that the arms hold")]
     Grasp,
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that
-    /// is not finite.
+    /// The robot's state contains an end effector that is not a rigid transformation, or a load
+    /// that is not finite.
     #[error(
         "the robot reports an end effector or load with an unphysical mass or inertia: correct it \
          with `set_ee` or `set_load`, or in Desk"
@@ -249,13 +248,14 @@ fn degrees(position: f64) -> &'static str {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Hindrance {
-    /// The arm leaves the line. If a joint is at the end of its range, this is its number, from 1.
+    /// The arm leaves the line. If a joint is at the end of its range, the value is the number of
+    /// that joint, from 1.
     Range(Option<u8>),
     /// The arm comes too near to itself.
     Itself,
 }
 
-/// Prints nothing, or the end of a sentence after a comma.
+/// Prints nothing, or a comma and the end of a sentence.
 impl core::fmt::Display for Hindrance {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
@@ -268,7 +268,7 @@ impl core::fmt::Display for Hindrance {
     }
 }
 
-/// Advice about alternatives to a straight line.
+/// Returns advice about alternatives to a straight line.
 fn way_on(posture: Option<&[f64; 7]>) -> String {
     match posture {
         Some(q) => format!("use `move_joints` to {q:.4?} rad, which reaches the pose"),
@@ -276,7 +276,7 @@ fn way_on(posture: Option<&[f64; 7]>) -> String {
     }
 }
 
-/// Chunks arrived faster than the control thread takes them up.
+/// Chunks arrived faster than the control thread accepts them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "got more chunks at once than the control thread accepts, expected {} at most: send fewer",

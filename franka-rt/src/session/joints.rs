@@ -1,5 +1,5 @@
-//! The generator of joint positions. A moving target is at rest in a frame that moves with it, and
-//! the plan is made in that frame.
+//! The generator of joint positions. A moving target is at rest in a frame that moves with the
+//! target. The plan is made in that frame.
 
 use franka_model::limits::JointLimits;
 use franka_otg::{AxisLimits, Generator, Limits, PlanError, State};
@@ -9,7 +9,7 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, Target, approach, budget};
 use crate::shaping::CYCLE;
 
-/// Time for which the motion of a joint's target must stay inside its range, `[s]`: the time of its
+/// Time for which a moving joint target must stay inside the joint's range, `[s]`: the time of its
 /// extrapolation, and the same time again for the stop that follows.
 const ROOM: f64 = 2e-3 * Target::MOVES_ON_MS as f64;
 
@@ -23,7 +23,8 @@ pub(super) struct MovingJoints {
 /// Moves the joints to their target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(super) struct JointGenerator {
-    /// Axes in a frame that moves at `drift` and was at rest at zero when the plan was made.
+    /// Generator of the axes, in a frame that moves at `drift`. The frame was at rest at zero when
+    /// the plan was made.
     axes: Generator<7>,
     /// Velocity of the frame, `[rad/s]`.
     drift: [f64; 7],
@@ -34,11 +35,12 @@ pub(super) struct JointGenerator {
 }
 
 impl JointGenerator {
-    /// Begins at `reference`, and moves to `target`; without a target, stops in the least time.
+    /// Creates a generator that begins at `reference` and moves to `target`. Without a target, it
+    /// stops in the least time.
     ///
     /// # Errors
-    /// As for [`Generator`]. Goals are checked when they are accepted, so only a defect can cause
-    /// an error.
+    /// Returns the errors of [`Generator`]. Goals are checked when they are accepted, so only a
+    /// defect can cause an error.
     pub(super) fn new(
         robot: &JointLimits,
         reference: &Reference,
@@ -54,11 +56,11 @@ impl JointGenerator {
         })
     }
 
-    /// Moves to another target from `reference`, or stops. If the target's motion continues as
-    /// before, the plan stays as it is.
+    /// Moves from `reference` to another target, or stops if there is none. If the target's motion
+    /// continues as before, the plan stays as it is.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(super) fn head_for(
         &mut self,
         robot: &JointLimits,
@@ -80,7 +82,7 @@ impl JointGenerator {
         Ok(())
     }
 
-    /// True if the plan already leads to the motion of `target`, except for rounding.
+    /// True if the plan already leads to the motion of `target`, except for rounding errors.
     fn is_followed(
         &self,
         target: &MovingJoints,
@@ -89,17 +91,17 @@ impl JointGenerator {
     ) -> bool {
         let t = self.time();
         let near = |i: usize| (before.q[i] + before.dq[i] * t - target.q[i]).abs() < ROUNDING;
-        // A frame that is slower than the target falls behind it.
+        // If the frame is slower than the target, it falls behind the target.
         before.dq == target.dq
             && self.drift == target.dq
             && budget_before == budget
             && (0..7).all(near)
     }
 
-    /// Stops within the limits of the plan, on its line if it moves on one.
+    /// Stops within the limits of the plan. If the joints move on a line, they stop on that line.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(super) fn halt(&mut self) -> Result<(), PlanError> {
         self.planned = None;
         if self.drift == [0.0; 7] {
@@ -119,10 +121,10 @@ impl JointGenerator {
         Ok(())
     }
 
-    /// Moves the joints to `q`, `[rad]`, keeps their velocities, and plans anew from there.
+    /// Sets the joint positions to `q`, `[rad]`, keeps their velocities, and plans anew from there.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(super) fn set_positions(&mut self, q: [f64; 7]) -> Result<(), PlanError> {
         let t = self.time();
         self.axes.set_state(State {
@@ -162,22 +164,23 @@ impl JointGenerator {
         self.axes.is_done()
     }
 
-    /// Returns the end of a plan that leads to rest, `[rad]`.
+    /// Returns the end positions of a plan that leads to rest, `[rad]`.
     #[cfg(test)]
     pub(super) fn end(&self) -> [f64; 7] {
         *self.axes.end()
     }
 
-    /// Returns the time until the target is met, or until rest without a target, `[s]`.
+    /// Returns the time until the joints meet the target, `[s]`. Without a target, returns the time
+    /// until they rest.
     pub(super) fn remaining(&self) -> f64 {
         self.axes.time_to_target()
     }
 }
 
-/// Distance of two places of the same motion that rounding explains, `[rad]`.
+/// Greatest distance, from rounding alone, between two places of the same motion, `[rad]`.
 const ROUNDING: f64 = 1e-9;
 
-/// Start of the generator, in the frame that moves with the target.
+/// Start values for the generator, in the frame that moves with the target.
 struct Plan {
     state: State<7>,
     limits: Limits<7>,

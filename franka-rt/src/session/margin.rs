@@ -1,17 +1,18 @@
-//! Stability margin: the distance of gains from the first oscillation.
+//! Stability margin: how far gains are from the first oscillation.
 //!
-//! Four delays lie between a wanted torque and its effect: the cycle of the client, the robot's
-//! delay, the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers
-//! `D` and springs `K` in joint space, every mode of the arm obeys
+//! Four delays lie between a desired torque and its effect: the client's cycle, the robot's delay,
+//! the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers `D` and
+//! springs `K` in joint space, every mode of the arm obeys
 //!
 //! ```text
 //! m s^2 + (d s + k) exp(-s DELAY) / ((1 + s LAG) (1 + s FILTER)) = 0
 //! ```
 //!
-//! to first order. A damper alone makes a mode oscillate from the `d / m` at which the phases of
-//! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
-//! FILTER)`. The computation ignores friction, which helps, and the elasticity of the joints, which
-//! does not. The margins were compared with simulated arms (`cargo xtask arms --gain`).
+//! to first order. A damper alone makes a mode oscillate if `d / m` reaches the value at which the
+//! phases of delay and lags add up to a quarter of a turn. With a slow spring, the mode is stable
+//! if `d > k (DELAY + LAG + FILTER)`. The computation ignores friction, which increases the margin,
+//! and the elasticity of the joints, which reduces it. The margins were compared with simulated
+//! arms (`cargo xtask arms --gain`).
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -25,14 +26,15 @@ use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
-/// Stability margin of gains: their distance from the first oscillation. The assumed arm delays and
-/// lags like the slowest realistic simulated arm (`franka_sim::arm::Family::realistic`). Bad arms
-/// have less margin: they lag twice as long, and their joints are softer.
+/// Stability margin of gains: how far they are from the first oscillation. The arm is assumed to
+/// have the delays and lags of the slowest realistic simulated arm
+/// (`franka_sim::arm::Family::realistic`). Bad arms have less margin: their lags are twice as long,
+/// and their joints are softer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// Factor by which all dampers may grow.
+    /// Factor by which all dampers may grow before the arm oscillates.
     pub damping: f64,
-    /// Factor by which all springs may grow while the dampers stay.
+    /// Factor by which all springs may grow before the arm oscillates, with unchanged dampers.
     pub stiffness: f64,
 }
 
@@ -46,7 +48,7 @@ impl Margin {
     }
 
     /// Returns the margin of these gains on an arm of this model in `state`, with the end effector
-    /// and the load that the robot knows. `None` for gains that are out of their bounds, and if the
+    /// and the load that the robot knows. Returns `None` if a gain is out of its bounds, or if the
     /// tool is not a rigid body.
     pub fn of(gains: &Gains, model: &Model, state: &RobotState, version: Version) -> Option<Self> {
         gains.check().ok()?;
@@ -76,8 +78,8 @@ impl Margin {
     }
 }
 
-/// Returns the greatest eigenvalue of `over^-1 of`, both symmetric; infinite if `over` is not
-/// positive.
+/// Returns the greatest eigenvalue of `over^-1 of`, where both matrices are symmetric. Infinite if
+/// `over` is not positive definite.
 fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     let floor = MassMatrix::identity() * 1e-9;
     let ratio = (over + floor).cholesky().and_then(|factor| {
@@ -87,14 +89,14 @@ fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     ratio.map_or(f64::INFINITY, |ratio| ratio.symmetric_eigenvalues().max())
 }
 
-/// Delays between a wanted torque and its effect.
+/// Delays between a desired torque and its effect.
 struct Lateness {
     /// Time constants of the torque loop and of the low-pass of the commands, `[s]`.
     lags: [f64; 2],
 }
 
 impl Lateness {
-    /// Delay of the client's cycle and two cycles of the robot, `[s]`.
+    /// Delay of one cycle of the client and two cycles of the robot, `[s]`.
     const DELAY: f64 = 3e-3;
 
     /// Time constant of the robot's torque loop, `[s]`.
@@ -112,14 +114,14 @@ impl Lateness {
         }
     }
 
-    /// Returns delay and lags together, `[s]`.
+    /// Returns the sum of delay and lags, `[s]`.
     fn sum(&self) -> f64 {
         self.lags.iter().fold(Self::DELAY, |sum, lag| sum + lag)
     }
 
-    /// Returns the ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`. At that
-    /// frequency the phases add up to a quarter of a turn, and the gain of the lags is divided out.
-    /// With the default low-pass the ratio is 257, at 182 rad/s.
+    /// Returns the ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`. At the
+    /// frequency of that oscillation, the phases add up to a quarter of a turn; the ratio also
+    /// compensates the gain of the lags. With the default low-pass the ratio is 257, at 182 rad/s.
     fn damped(&self) -> f64 {
         let phase = |frequency: f64| {
             let lags = self.lags.iter().map(|lag| (frequency * lag).atan());
@@ -177,7 +179,7 @@ mod tests {
     }
 
     /// Results of simulated arms: `arms --law joint --scaled joint-damping --gain F` was quiet with
-    /// a factor of 2.4 and was not with 3. With all gains of the default it was quiet with 4.
+    /// a factor of 2.4 and oscillated with 3. With all default gains scaled, it was quiet with 4.
     #[test]
     fn margin_matches_simulated_arms() {
         let margin = of(Gains::joint()).damping;
@@ -198,7 +200,7 @@ mod tests {
         for (more, less) in [(off, default), (default, least)] {
             assert!(more.damping > less.damping && more.stiffness > less.stiffness);
         }
-        // The softest accepted filter uses a third of the presets' margin.
+        // The softest accepted filter leaves a third of the presets' margin.
         assert!(default.is_wanted() && !least.is_wanted());
         assert!(least.damping > 1.5 && least.stiffness > 1.5, "{least:?}");
         assert!((Lateness::of(100.0).damped() - 257.0).abs() < 1.0);

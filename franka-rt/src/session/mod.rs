@@ -6,17 +6,17 @@
 //! answered: -> leash -> law -> guards of the torques -> torques
 //! ```
 //!
-//! Between a state and its answer, the session computes only the parts that need this state. All
-//! other parts are prepared before the state arrives.
+//! The session prepares as much of an answer as it can before the state arrives. Between the state
+//! and the answer, it computes only the parts that need this state.
 //!
-//! The state of a session is a joint reference `q, dq, ddq`. A course moves the reference: over
-//! seven joints for joint goals and for braking, over three axes of translation and three of
-//! rotation for poses. When the kind of goal changes, the new course starts from the position,
-//! velocity and acceleration of the reference, so nothing steps.
+//! The state of a session is a joint reference `q, dq, ddq`. A course moves the reference. For
+//! joint goals and for braking, the course has seven axes, one for each joint. For poses, it has
+//! three axes of translation and three of rotation. When the kind of goal changes, the new course
+//! starts from the position, velocity and acceleration of the reference, so none of them jumps.
 //!
 //! A goal that should finish passes through the stages of `GoalStage`: under way, landing,
-//! releasing, finished. From any stage except the last, a newer goal returns the session to the
-//! first.
+//! releasing, finished. From any stage except finished, a newer goal returns the session to the
+//! stage under way.
 
 mod aim;
 mod approach;
@@ -92,13 +92,13 @@ use membership::Membership;
 use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
-/// Time for which an obstacle, or the joints' bounds, may hold the reference back. A goal that
-/// should finish is then braked, and ends where it is. Pauses of up to a second count as part of
-/// this time, unless the arm comes nearer to its target than ever before.
+/// Longest time for which an obstacle, or the joints' bounds, may hold the reference back. After
+/// that time, a goal that should finish is braked and ends where the arm is. Pauses of up to a
+/// second count as part of this time, unless the arm comes nearer to its target than ever before.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// One session of target control. It is created outside the thread, moved into the thread, and
-/// handed back when it has ended.
+/// One session of target control. The program creates the session, moves it into the control
+/// thread, and gets it back when the session has ended.
 #[derive(Debug)]
 pub struct TargetSession {
     model: Arc<Model>,
@@ -106,7 +106,7 @@ pub struct TargetSession {
     active: Option<RunningSession>,
     /// A goal that waits for its common start with other robots.
     held: Option<Goal>,
-    /// A goal whose common start failed, and the cause.
+    /// A goal whose common start failed, and why it failed.
     unstarted: Option<(GoalId, StartFault)>,
     /// Deadman of the session.
     deadman: Option<DeadmanMonitor>,
@@ -118,9 +118,9 @@ pub struct TargetSession {
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     speed_cap: Option<f64>,
-    /// Action of the session after a held goal had to be given up.
+    /// What the session does after a held goal had to be given up.
     afterwards: OnArrival,
-    /// State of the gate of a common start, which lets goals begin, from the newest state.
+    /// State of the gate, which lets the goals of a common start begin, as of the newest state.
     gate: Gate,
     /// Values learned about the arm in earlier sessions.
     known: Learned,
@@ -162,8 +162,8 @@ impl TargetSession {
         active.map_or(self.known, |active| active.learned(self.known))
     }
 
-    /// Holds the arm where a held goal was given up, until the next goal. By default the session
-    /// ends then.
+    /// Makes the session hold the arm, where a held goal was given up, until the next goal arrives.
+    /// By default the session ends there.
     #[must_use]
     pub fn going_on(mut self) -> Self {
         self.afterwards = OnArrival::ReportAndHold;
@@ -188,7 +188,7 @@ impl TargetSession {
         self
     }
 
-    /// Replaces the backend that turns setpoints into torques. The default is the session's own
+    /// Sets the backend that turns setpoints into torques. The default is the session's own control
     /// law.
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
@@ -199,7 +199,7 @@ impl TargetSession {
         self
     }
 
-    /// Binds the session to a deadman.
+    /// Binds the session to a deadman, which brakes the arm when the program falls silent.
     #[must_use]
     pub fn bound_to(mut self, deadman: DeadmanMonitor) -> Self {
         self.deadman = Some(deadman);
@@ -213,7 +213,8 @@ impl TargetSession {
         self
     }
 
-    /// Stops the team for a fault outside the session's goals. Does nothing without a team.
+    /// Stops the team for a fault outside the session's goals. Does nothing if the session is in no
+    /// team.
     pub(crate) fn fail_team(&mut self, fault: MemberFault) {
         if let Some(team) = &mut self.team {
             team.fail(fault);
@@ -227,7 +228,7 @@ impl TargetSession {
         }
     }
 
-    /// Leaves the team, if any.
+    /// Leaves the team, if the session is in one.
     pub(crate) fn leave_team(&mut self) {
         if let Some(team) = &mut self.team {
             team.leave();
@@ -236,26 +237,26 @@ impl TargetSession {
 
     /// Lets the session follow chunks.
     ///
-    /// The newest chunk of the goal in force moves the arm; the goal's own target has no effect
-    /// meanwhile. At the end of the chunk, the arm rests, and [`OnArrival`] applies.
+    /// The newest chunk of the current goal moves the arm; meanwhile, the goal's own target has no
+    /// effect. At the end of the chunk, the arm rests, and [`OnArrival`] applies.
     ///
-    /// Send the first chunk before its goal is written, so that the arm does not start to move to
-    /// the goal's target. [`Target::Rest`] suits most such goals.
+    /// Send the first chunk before you write its goal, so that the arm does not start to move to
+    /// the goal's target. [`Target::Rest`] is a suitable target for most of these goals.
     #[must_use]
     pub fn with_chunks(mut self, chunks: ChunkReader) -> Self {
         self.chunks = Some(chunks);
         self
     }
 
-    /// Returns the newest goal that the session has accepted. Newer goals in the slot came too
-    /// late.
+    /// Returns the newest goal that the session has accepted. Newer goals in the slot came too late
+    /// for this session.
     pub fn last_goal(&self) -> Option<GoalId> {
         let active = self.active.as_ref().map(|active| active.goal.id);
         self.held.map(|held| held.id).or(active)
     }
 
-    /// Returns the distance of the arm from its target at the release, before the robot's
-    /// controller took over.
+    /// Returns how far the arm was from its target at the release, before the robot's controller
+    /// took over.
     pub(crate) fn released(&self) -> Option<PoseError> {
         self.active.as_ref()?.released()
     }
@@ -265,20 +266,21 @@ impl TargetSession {
         self.chunks.as_mut()?.take(goal)
     }
 
-    /// True if all values of `state` that the session uses are finite, except for measured joints
-    /// and torques, which are checked elsewhere.
+    /// True if all values of `state` that the session uses are finite. Measured joints and torques
+    /// are checked elsewhere.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {
         self.backend.can_read(state)
     }
 
-    /// Answers one state, using the results of [`Self::prepare`]. Bounded work, no allocation.
+    /// Answers one state with the results of [`Self::prepare`]. Takes bounded time and does not
+    /// allocate.
     ///
     /// While the gate of a common start is closed, the session holds the arm where it is, with the
     /// gains of the waiting goal. If the start fails, the arm lands there, unless another goal
     /// arrives.
     ///
-    /// The report is left in `event`, because a return value of 280 bytes would be copied in every
-    /// cycle.
+    /// The report is written to `event`, because a return value of 280 bytes would be copied in
+    /// every cycle.
     pub(crate) fn answer(
         &mut self,
         gate: Gate,
@@ -288,7 +290,8 @@ impl TargetSession {
         self.gate = gate;
         if self.active.is_none() {
             let Some(goal) = self.newer() else {
-                // The first goal is torn, so the arm is held for this cycle.
+                // The first goal was torn (read while it was being written), so the arm is held for
+                // this cycle.
                 return SessionStep {
                     answer: self.backend.holding(state),
                     trace: Trace::default(),
@@ -335,7 +338,7 @@ impl TargetSession {
     }
 
     /// Computes everything that does not depend on the next state: accepts goals and chunks, plans,
-    /// and moves the reference by one step. Bounded work, no allocation.
+    /// and moves the reference by one step. Takes bounded time and does not allocate.
     pub(crate) fn prepare(&mut self) {
         if let Some(active) = &self.active {
             let next = active.newest() + 1;
@@ -343,7 +346,8 @@ impl TargetSession {
         }
     }
 
-    /// Prepares the answer to the state `now`, `message_id`, unless one is prepared.
+    /// Prepares the answer to the state with `message_id` `now`, unless that answer is already
+    /// prepared.
     fn prepare_for(&mut self, now: u64) {
         if self.active.as_ref().is_none_or(RunningSession::is_prepared) {
             return;
@@ -380,8 +384,8 @@ impl TargetSession {
         goal.target == Target::Rest || before.is_some_and(|before| before.id != goal.id)
     }
 
-    /// Returns the newest goal, or its substitute before the common start, if the session has not
-    /// begun it.
+    /// Returns the newest goal, if the session has not begun it. Before a common start, returns the
+    /// goal's substitute.
     fn newer(&mut self) -> Option<Goal> {
         match self.gate {
             Gate::Open => {

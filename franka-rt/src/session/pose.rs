@@ -1,14 +1,15 @@
-//! The generator of end-effector poses: three axes of translation, three of rotation, one
-//! synchronised plan.
+//! The generator of end-effector poses. One synchronised plan moves three axes of translation and
+//! three axes of rotation.
 //!
-//! The orientation is generated in a chart around the orientation where the plan began, `R =
-//! exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation vector and
-//! angular velocity are related by the left Jacobian of the rotation group, `omega = J(phi) phi'`.
-//! At `phi = 0` that Jacobian is the identity and does not influence the acceleration either. A
-//! plan that begins in motion therefore starts exactly if the chart is anchored at its beginning.
+//! The orientation is generated in a chart around the orientation where the plan began,
+//! `R = exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation
+//! vector and angular velocity are related by the left Jacobian of the rotation group,
+//! `omega = J(phi) phi'`. At `phi = 0` that Jacobian is the identity and also does not influence
+//! the acceleration. Therefore a plan that begins in motion starts with the exact velocity and
+//! acceleration if the chart is anchored at the beginning of the plan.
 //!
-//! A moving target is at rest in a frame that moves with it, and the plan is made there. Once a
-//! pose has arrived in that frame, it moves with the target.
+//! A moving target is at rest in a frame that moves with the target. The plan is made in that
+//! frame. Once the pose has arrived there, it moves with the target.
 
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;
@@ -50,7 +51,7 @@ impl From<Isometry3<f64>> for MovingPose {
 }
 
 impl MovingPose {
-    /// Returns the pose `t` seconds later.
+    /// Returns the moving pose `t` seconds later.
     fn after(self, t: f64) -> Self {
         if self.twist == Twist::zeros() {
             return self;
@@ -59,7 +60,8 @@ impl MovingPose {
         Self { pose, ..self }
     }
 
-    /// True if `other` is the same: exactly equal at rest, equal except for rounding in motion.
+    /// True if `other` is the same moving pose. At rest the two must be exactly equal; in motion
+    /// they may differ by rounding errors.
     fn is(&self, other: &Self) -> bool {
         let apart = || {
             let way = self.pose.translation.vector - other.pose.translation.vector;
@@ -71,7 +73,8 @@ impl MovingPose {
     }
 }
 
-/// Distance of two places of the same motion that rounding explains, in metres and radians.
+/// Greatest distance, from rounding alone, between two places of the same motion, in metres and
+/// radians.
 const ROUNDING: f64 = 1e-9;
 
 impl PoseState {
@@ -87,13 +90,14 @@ impl PoseState {
 /// Moves the pose to its target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(crate) struct PoseGenerator {
-    /// Axes in a frame that moves at `twist` and was the base frame when the plan was made.
+    /// Generator of the axes, in a frame that moves at `twist`. The frame was the base frame when
+    /// the plan was made.
     axes: Generator<6>,
     anchor: UnitQuaternion<f64>,
     twist: Twist,
     /// Cycles since the plan was made.
     cycles: u32,
-    /// Target of the plan; `None` once the plan leads to rest.
+    /// Target of the plan; `None` if the plan only brakes to rest.
     target: Option<MovingPose>,
     budget: Budget,
     /// Limits of the robot.
@@ -101,14 +105,14 @@ pub(crate) struct PoseGenerator {
 }
 
 impl PoseGenerator {
-    /// Begins at `start` and moves to `target` within `budget`. A start that moves faster than the
-    /// budget allows is braked with more than the budget's acceleration, up to the robot's `most`.
-    /// For a target that moves at the budget's speed or faster, the pose follows at the budget's
-    /// speed minus a reserve.
+    /// Creates a generator that begins at `start` and moves to `target` within `budget`. If the
+    /// start is faster than the budget allows, it is braked with more than the budget's
+    /// acceleration, up to the robot's limits, `most`. If the target moves at the budget's speed or
+    /// faster, the pose follows it at the budget's speed minus a reserve.
     ///
     /// # Errors
-    /// As for [`Generator`]. Goals are checked when they are accepted, so only a defect can cause
-    /// an error.
+    /// Returns the errors of [`Generator`]. Goals are checked when they are accepted, so only a
+    /// defect can cause an error.
     pub(crate) fn new(
         start: &PoseState,
         target: MovingPose,
@@ -127,25 +131,25 @@ impl PoseGenerator {
         })
     }
 
-    /// Moves to another target, at another pace. With the same target and pace the plan stays as it
-    /// is.
+    /// Moves to another target, within another budget. If target and budget are the same as before,
+    /// the plan stays as it is.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(crate) fn retarget(&mut self, target: MovingPose, budget: Budget) -> Result<(), PlanError> {
         let before = self.target.map(|before| before.after(self.time()));
         let same = before.is_some_and(|before| before.is(&target));
-        // A frame that is slower than the target falls behind it.
+        // If the frame is slower than the target, it falls behind the target.
         if budget != self.budget || !same || self.twist != target.twist {
             self.begin_again(&self.state(), target, budget)?;
         }
         Ok(())
     }
 
-    /// Moves the pose to `pose`, keeps its velocity, and plans anew from there.
+    /// Sets the present pose to `pose`, keeps its velocity, and plans anew from there.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(crate) fn reanchor(&mut self, pose: Isometry3<f64>) -> Result<(), PlanError> {
         let start = PoseState {
             pose,
@@ -157,10 +161,11 @@ impl PoseGenerator {
         self.begin_again(&start, target.after(self.time()), self.budget)
     }
 
-    /// Continues at `share` of its velocity, on its line if it moves on one.
+    /// Continues at `share` of the present velocity. If the pose moves on a line, it stays on that
+    /// line.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(crate) fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             return self.axes.slow_down(share);
@@ -176,10 +181,10 @@ impl PoseGenerator {
         }
     }
 
-    /// Stops within the budget, on its line if it moves on one.
+    /// Stops within the budget. If the pose moves on a line, it stops on that line.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress continues.
+    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
     pub(crate) fn halt(&mut self) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             self.axes.brake();
@@ -190,7 +195,7 @@ impl PoseGenerator {
     }
 
     fn stop_from(&mut self, start: &PoseState) -> Result<(), PlanError> {
-        // Towards a place straight ahead: the stop then stays on the line to it.
+        // Plan toward a place straight ahead, so that the stop stays on the line to that place.
         let ahead = moved(&start.pose, &start.twist, 1.0);
         self.begin_again(start, ahead.into(), self.budget)?;
         self.axes.brake();
@@ -237,7 +242,7 @@ impl PoseGenerator {
         within(self.turn() * omega) + self.twist
     }
 
-    /// Returns the turn of the frame since the plan was made.
+    /// Returns the rotation of the frame since the plan was made.
     fn turn(&self) -> UnitQuaternion<f64> {
         rotation::exp(&(parts(&self.twist).1 * self.time()))
     }
@@ -265,7 +270,8 @@ impl PoseGenerator {
         &self.budget
     }
 
-    /// Returns the time until the target is met, or until rest without a target, `[s]`.
+    /// Returns the time until the pose meets the target, `[s]`. Without a target, returns the time
+    /// until the pose rests.
     pub(crate) fn remaining(&self) -> f64 {
         self.axes.time_to_target()
     }
@@ -301,7 +307,7 @@ impl PoseGenerator {
     }
 }
 
-/// Start of the generator of the six axes, in the frame that moves with the target.
+/// Start values for the generator of the six axes, in the frame that moves with the target.
 struct Plan {
     state: State<6>,
     limits: Limits<6>,
@@ -311,7 +317,7 @@ struct Plan {
 }
 
 impl Plan {
-    /// Creates the start with the chart anchored at the orientation of `start`.
+    /// Creates the start values with the chart anchored at the orientation of `start`.
     fn new(
         start: &PoseState,
         target: &MovingPose,
@@ -334,7 +340,7 @@ impl Plan {
         let turn = rotation::error(&target.pose.rotation, &start.pose.rotation);
         let (v, omega) = parts(&start.twist);
         let (a, alpha) = parts(&start.acceleration);
-        // The chart is at its origin, where it has no influence on the acceleration.
+        // The chart is at its origin, so it has no influence on the acceleration.
         let translation = Leg {
             way,
             velocity: v - linear,
@@ -362,7 +368,7 @@ impl Plan {
     }
 }
 
-/// Returns the linear and the angular part.
+/// Returns the linear and the angular part of a twist.
 fn parts(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     let axes = &(*twist).into();
     (translational(axes), rotational(axes))

@@ -9,30 +9,32 @@ use nalgebra::Isometry3;
 use crate::session::condition::{Condition, ConditionError};
 use crate::session::{Budget, GoalError, Target, check};
 
-/// A condition, and the target of the motion once it is true: rest by default, or the target of
-/// [`Condition::then`].
+/// A condition, and the target that the motion turns to when the condition becomes true. The target
+/// is rest by default; [`Condition::then`] sets another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// Condition, checked in every cycle until the goal has ended.
+    /// Condition. It is checked in every cycle until the goal has ended.
     pub condition: Condition,
-    /// Target once the condition is true: [`Target::Rest`], joint positions or a pose.
+    /// Target after the condition has become true: [`Target::Rest`], joint positions or a pose.
     pub then: Target,
 }
 
-/// Observations of a motion at the time when its condition became true.
+/// What was measured when the condition of a motion became true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Reacted {
-    /// Time from the first state of the goal to the state in which the condition was true, by the
-    /// robot's clock.
+    /// Time from the first state of the goal to the state in which the condition became true, by
+    /// the robot's clock.
     pub after: Duration,
-    /// `message_id` of that state, `[ms]` of the robot's clock.
+    /// `message_id` of the state in which the condition became true, `[ms]` of the robot's clock.
     pub time: u64,
-    /// External wrench in that state, in base axes with its torque about the origin of the
-    /// stiffness frame, `[N, N m]`. Positive values mean that the arm exerts the wrench.
+    /// External wrench in that state, in base axes, with its torque about the origin of the
+    /// stiffness frame, `[N, N m]`. A positive value means that the arm exerts the wrench on its
+    /// surroundings.
     pub wrench: [f64; 6],
-    /// Pose of the end effector in that state, base frame, from the measured joints.
+    /// Pose of the end effector in that state, in the base frame, computed from the measured
+    /// joints.
     pub pose: Isometry3<f64>,
 }
 
@@ -47,12 +49,12 @@ impl From<Condition> for Reaction {
 }
 
 impl Condition {
-    /// Continues the motion to `target`, a pose or joint positions, once the condition is true. The
-    /// arm brakes as quickly as for a plain condition and then turns to the target, without waiting
-    /// for the program.
+    /// Makes the motion continue to `target`, a pose or joint positions, when the condition becomes
+    /// true. The arm brakes as quickly as for a plain condition and then moves to the target. It
+    /// does not wait for the program.
     ///
-    /// The speed is the motion's. Acceleration and jerk are at least the default budget's, so that
-    /// the arm retreats quickly even after a slow approach.
+    /// The speed stays the speed of the motion. Acceleration and jerk are at least those of the
+    /// default budget, so that the arm retreats quickly even after a slow approach.
     pub fn then(self, target: impl Into<Target>) -> Reaction {
         Reaction {
             condition: self,

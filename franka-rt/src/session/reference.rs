@@ -1,16 +1,16 @@
-//! Joint reference of a session. Courses move it, and the law follows it.
+//! Joint reference of a session. A course moves the reference, and the control law follows it.
 
 use franka_model::JointVector;
 
-/// Wanted positions and motion of the joints in a cycle.
+/// Desired positions, velocities and accelerations of the joints in one cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Reference {
     /// Positions, `[rad]`.
     pub(crate) q: JointVector,
     /// Velocities, `[rad/s]`.
     pub(crate) dq: JointVector,
-    /// Accelerations, `[rad/s^2]`. Their inertia is fed forward in addition to the law, and the
-    /// next generator starts from them.
+    /// Accelerations, `[rad/s^2]`. The law adds the torques that they need, and the next generator
+    /// starts from them.
     pub(crate) ddq: JointVector,
 }
 

@@ -1,4 +1,4 @@
-//! Ends of goals, as a session reports them to the lifecycle.
+//! Ends of goals, in the form in which a session reports them to the lifecycle.
 
 use core::time::Duration;
 
@@ -14,51 +14,52 @@ use crate::together::StartFault;
 )]
 #[non_exhaustive]
 pub enum SessionEvent {
-    /// A goal has ended, and its report is due. With
-    /// [`OnArrival::ReportAndFinish`](super::OnArrival) the session then releases the arm, unless a
-    /// newer goal arrives.
+    /// A goal has ended and must be reported. With [`OnArrival::ReportAndFinish`](super::OnArrival)
+    /// the session then releases the arm, unless a newer goal arrives.
     Settled {
         /// The goal.
         goal: GoalId,
-        /// Kind of end.
+        /// How the goal ended.
         settlement: Settlement,
-        /// Time from the first cycle that saw the goal to its end, `[ms]` of the robot's clock.
+        /// Time from the first cycle that saw the goal to the goal's end, `[ms]` of the robot's
+        /// clock.
         duration_ms: u64,
         /// Torques that compensate friction and bias at the end, `[N m]`; `None` if the robot's
         /// controller turns setpoints into torques.
         compensation: Option<[f64; 7]>,
-        /// Greatest distance of the arm from the straight line of the goal, `[m]`, if it had one.
+        /// Greatest distance of the arm from the goal's straight line, `[m]`, if the goal has a
+        /// line.
         line_deviation: Option<f64>,
         /// The reaction that caused this end, if any.
         reacted: Option<Reacted>,
     },
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that
-    /// is not finite. The session ends without sending a torque.
+    /// The robot's state contains an end effector that is not a rigid transformation, or a load
+    /// that is not finite. The session ends without sending a torque.
     BadTool,
     /// The arm was released and does not stop, so the motion cannot finish. The lifecycle must
-    /// command the robot to stop. Until the robot stops, the session answers states and accepts no
-    /// more goals.
+    /// command the robot to stop. Until the robot stops, the session still answers states but
+    /// accepts no more goals.
     Restless,
 }
 
-/// Kind of end of a goal.
+/// How a goal ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settlement {
     /// The arm is within the tolerance of the target, at rest, and held there.
     Arrived(PoseError),
-    /// The arm rests where it braked. Alternatively only the reference rests, and something outside
-    /// moves the arm.
+    /// The arm rests where it braked, or only the reference rests and something outside moves the
+    /// arm.
     AtRest,
-    /// The reference reached the target, the arm did not: something holds the arm, or its load
+    /// The reference reached the target but the arm did not. Something holds the arm, or its load
     /// differs from the declared load.
     TargetNotReached(Shortfall),
-    /// The goal was given up. The arm is held at the last target, or where it stopped when its
-    /// deadman failed.
+    /// The goal was given up. The arm is held at the last target, or, if the deadman failed, where
+    /// it stopped.
     Held(Lapse),
-    /// The goal was given up and the arm braked. The arm is held where it stopped.
+    /// The goal was given up and the arm braked. The arm is held at the place where it stopped.
     Braked(Lapse),
-    /// The arm rests where it was held, because the common start failed.
+    /// The common start failed, so the arm rests where it was held.
     Unstarted(StartFault),
 }
 
@@ -72,35 +73,35 @@ pub enum Lapse {
         /// Time without a target, by the robot's clock.
         silence: Duration,
     },
-    /// The [`Deadman`](super::Deadman) that the session is bound to fell silent, or was dropped.
+    /// The [`Deadman`](super::Deadman) of the session fell silent or was dropped.
     Deadman,
     /// Something pushed the arm further from its path than [`Deviation`](super::Deviation) allows.
-    /// From further away, the arm must not return automatically.
+    /// From such a distance, the arm must not return automatically.
     Displaced,
-    /// The path comes too near to the arm itself or a keep-out region: see
+    /// The path comes too near to the arm itself or to a keep-out region: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
     Blocked {
-        /// The region, from 1, in the order in which the session got them; `None` for the arm
-        /// itself.
+        /// Number of the region, from 1, in the order in which the session received the regions.
+        /// `None` for the arm itself.
         region: Option<usize>,
     },
-    /// The joints cannot continue to the target from where the arm stopped: a joint is at the end
-    /// of its range, or the arm is stretched.
+    /// The joints cannot continue to the target from the place where the arm stopped: a joint is at
+    /// the end of its range, or the arm is stretched.
     OutOfReach {
         /// The joint at the end of its range, from 1, if any.
         joint: Option<usize>,
     },
     /// The arm's team has stopped.
     Team(TeamStop),
-    /// The arm was faster than the speed cap of its session.
+    /// The arm moved faster than the speed cap of its session.
     TooFast,
     /// The arm stood still under commands that should have moved it, and the robot reported no
-    /// error. Its brakes are closed, or its controller has stopped.
+    /// error. Either its brakes are closed or its controller has stopped.
     Unresponsive,
 }
 
 impl Lapse {
-    /// True if no update can resume the goal.
+    /// True if no later update can resume the goal.
     pub(super) fn is_final(self) -> bool {
         match self {
             Self::Silent { .. } => false,

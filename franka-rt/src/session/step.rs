@@ -1,4 +1,4 @@
-//! Answer of a session to a state, and the values that the record keeps of it.
+//! The answer of a session to a state, and the values of it that the record keeps.
 
 use core::time::Duration;
 
@@ -13,11 +13,11 @@ use crate::control::{MotionCommand, Torques};
 pub(crate) struct SessionStep {
     pub(crate) answer: SessionCommand,
     pub(crate) trace: Trace,
-    /// True for the last command: the motion ends once the robot has accepted it.
+    /// True for the last command. The motion ends once the robot has accepted that command.
     pub(crate) finished: bool,
 }
 
-/// Values of the session for the record of a cycle; all zero if the session follows no goal.
+/// Values of a session for the record of a cycle. All are zero if the session follows no goal.
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,

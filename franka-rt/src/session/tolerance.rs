@@ -1,16 +1,16 @@
-//! Tolerance: the distance from the target at which an arm counts as arrived.
+//! Tolerance: the distance from the target within which an arm counts as arrived.
 
 use crate::law::compensation::STATIC_FRICTION;
 use crate::law::{Gains, Law};
 use crate::session::Controller;
 
-/// Greatest distance from the target at which an arm counts as arrived, measured at the end
-/// effector.
+/// Greatest distance from the target, measured at the end effector, at which an arm counts as
+/// arrived.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Distance, `[m]`.
+    /// Greatest distance, `[m]`.
     pub translation: f64,
-    /// Angle, `[rad]`.
+    /// Greatest angle, `[rad]`.
     pub rotation: f64,
 }
 
@@ -32,9 +32,10 @@ impl Tolerance {
         rotation: 0.15,
     };
 
-    /// Returns the error that remains under `gains` on an arm with the friction of a realistic
-    /// simulated arm (`franka_sim::arm::Family::realistic`). This is the default, plus the stretch
-    /// of the springs under the part of the friction that the gains do not compensate.
+    /// Returns the error that remains under `gains` on an arm with friction. The reference is a
+    /// realistic simulated arm (`franka_sim::arm::Family::realistic`). The error is the default
+    /// tolerance plus the stretch of the springs under the friction that the gains do not
+    /// compensate.
     pub fn of(gains: &Gains) -> Self {
         let left: [f64; 7] =
             core::array::from_fn(|i| (STATIC_FRICTION[i] - gains.compensation[i]).max(0.0));
@@ -53,7 +54,7 @@ impl Tolerance {
         let of_all = turned.iter().sum::<f64>().sqrt();
         let softest = |axes: &[f64]| axes.iter().copied().fold(f64::INFINITY, f64::min);
         let (linear, angular) = gains.cartesian_stiffness.split_at(3);
-        // Springs of joints and of the end effector act in parallel.
+        // The springs of the joints and of the end effector act in parallel.
         let beside = |one: f64, other: f64| 1.0 / (1.0 / one + 1.0 / other);
         let Self {
             translation,
@@ -67,9 +68,9 @@ impl Tolerance {
         }
     }
 
-    /// Returns the error that remains on an arm with friction under the robot's own controllers
-    /// with their default impedance, for all kinds of setpoints: 2 mm and 5 mrad under joint
-    /// impedance. Under Cartesian impedance it is 5 mm and 15 mrad.
+    /// Returns the error that remains on an arm with friction under one of the robot's own
+    /// controllers with its default impedance, for all kinds of setpoints. Under joint impedance
+    /// the error is 2 mm and 5 mrad. Under Cartesian impedance it is 5 mm and 15 mrad.
     pub fn under(controller: Controller) -> Self {
         match controller {
             Controller::JointImpedance => Self {
@@ -85,8 +86,8 @@ impl Tolerance {
 }
 
 /// Force and torque at the end effector that correspond to [`STATIC_FRICTION`], `[N]` and `[N m]`.
-/// Each is the 99th percentile of the error under springs alone, times their stiffness, plus a
-/// third.
+/// Each is a third more than the 99th percentile of the error under springs alone, multiplied by
+/// their stiffness.
 const FORCE: f64 = 8.0;
 const TORQUE: f64 = 2.0;
 
@@ -105,7 +106,8 @@ mod tests {
         (translation * 1e3, rotation * 1e3)
     }
 
-    /// Compares with the 99th percentiles of `arms --law springs` and its siblings.
+    /// Compares the tolerances with the 99th percentiles that `arms --law springs` and the other
+    /// laws print.
     #[test]
     fn error_left_by_springs_alone_is_within_tolerance() {
         for (gains, [mm, mrad]) in [
@@ -143,7 +145,7 @@ mod tests {
         soft.project_joint_gains = false;
         soft.joint_stiffness = [0.0; 7];
         assert_eq!(of(soft), most);
-        // All joints but one are compensated, and no joint has a spring.
+        // All joints except one are compensated, and no joint has a spring.
         let mut one = Gains::cartesian();
         (one.joint_stiffness, one.compensation[6]) = ([0.0; 7], 0.0);
         assert!(of(one).0 <= most.0 && of(one).1 <= most.1, "{:?}", of(one));

@@ -1,11 +1,11 @@
-//! Frames and loads of a robot state in the model's types.
+//! Frames and loads of a robot state, as types of the model.
 
 use franka_model::{EndEffector, Load, transform};
 use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-/// Returns the end effector and stiffness frame of a state, orthonormalised, because protocol 10
-/// rounds them to `f32`. `None` if one of them is not a rigid transformation.
+/// Returns the end effector and the stiffness frame of a state. Both are orthonormalised, because
+/// protocol 10 rounds them to `f32`. Returns `None` if one of them is not a rigid transformation.
 pub(crate) fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     let rigid = |column_major| {
         transform::isometry_from_array(column_major).map(|pose| transform::matrix(&pose))
@@ -16,8 +16,8 @@ pub(crate) fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     })
 }
 
-/// Returns the load of end effector and payload together in a state of `version`. `None` if one of
-/// its numbers is not finite.
+/// Returns the combined load of end effector and payload in a state of protocol `version`. Returns
+/// `None` if one of its numbers is not finite.
 pub(crate) fn load_of(state: &RobotState, version: Version) -> Option<Load> {
     let total = state.total_load(version);
     let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];

@@ -1,5 +1,5 @@
-//! Conditions over the state of the robot and the time, which the control thread checks in every
-//! cycle. A motion continues until its condition is true.
+//! Conditions over the robot's state and the time. The control thread checks them in every cycle. A
+//! motion continues until its condition becomes true.
 //!
 //! ```
 //! use std::time::Duration;
@@ -18,13 +18,14 @@
 //!
 //! # Thresholds of forces
 //!
-//! The robot's estimate of the external force also shows the friction of its joints. Simulated arms
-//! with the friction of real ones, moving at up to 0.1 m/s without contact, show up to 7.1 N along
-//! z and 8.8 N in all. Bad arms show twice as much.
+//! The robot's estimate of the external force also shows the friction of its joints. For simulated
+//! arms with realistic friction that move at up to 0.1 m/s without contact, the estimate reaches
+//! 7.1 N along z and 8.8 N as a norm. For bad arms it reaches twice these values.
 //!
-//! A threshold reacts to nothing on some arm if it is below 8 N along z, or below 10 N along
-//! another axis or for the norm. At the default pace thresholds must be a quarter higher. Tool and
-//! payload must be declared, or their weight counts, too: see [`Condition::relative`].
+//! Use at least 8 N along z, and at least 10 N along another axis or for the norm. With a lower
+//! threshold, some arms react without a contact. At the default speed, thresholds must be a quarter
+//! higher. Declare the tool and the payload, or their weight counts as a force: see
+//! [`Condition::relative`].
 
 mod quantity;
 #[cfg(test)]
@@ -40,36 +41,36 @@ use crate::tare::WrenchTare;
 
 pub(super) use watch::{Observed, Watch};
 
-/// A predicate over a state: comparisons of [quantities](Quantity), flags of the robot and the time
-/// since the goal began, joined by `&`, `|` and `!`.
+/// A predicate over a state. It joins comparisons of [quantities](Quantity), flags of the robot and
+/// the time since the goal began with `&`, `|` and `!`.
 ///
 /// A condition is a small value without heap memory, with room for [`Self::ROOM`] comparisons and
-/// operators. A condition that does not fit or is invalid is refused when the motion begins: see
+/// operators. If a condition is invalid or does not fit, it is refused when the motion begins: see
 /// [`Self::check`].
 ///
-/// A robot may not have an estimate, which is then not finite. Such a quantity fulfils neither a
-/// comparison nor its negation.
+/// If the robot has no estimate of a quantity, that quantity is not finite. Then neither a
+/// comparison with it nor the negation of the comparison is true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Nodes in postfix order; [`Node::UNUSED`] beyond the length.
+    /// Nodes in postfix order; nodes beyond the length are [`Node::UNUSED`].
     nodes: [Node; Self::ROOM],
-    /// Number of nodes; the condition is refused if there is no room for them.
+    /// Number of nodes. If there is no room for all of them, the condition is refused.
     length: usize,
     /// Offset that tared comparisons subtract.
     tare: Offset,
 }
 
-/// Wrench at the stiffness frame, in axes of the base, and joint torques.
+/// Wrench at the stiffness frame, in axes of the base frame, and the joint torques.
 type Offset = [f64; 13];
 
-/// Reference of a comparison.
+/// Value from which a comparison measures the quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Since {
     /// The value of the quantity itself.
     Never,
     /// The change of the quantity since the first state of the goal.
     Beginning,
-    /// The change of the quantity since a tare.
+    /// The change of the quantity relative to a tare.
     Tare,
 }
 
@@ -93,23 +94,23 @@ enum Node {
     Or,
 }
 
-/// Side of the threshold on which the quantity must be.
+/// Side of the threshold on which the quantity must be for the comparison to be true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bound {
     Above,
     Below,
-    /// The magnitude is above the threshold.
+    /// The magnitude of the quantity is above the threshold.
     Beyond,
 }
 
-/// The robot's own reports of contacts.
+/// Contacts that the robot itself reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Flag {
-    /// Contact of any joint, or along or about any axis.
+    /// Contact of any joint, or of the end effector along or about any axis.
     Contact,
     JointContact(u8),
     CartesianContact,
-    /// Collision of any joint, or along or about any axis.
+    /// Collision of any joint, or of the end effector along or about any axis.
     Collision,
 }
 
@@ -149,7 +150,7 @@ pub enum ConditionError {
          for all its comparisons"
     )]
     Tare,
-    /// The target after the reaction cannot be hand guiding.
+    /// The target after the reaction is hand guiding, which is not supported there.
     #[error(
         "got hand guiding as the target of a reaction, expected joint positions, a pose or rest"
     )]
@@ -157,18 +158,18 @@ pub enum ConditionError {
 }
 
 /// True while the external force along x is at or beyond `newtons`, in either direction. For the
-/// other axes see [`force_y`] and [`force_z`]. [`Quantity`] has signed comparisons, and more
-/// quantities.
+/// other axes see [`force_y`] and [`force_z`]. [`Quantity`] provides signed comparisons, and
+/// comparisons of other quantities.
 pub fn force_x(newtons: f64) -> Condition {
     Quantity::Force(Axis::X).beyond(newtons)
 }
 
-/// See [`force_x`].
+/// True while the external force along y is at or beyond `newtons`: see [`force_x`].
 pub fn force_y(newtons: f64) -> Condition {
     Quantity::Force(Axis::Y).beyond(newtons)
 }
 
-/// See [`force_x`].
+/// True while the external force along z is at or beyond `newtons`: see [`force_x`].
 pub fn force_z(newtons: f64) -> Condition {
     Quantity::Force(Axis::Z).beyond(newtons)
 }
@@ -188,8 +189,8 @@ pub fn joint_torques(newton_metres: f64) -> Condition {
     Quantity::LargestJointTorque.beyond(newton_metres)
 }
 
-/// True while the robot reports any contact, of a joint or at the end effector: an estimate exceeds
-/// a lower threshold of the robot's collision behaviour.
+/// True while the robot reports any contact, of a joint or at the end effector. The robot reports a
+/// contact when an estimate exceeds a lower threshold of its collision behaviour.
 pub fn contact() -> Condition {
     Node::Flag(Flag::Contact).into()
 }
@@ -204,30 +205,31 @@ pub fn cartesian_contact() -> Condition {
     Node::Flag(Flag::CartesianContact).into()
 }
 
-/// True while the robot reports any collision. In motion the robot stops itself for a collision,
-/// which ends the motion with an error. A reaction to a [`contact`] comes earlier.
+/// True while the robot reports any collision. In motion, the robot stops itself after a collision,
+/// and the motion ends with an error. A reaction to a [`contact`] comes earlier than a collision.
 pub fn collision() -> Condition {
     Node::Flag(Flag::Collision).into()
 }
 
-/// True from `time` after the first state of the goal, by the robot's clock, whole milliseconds.
+/// True once `time` (in whole milliseconds) has passed since the first state of the goal, by the
+/// robot's clock.
 pub fn elapsed(time: Duration) -> Condition {
     Node::Elapsed(milliseconds(time)).into()
 }
 
 impl Condition {
-    /// Maximum number of comparisons and operators in a condition, `&`, `|`, `!` and
-    /// [`held_for`](Self::held_for) included: twelve comparisons, joined.
+    /// Maximum number of comparisons and operators in a condition, enough to join twelve
+    /// comparisons. The operators `&`, `|`, `!` and [`held_for`](Self::held_for) count.
     pub const ROOM: usize = 24;
 
-    /// Compares changes since the first state of the goal instead of values, in every comparison of
-    /// this condition. For norms, it compares the norm of the change.
+    /// Makes every comparison in this condition use the change since the first state of the goal
+    /// instead of the value. For a norm, this is the norm of the change.
     ///
-    /// Use this for undeclared loads, whose weight is part of the robot's estimate, for
-    /// displacements, and for offsets of torque sensors. Friction changes as the arm begins to
-    /// move, so a force needs the same threshold as without this option: see the [module](self). If
-    /// a goal of a session takes over in mid-motion, the change counts from the friction in motion.
-    /// It needs about two thirds of that threshold.
+    /// Use this for displacements, for offsets of torque sensors, and for undeclared loads, whose
+    /// weight is part of the robot's estimate. Friction changes when the arm begins to move, so a
+    /// force needs the same threshold as without this option: see the [module](self). If a goal of
+    /// a session begins while the arm moves, the change does not contain this step in friction.
+    /// Then about two thirds of that threshold are enough.
     #[must_use]
     pub fn relative(mut self) -> Self {
         for node in &mut self.nodes {
@@ -238,13 +240,13 @@ impl Condition {
         self
     }
 
-    /// Subtracts a tare from the forces, moments and joint torques of this condition. Other
-    /// comparisons stay as they are. [`relative`](Self::relative) comparisons ignore the tare,
-    /// regardless of the order of the calls. The moment is then about the origin of the stiffness
+    /// Subtracts a tare from the forces, moments and joint torques in this condition. Other
+    /// comparisons do not change. [`relative`](Self::relative) comparisons ignore the tare,
+    /// regardless of the order of the calls. A tared moment is about the origin of the stiffness
     /// frame.
     ///
-    /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Near a
-    /// singularity the robot has no estimate. There, neither a tared comparison of the wrench nor
+    /// A tare is valid only in the posture in which it was taken: see [`tare`](crate::tare). Near a
+    /// singularity, the robot has no estimate. There, neither a tared comparison of the wrench nor
     /// its negation is true.
     #[must_use]
     pub fn tared(mut self, tare: &WrenchTare) -> Self {
@@ -265,17 +267,17 @@ impl Condition {
         self
     }
 
-    /// True once this condition has been true for `time` without a break, by the robot's clock,
-    /// whole milliseconds. Lost states are assumed to be like the states around them.
+    /// True once this condition has been true for `time` (in whole milliseconds) without a break,
+    /// by the robot's clock. A lost state counts like the states before and after it.
     #[must_use]
     pub fn held_for(self, time: Duration) -> Self {
         self.then_node(Node::HeldFor(milliseconds(time)))
     }
 
-    /// Checks that there is room for the condition and that its thresholds are valid.
+    /// Checks that the condition fits and that its thresholds are valid.
     ///
     /// # Errors
-    /// [`ConditionError`] names the first problem.
+    /// Returns a [`ConditionError`] that names the first problem.
     pub fn check(&self) -> Result<(), ConditionError> {
         if self.length > Self::ROOM {
             return Err(ConditionError::TooLong { got: self.length });
@@ -317,7 +319,7 @@ impl Condition {
             .nodes()
             .iter()
             .fold(self, |all, node| all.then_node(*node));
-        // Two tares in one condition are refused.
+        // A condition with two different tares is refused.
         let (ours, theirs) = (self.is_tared(), other.is_tared());
         let tare = match (ours, theirs) {
             (true, true) if self.tare != other.tare => [f64::NAN; 13],
@@ -404,7 +406,7 @@ impl Node {
     }
 }
 
-/// Whole milliseconds.
+/// Returns the whole milliseconds of `time`.
 fn milliseconds(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

@@ -8,18 +8,18 @@ use crate::session::running::Measured;
 /// An axis of the base frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Axis {
-    /// Forwards.
+    /// Forward.
     X,
     /// To the left.
     Y,
-    /// Upwards.
+    /// Upward.
     Z,
 }
 
-/// A number that changes while the arm moves, for comparisons in conditions.
+/// A measured or estimated number that a condition can compare.
 ///
-/// Forces and torques are the robot's estimates, and positive where the arm exerts them on its
-/// surroundings. An arm that presses on a table shows a negative force along z. All axes belong to
+/// Forces and torques are the robot's estimates. They are positive if the arm exerts them on its
+/// surroundings. If the arm presses on a table, the force along z is negative. All axes are axes of
 /// the base frame.
 ///
 /// ```
@@ -37,7 +37,8 @@ pub enum Quantity {
     /// Norm of the force, `[N]`.
     ForceNorm,
     /// Torque about an axis through the origin of the stiffness frame, `[N m]`: the torque of
-    /// `K_F_ext_hat_K`. In contrast, the torque of `O_F_ext_hat_K` is about the origin of the base.
+    /// `K_F_ext_hat_K`. The torque of `O_F_ext_hat_K` is different: it is about the origin of the
+    /// base frame.
     Torque(Axis),
     /// Norm of the torque, `[N m]`.
     TorqueNorm,
@@ -53,7 +54,7 @@ pub enum Quantity {
     Speed,
     /// Angular velocity of the end effector about an axis, `[rad/s]`.
     AngularVelocity(Axis),
-    /// Norm of the angular velocity, `[rad/s]`.
+    /// Norm of the end effector's angular velocity, `[rad/s]`.
     AngularSpeed,
     /// Measured position of a joint, 1 to 7, `[rad]`.
     JointPosition(u8),
@@ -77,7 +78,7 @@ impl Quantity {
         Node::compare(self, Bound::Beyond, value).into()
     }
 
-    /// True if the quantity is one of the robot's estimates, which accept a tare.
+    /// True if the quantity is one of the robot's estimates. Only estimates accept a tare.
     pub(super) fn is_estimate(self) -> bool {
         matches!(
             self,
@@ -90,7 +91,7 @@ impl Quantity {
         )
     }
 
-    /// Returns the joint of the quantity, if it has one.
+    /// Returns the joint of the quantity, or `None` if the quantity belongs to no joint.
     pub(super) fn joint(self) -> Option<u8> {
         match self {
             Self::JointTorque(joint) | Self::JointPosition(joint) | Self::JointVelocity(joint) => {
@@ -100,8 +101,8 @@ impl Quantity {
         }
     }
 
-    /// Returns the value in a sample; not finite if the sample's is not, or if there is no such
-    /// joint.
+    /// Returns the value of the quantity in a sample. The value is not finite if the sample's
+    /// number is not finite, or if the arm has no such joint.
     pub(super) fn of(self, sample: &Sample) -> f64 {
         let along = |first: usize, axis: Axis| sample.0[first + axis as usize];
         let joint = |first: usize, joint: u8| match joint {
@@ -136,7 +137,7 @@ impl Quantity {
     }
 }
 
-/// Source of all quantities of one state.
+/// Numbers of one state from which every quantity is computed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample([f64; LENGTH]);
 
@@ -167,7 +168,8 @@ impl Sample {
         Self(sample)
     }
 
-    /// Returns the change since a tare; the wrench is not finite where the robot has no estimate.
+    /// Returns the change relative to a tare. The wrench is not finite if the robot has no
+    /// estimate.
     pub(super) fn tared(&self, tare: &Offset) -> Self {
         let mut sample = *self;
         for (number, offset) in sample.0.iter_mut().zip(tare) {

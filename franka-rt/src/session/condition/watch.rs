@@ -9,7 +9,8 @@ use crate::session::running::Measured;
 /// Parts of a state that conditions need, in addition to the joints and the pose that the session
 /// measures.
 ///
-/// This copy is made before the answer to the state leaves; it is evaluated afterwards.
+/// The session copies them before the answer to the state leaves, and evaluates the condition
+/// afterwards.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::session) struct Observed {
     /// Wrench in base axes, with its torque about the origin of the stiffness frame.
@@ -37,21 +38,21 @@ impl Observed {
     }
 }
 
-/// A condition with its memory from state to state.
+/// A condition, and its memory from state to state.
 #[derive(Debug)]
 pub(in crate::session) struct Watch {
     condition: Condition,
     is_tared: bool,
-    /// Beginning of the goal, `message_id` of the state.
+    /// `message_id` of the state with which the goal began.
     since: u64,
     /// The first state of the goal.
     first: Option<Sample>,
-    /// Time since when the operand of a node has been true, `message_id` of the state.
+    /// For each node, the `message_id` of the state since which its operand has been true.
     held: [Option<u64>; Condition::ROOM],
 }
 
 impl Watch {
-    /// Watches a condition for a goal that begins with the state `since`, `message_id`.
+    /// Watches a condition for a goal that begins with the state whose `message_id` is `since`.
     pub(in crate::session) fn new(condition: Condition, since: u64) -> Self {
         Self {
             condition,
@@ -63,7 +64,7 @@ impl Watch {
     }
 
     /// True if the condition is true in this state, with the arm as measured in it. The work is
-    /// bounded, and the same in every cycle.
+    /// bounded and the same in every cycle.
     pub(in crate::session) fn is_met(&mut self, state: &Observed, arm: &Measured) -> bool {
         let now = Sample::of(state, arm);
         let first = self.first.get_or_insert(now);
@@ -128,7 +129,7 @@ impl Bound {
 }
 
 impl Flag {
-    /// Returns whether the flag is set; `None` if a number that decides is NaN.
+    /// Returns whether the flag is set, or `None` if a NaN makes the flag unknown.
     fn is_set(self, state: &Observed) -> Option<bool> {
         let any = |flags: &[f64]| {
             let set = flags.iter().any(|&flag| flag > 0.0);
@@ -152,8 +153,8 @@ impl Flag {
     }
 }
 
-/// Operands during the evaluation of a condition, the newest in bit 0. An operand without either
-/// bit is unknown.
+/// Operands during the evaluation of a condition. The newest operand is in bit 0. An operand
+/// without either bit is unknown.
 #[derive(Debug, Default)]
 struct Stack {
     yes: u32,
@@ -176,7 +177,7 @@ impl Stack {
         operand
     }
 
-    /// Joins two operands. If one of them is `decisive`, the other need not be known.
+    /// Joins two operands. If one operand is `decisive`, the other operand may be unknown.
     fn join(&mut self, by: impl Fn(bool, bool) -> bool, decisive: bool) {
         let joined = match (self.pop(), self.pop()) {
             (Some(a), Some(b)) => Some(by(a, b)),
