@@ -1,11 +1,10 @@
-//! Gains as the cycle uses them: only numbers, so that values between two goals exist.
+//! Gains as the cycle uses them. They are all numbers, so that values between two goals exist.
 
 use crate::law::fade::{Blend, mix};
 use crate::law::{Gains, Law};
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
 
-/// Gains and force cap as numbers. A choice is a weight between 0 and 1, so that all values can be
-/// between two goals.
+/// Gains and force cap as numbers. A choice becomes a weight between 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BlendedGains {
     pub(crate) cartesian_stiffness: [f64; 6],
@@ -15,12 +14,12 @@ pub(crate) struct BlendedGains {
     pub(crate) feedforward: f64,
     /// Share of the newest reference velocity in the filtered velocity; 1 if the filter is off.
     pub(crate) feedforward_share: f64,
-    /// Weight of the null-space projection of the joints' springs.
+    /// Weight of the null-space projection of the joints' gains.
     pub(crate) projection: f64,
-    /// Weight of the operational-space law against the hybrid law.
+    /// Weight of the operational-space law; the rest is the weight of the hybrid law.
     pub(crate) operational: f64,
-    /// Inverse of the force cap, `[1/N]`: 0 without a cap, so that a cap can fade continuously to
-    /// no cap.
+    /// Inverse of the force cap, `[1/N]`. Without a cap it is 0, so that a cap can fade out
+    /// continuously.
     pub(crate) inverse_force_cap: f64,
     pub(crate) compensation: [f64; 7],
     pub(crate) torque_limits: [f64; 7],

@@ -1,12 +1,12 @@
-//! The fade from the values of one goal to the values of the next.
+//! Fading from the values of one goal to the values of the next goal.
 
 /// Duration of the fade, in cycles.
 pub(crate) const CROSS_FADE: u32 = 300;
 
-/// Numbers that can lie between the values of two goals.
+/// Numbers that can be interpolated between the values of two goals.
 pub(crate) trait Blend: Copy + PartialEq {
-    /// Interpolates linearly at `share` of the difference to `other`: each number stays between its
-    /// start and its end.
+    /// Interpolates linearly toward `other`, by `share` of the difference. Each number stays
+    /// between its start and its end.
     fn blend(&self, other: &Self, share: f64) -> Self;
 }
 
@@ -15,7 +15,7 @@ pub(crate) fn mix(from: f64, to: f64, share: f64) -> f64 {
     from + share * (to - from)
 }
 
-/// Numbers that fade from one goal's values to the next goal's.
+/// Numbers that fade from one goal's values to the values of the next goal.
 #[derive(Debug)]
 pub(crate) struct Fade<T> {
     from: T,
@@ -24,7 +24,7 @@ pub(crate) struct Fade<T> {
 }
 
 impl<T: Blend> Fade<T> {
-    /// Returns a fade that has ended already, with this value.
+    /// Returns a fade that has already ended, at this value.
     pub(crate) fn at(value: T) -> Self {
         Self {
             from: value,

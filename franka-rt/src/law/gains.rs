@@ -1,57 +1,59 @@
-//! The control law, and its stiffness and damping.
+//! The control law, with its stiffness and damping.
 
 use crate::shaping::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
-/// Law that turns the springs and dampers of [`Gains`] into torques.
+/// Control law that turns the springs and dampers of [`Gains`] into torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
-    /// Springs along the base axes and at the joints, summed in joint space: see
+    /// Adds the torques of springs along the base axes and of springs at the joints: see
     /// [`law`](crate::law#the-hybrid-law).
     #[default]
     Hybrid,
-    /// Springs along the base axes, coupled by the inertia at the end effector; the joints' springs
-    /// act in its null space: see [`operational`](crate::law::operational).
+    /// Couples the springs along the base axes by the inertia at the end effector. The joints'
+    /// springs act only in the null space of the end effector: see
+    /// [`operational`](crate::law::operational).
     OperationalSpace,
 }
 
-/// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base
-/// frame, and one at each joint.
+/// Control law and diagonal gains. There is a spring and a damper for each base axis at the end
+/// effector, and for each joint.
 ///
-/// A goal replaces all of them. Between two goals every number cross-fades, including the choices,
-/// so that no change steps the torque.
+/// A goal replaces all gains. Between two goals all numbers and choices fade, so that no change
+/// causes a step in torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// The law that uses the gains.
+    /// Control law that uses the gains.
     pub law: Law,
-    /// End-effector stiffness, x y z `[N/m]` and about x y z `[N m/rad]`.
+    /// End-effector stiffness along x, y, z `[N/m]`, and about x, y, z `[N m/rad]`.
     pub cartesian_stiffness: [f64; 6],
-    /// End-effector damping, `[N s/m]` and `[N m s/rad]`.
+    /// End-effector damping along x, y, z `[N s/m]`, and about x, y, z `[N m s/rad]`.
     pub cartesian_damping: [f64; 6],
     /// Joint stiffness, `[N m/rad]`.
     pub joint_stiffness: [f64; 7],
     /// Joint damping, `[N m s/rad]`.
     pub joint_damping: [f64; 7],
-    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 the dampers oppose
-    /// only the velocity error, so they do not make the arm lag behind a moving reference. At 0
-    /// they oppose all motion.
+    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 the dampers act on
+    /// the velocity error, so they do not make the arm lag behind a moving reference. At 0 they
+    /// oppose all motion.
     pub feedforward: f64,
-    /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`. At 1000 the
+    /// Cutoff frequency of the first-order low-pass on the reference velocity, `[Hz]`. At 1000 the
     /// filter is off, as in libfranka.
     pub feedforward_cutoff: f64,
     /// True if the joints' springs and dampers act only in the null space of the end effector.
-    /// There they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
-    /// this.
+    /// There they move the elbow but do not push the hand. With [`Law::OperationalSpace`] they
+    /// always act there.
     pub project_joint_gains: bool,
-    /// Largest torque against friction and bias at each joint, `[N m]`; zero for none. With springs
-    /// alone, friction keeps the arm millimetres from its target.
+    /// Largest torque that may compensate friction and bias at each joint, `[N m]`. Zero disables
+    /// the compensation. With springs alone, friction keeps the arm millimetres from its target.
     pub compensation: [f64; 7],
-    /// Largest torque of springs, dampers and compensation together at each joint, including the
-    /// torques of the motion itself, `[N m]`. The commanded torque, which excludes gravity, stays
-    /// below this limit. Only the brake of a joint that is too fast may use more.
+    /// Largest torque at each joint, `[N m]`: of springs, dampers and compensation together,
+    /// including the torques of the motion itself. The commanded torque, which excludes gravity,
+    /// stays below this limit. Only the torque that brakes a joint above its speed limit may be
+    /// larger.
     pub torque_limits: [f64; 7],
-    /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`; at 1000 the filter is
-    /// off. A lower frequency is quieter, and reduces the stability
+    /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`. At 1000 the filter is
+    /// off. A lower frequency makes the arm quieter but reduces the stability
     /// [`Margin`](crate::session::Margin).
     pub torque_cutoff: f64,
 }
@@ -61,9 +63,9 @@ pub struct Gains {
 #[error("{what}{} is {got}, expected between {least} and {most}", of_axis(*.axis))]
 #[non_exhaustive]
 pub struct GainError {
-    /// Group of gains.
+    /// Name of the group of gains.
     pub what: &'static str,
-    /// Position of the number in the group, from 1; `None` for a single number.
+    /// Position of the number in its group, from 1; `None` for a single number.
     pub axis: Option<usize>,
     /// The given value.
     pub got: f64,
@@ -96,9 +98,9 @@ impl Gains {
     /// Highest values that [`check`](Self::check) accepts.
     ///
     /// Stiffness at the end effector has the bounds of the robot's own impedance commands, 3000 N/m
-    /// and 300 N m/rad. The bounds of joints and damping are ten times the stiff preset. These
-    /// values were never tried on every axis at once on hardware. The bound of the compensation is
-    /// twice the default and more. The bound of the torques is the default.
+    /// and 300 N m/rad. The bounds of joint stiffness and of damping are far above the presets. No
+    /// real robot has been tested with all axes at these values. The compensation may exceed its
+    /// default on every joint; the torque limits may not exceed theirs.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -114,19 +116,19 @@ impl Gains {
     };
 
     /// Default of [`compensation`](Self::compensation). It covers the friction of the worst
-    /// simulated arms (`franka_sim::arm::Family::bad`), and the torques of half an undeclared
-    /// kilogram and of their torque sensors.
+    /// simulated arms (`franka_sim::arm::Family::bad`), the bias of their torque sensors, and half
+    /// a kilogram of undeclared load.
     pub const COMPENSATION: [f64; 7] = [5.0, 6.0, 5.0, 7.0, 4.0, 4.0, 2.0];
 
-    /// Default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N m
-    /// that the joints can exert.
+    /// Default of [`torque_limits`](Self::torque_limits), `[N m]`: just below the joints' own
+    /// limits, 87 and 12 N m.
     pub const TORQUE_LIMITS: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
     /// Length of the array that [`to_array`](Self::to_array) returns.
     pub(crate) const NUMBERS: usize = 45;
 
-    /// Returns gains with a compliant end effector: 750 N/m and 60 N m/rad, with light joint
-    /// springs that hold the elbow. A softer wrist slips by several milliradians when its friction
+    /// Returns gains for a compliant end effector: 750 N/m and 60 N m/rad, with light joint springs
+    /// that hold the elbow. A softer wrist would slip by several milliradians when its friction
     /// breaks loose.
     pub const fn cartesian() -> Self {
         Self {
@@ -144,9 +146,9 @@ impl Gains {
         }
     }
 
-    /// Returns compliant gains like [`cartesian`](Self::cartesian), with the softer wrist and the
-    /// lighter damping of the DROID platform, without feedforward and compensation. For a policy
-    /// that was trained on DROID data.
+    /// Returns gains for policies that were trained on DROID data. They are compliant like
+    /// [`cartesian`](Self::cartesian), but have the softer wrist and the lighter damping of the
+    /// DROID platform, and neither feedforward nor compensation.
     pub const fn droid() -> Self {
         Self {
             cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
@@ -158,7 +160,7 @@ impl Gains {
     }
 
     /// Returns gains with stiff joints and no spring at the end effector. With more damping, arms
-    /// whose torques lag by 10 ms begin to oscillate.
+    /// whose torques lag by 10 ms would begin to oscillate.
     pub const fn joint() -> Self {
         Self {
             law: Law::Hybrid,
@@ -175,7 +177,7 @@ impl Gains {
         }
     }
 
-    /// Returns the same gains without compensation: springs alone act against friction and bias.
+    /// Returns the same gains without compensation: only the springs act against friction and bias.
     #[must_use]
     pub const fn without_compensation(self) -> Self {
         Self {
@@ -184,9 +186,9 @@ impl Gains {
         }
     }
 
-    /// Returns the same gains with another stiffness at the end effector, base axes. The damping
-    /// scales with the square root of the stiffness, which keeps the damping ratio. An axis without
-    /// stiffness gets the damping ratio of [`Gains::cartesian`].
+    /// Returns the same gains with another stiffness at the end effector, in base axes. The damping
+    /// scales with the square root of the stiffness, so the damping ratio does not change. An axis
+    /// that had no stiffness gets the damping ratio of [`Gains::cartesian`].
     #[must_use]
     pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
         let preset = Self::cartesian();
@@ -209,7 +211,7 @@ impl Gains {
     /// [`MOST`](Self::MOST).
     ///
     /// # Errors
-    /// [`GainError`] names the first number out of bounds.
+    /// Returns a [`GainError`] that names the first number out of bounds.
     pub fn check(&self) -> Result<(), GainError> {
         let (least, most) = (Self::LEAST.to_array(), Self::MOST.to_array());
         for (i, got) in self.to_array().into_iter().enumerate() {
@@ -239,8 +241,8 @@ impl Gains {
         Ok(())
     }
 
-    /// Returns all numbers: springs and dampers first, then choices, compensation, and the filters
-    /// and limits of the torques.
+    /// Returns all numbers: first springs and dampers, then the choices, the compensation, and the
+    /// filters and limits of the torques.
     pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
         let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);

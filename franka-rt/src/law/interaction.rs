@@ -1,4 +1,4 @@
-//! The torques of springs and dampers for the error between arm and reference, by either law.
+//! The torques of springs and dampers for the error between arm and reference, under either law.
 
 use franka_model::{Jacobian, JointVector};
 use nalgebra::Matrix6;
@@ -7,24 +7,24 @@ use crate::law::blended_gains::BlendedGains;
 use crate::law::operational;
 use crate::law::task_space::TaskSpace;
 
-/// The springs of a law, or its dampers, in one cycle, at the measured posture.
+/// The springs or the dampers of a law in one cycle, at the measured posture.
 #[derive(Debug)]
 pub(crate) struct Interaction<'a> {
-    /// Gain matrix at the end effector, base axes.
+    /// Gain matrix at the end effector, in base axes.
     cartesian: Matrix6<f64>,
     /// Gains at the joints.
     joint: JointVector,
-    /// Weight of the null-space projection of the gains at the joints.
+    /// Weight of the null-space projection of the joints' gains.
     projection: f64,
     jacobian: &'a Jacobian,
     space: Option<&'a TaskSpace>,
 }
 
 impl<'a> Interaction<'a> {
-    /// Returns the springs: errors are positions, `[rad]`.
+    /// Returns the springs, which act on position errors, `[rad]`.
     ///
-    /// `space` must be present if the gains [need](BlendedGains::needs_task_space) it; without it
-    /// the law is the hybrid one.
+    /// If the gains [need](BlendedGains::needs_task_space) `space`, it must be `Some`. With `None`,
+    /// the law is the hybrid law.
     pub(crate) fn springs(
         gains: &BlendedGains,
         jacobian: &'a Jacobian,
@@ -34,7 +34,8 @@ impl<'a> Interaction<'a> {
         Self::new(diagonals, gains, jacobian, space)
     }
 
-    /// Returns the dampers: errors are velocities, `[rad/s]`. `space` as for the springs.
+    /// Returns the dampers, which act on velocity errors, `[rad/s]`. The argument `space` is the
+    /// same as for the springs.
     pub(crate) fn dampers(
         gains: &BlendedGains,
         jacobian: &'a Jacobian,
@@ -66,7 +67,7 @@ impl<'a> Interaction<'a> {
         }
     }
 
-    /// Returns the torques for an error of the joints, `[N m]`.
+    /// Returns the torques for these errors of the joints, `[N m]`.
     pub(crate) fn torques(&self, error: &JointVector) -> JointVector {
         let at_joints = self.joint.component_mul(error);
         let mut at_end_effector = self.cartesian * (self.jacobian * error);
@@ -87,14 +88,14 @@ mod tests {
     use nalgebra::Matrix3;
     use proptest::prelude::*;
 
-    /// Distance of the arm from its reference, `[rad]`, and its velocity error in the dampers,
+    /// Error of the arm from its reference, `[rad]`, and the velocity error for the dampers,
     /// `[rad/s]`.
     struct Errors {
         q: JointVector,
         dq: JointVector,
     }
 
-    /// Inverse of the inertia of links and rotors.
+    /// Returns the inverse of the inertia of links and rotors.
     fn mobility(dynamics: &Dynamics) -> MassMatrix {
         let mass = dynamics.mass + MassMatrix::from_diagonal(&task_space::ROTORS.into());
         mass.try_inverse().expect("a physical arm")
@@ -108,14 +109,14 @@ mod tests {
         Model::fr3().dynamics(q, dq, &EndEffector::default(), &load, &GRAVITY_EARTH)
     }
 
-    /// Returns `S Lambda S` of one block, with its inertia inverted in full.
+    /// Returns `S Lambda S` of one block, and inverts the full inertia for it.
     fn coupled(block: Matrix3<f64>, gains: &[f64]) -> Matrix3<f64> {
         let inertia = block.try_inverse().expect("regular");
         let root = |i: usize| (gains[i] / inertia[(i, i)]).sqrt();
         Matrix3::from_fn(|i, j| root(i) * inertia[(i, j)] * root(j))
     }
 
-    /// Computes the law by its definition, with every matrix formed in full.
+    /// Computes the law from its definition, with every matrix written out in full.
     fn definition(gains: &Gains, errors: &Errors, dynamics: &Dynamics) -> JointVector {
         let jacobian = &dynamics.jacobian;
         let inverse = mobility(dynamics);
@@ -198,7 +199,7 @@ mod tests {
                 for gains in laws(gains) {
                     let expected = definition(&gains, &errors, &dynamics);
                     let got = of(&BlendedGains::new(&gains, None), &errors, &dynamics);
-                    // The inverse of the inertia has a condition of 10^5.
+                    // The inverse of the inertia has a condition number of 10^5.
                     let error = (got - expected).amax();
                     prop_assert!(error < 1e-8 * (1.0 + expected.amax()), "{gains:?}: {error}");
                 }
@@ -220,11 +221,12 @@ mod tests {
             prop_assert!(tau.amax() > 1e-3);
         }
 
-        /// Includes stretched and folded arms, where inertias at the end effector have no bound.
+        /// Includes stretched and folded arms, for which the inertia at the end effector is
+        /// unbounded.
         #[test]
         fn is_bounded_at_every_pose(q in anywhere(), stretch in 0.0..1.0f64, error in joints(0.1)) {
             let mut q = q;
-            // Joint 4 near straight and joint 6 near the axis: toward two singularities.
+            // Joint 4 nearly straight and joint 6 near the axis: toward two singularities.
             q[3] *= stretch.powi(8);
             q[5] = (q[5] - core::f64::consts::PI) * stretch.powi(8) + core::f64::consts::PI;
             let dynamics = dynamics_at(&q, &JointVector::zeros());
@@ -235,11 +237,12 @@ mod tests {
                 let springs = Interaction::springs(&gains, &dynamics.jacobian, Some(&space));
                 let tau = springs.torques(&error);
                 prop_assert!(tau.iter().all(|tau| tau.is_finite()));
-                // Correlations are at most one: each axis adds at most the geometric mean of its
-                // gain and the other axis's gain.
+                // Correlations are at most one, so each other axis adds at most the geometric mean
+                // of the two gains.
                 let wrench = springs.cartesian * pose;
                 prop_assert!(wrench.amax() <= 750.0 * pose.abs().sum() * 1.01);
-                // In the metric of the inertia a projection is no longer than its argument.
+                // In the metric of the inertia, the projection of a vector is no longer than the
+                // vector.
                 let length = |tau: &JointVector| (tau.dot(&(mobility(&dynamics) * tau))).sqrt();
                 let joints = JointVector::from(gains.joint_stiffness).component_mul(&error);
                 let rest = tau - dynamics.jacobian.tr_mul(&wrench);
@@ -247,8 +250,8 @@ mod tests {
             }
         }
 
-        /// Springs return no more energy than they took, and dampers only dissipate: the matrices
-        /// at the end effector are symmetric and not negative.
+        /// Springs return no more energy than they stored, and dampers only dissipate energy,
+        /// because the matrices at the end effector are symmetric and positive semidefinite.
         #[test]
         fn the_dampers_at_the_end_effector_only_take_energy(q in anywhere(), dq in joints(1.0)) {
             let dynamics = dynamics_at(&q, &dq);
@@ -276,8 +279,8 @@ mod tests {
         }
     }
 
-    /// The middle of a fade between two laws is the mean of their torques, so the transition is
-    /// even.
+    /// In the middle of a fade between two laws, the torque is the mean of the two laws' torques,
+    /// so the transition is even.
     #[test]
     fn a_change_of_law_goes_evenly_from_torque_to_torque() {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());

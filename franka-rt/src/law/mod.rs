@@ -6,15 +6,16 @@
 //! springs, dq_ref ----------------------> Compensation of friction and bias
 //! ```
 //!
-//! [`Gains`] are the request of a goal. `blended_gains` holds the same as numbers, with choices as
-//! weights, so that `fade` changes continuously from one goal's gains to the next. `interaction`
-//! turns them into torques by either law. The two laws differ in the wrench at the end effector and
-//! in where the springs of the joints act. `compensation` adds torques that springs cannot exert,
-//! against friction and an undeclared load. The session's guards bound these torques.
+//! A goal requests [`Gains`]. `blended_gains` converts them to numbers, with choices as weights, so
+//! that `fade` can change continuously from one goal's gains to the next. `interaction` turns the
+//! gains into torques with one of two laws. The laws differ in the wrench at the end effector, and
+//! in the directions in which the joints' springs act. `compensation` adds torques against friction
+//! and against an undeclared load, which springs cannot exert. The session's guards bound these
+//! torques.
 //!
 //! # The hybrid law
 //!
-//! Springs and dampers at the end effector and at the joints, summed in joint space:
+//! This law adds the torques of springs and dampers at the end effector and at the joints:
 //!
 //! ```text
 //! tau = Kp (q_ref - q) + Kd (g dq_ref - dq) + coriolis
@@ -23,11 +24,11 @@
 //!
 //! The reference is in joint space, so the spring at the end effector needs no separate pose error:
 //! `J (q_ref - q)` is that error to first order, and the leash keeps it small. The robot
-//! compensates gravity, and part of the friction.
+//! compensates gravity and part of the friction.
 //!
 //! `g` is [`Gains::feedforward`]; its cutoff sets the low-pass on `dq_ref`. With
-//! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` first pass through the null-space
-//! projection of the [operational-space law](operational).
+//! [`Gains::project_joint_gains`], the null-space projection of the [operational-space
+//! law](operational) is applied to the torques of `Kq` and `Kqd`.
 
 pub(crate) mod blended_gains;
 pub(crate) mod compensation;

@@ -1,25 +1,26 @@
-//! The inertia at the end effector, factorised once per cycle for laws and guards.
+//! The inertia at the end effector. It is factorised once per cycle for the laws and the guards.
 //!
-//! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
-//! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation
-//! 3(1), 1987). The torques `tau` exert the wrench `Lambda J M^-1 tau` on a support that holds the
-//! end effector still.
+//! `M` is the joint-space inertia and `J` the Jacobian. Then `W = J M^-1 J'` is the mobility of the
+//! end effector, and `Lambda = W^-1` is its inertia (Khatib, IEEE Journal on Robotics and
+//! Automation 3(1), 1987). The torques `tau` exert the wrench `Lambda J M^-1 tau` on a support that
+//! keeps the end effector from moving.
 //!
-//! `W` is exact if the arm can move in all directions. Near a singularity it is damped. As the
-//! inertia along any axis exceeds its value in [`GREATEST_INERTIA`], damping grows smoothly from
-//! zero to one over that value. Therefore nothing jumps and nothing divides by zero, and no inertia
-//! along an axis exceeds four thirds of the greatest.
+//! `W` is exact if the arm can move in all directions. Near a singularity, `W` is damped. Where the
+//! inertia along an axis exceeds its value in [`GREATEST_INERTIA`], the damping grows smoothly from
+//! zero to the inverse of that value. Therefore no result jumps, no division by zero occurs, and no
+//! inertia along an axis exceeds four thirds of its value in that table.
 
 use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use nalgebra::{Cholesky, Const, Matrix3, SMatrix};
 
-/// Inertia at which a direction counts as lost, x y z `[kg]` and about x y z `[kg m^2]`. At the
-/// ready pose the arm has 11 kg and 0.5 kg m^2 with all other directions held.
+/// Inertia above which the end effector counts as unable to move in a direction: along x, y, z
+/// `[kg]`, and about x, y, z `[kg m^2]`. At the ready pose the arm has 11 kg and 0.5 kg m^2 if all
+/// other directions are held.
 const GREATEST_INERTIA: [f64; 6] = [100.0, 100.0, 100.0, 5.0, 5.0, 5.0];
 
-/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which the robot's model does not contain.
-/// It is about the mean of the values in `mujoco_menagerie` for both arms. `franka_fr3` has 0.195
-/// (joints 1 to 4) and 0.074 (5 to 7), `franka_emika_panda` has 0.1. Not measured on a robot.
+/// Inertia of the rotors at the joints, `[kg m^2]`. The robot's model does not contain it. It is
+/// about the mean of the values in `mujoco_menagerie` for both arms. `franka_fr3` has 0.195 (joints
+/// 1 to 4) and 0.074 (5 to 7), `franka_emika_panda` has 0.1. Not measured on a robot.
 pub(crate) const ROTORS: [f64; 7] = [0.15, 0.15, 0.15, 0.15, 0.09, 0.09, 0.09];
 
 /// Inertia at the end effector, in base axes.
@@ -30,19 +31,19 @@ pub(crate) struct TaskSpace {
     /// `L^-1 J'`.
     root: SMatrix<f64, 7, 6>,
     inertia: Cholesky<f64, Const<6>>,
-    /// Inertia of position and of rotation, each with the other left free.
+    /// Inertia of the position with free rotation, and inertia of the rotation with free position.
     blocks: [Matrix3<f64>; 2],
 }
 
 impl TaskSpace {
-    /// Computes the inertia of links and rotors together.
+    /// Computes the inertia from links and rotors together.
     #[inline]
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let rotors = MassMatrix::from_diagonal(&ROTORS.into());
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
-    /// Replaces an unphysical `mass`, for example of an impossible load, by the identity. The
+    /// Replaces an unphysical `mass` (for example from an impossible load) with the identity. The
     /// geometry remains valid.
     fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Self {
         let mass = Cholesky::new(*mass)
@@ -64,8 +65,8 @@ impl TaskSpace {
         }
     }
 
-    /// Returns the wrench that `tau` exerts on a support that holds the end effector still, `Lambda
-    /// J M^-1 tau`.
+    /// Returns the wrench that `tau` exerts on a support that keeps the end effector from moving,
+    /// `Lambda J M^-1 tau`.
     pub(crate) fn reaction(&self, tau: &JointVector) -> Wrench {
         let mut half = *tau;
         self.mass
@@ -74,9 +75,9 @@ impl TaskSpace {
         self.inertia.solve(&self.root.tr_mul(&half))
     }
 
-    /// Returns the motion of the joints when the end effector's position is moved and its rotation
-    /// is free: `M^-1 J' Lambda` of the position alone, `[rad/m]`. Of all such motions this one has
-    /// the least kinetic energy.
+    /// Returns how the joints move when the end effector's position is moved and its rotation is
+    /// free, `[rad/m]`. The matrix is `M^-1 J' Lambda` of the position alone. Of all such motions,
+    /// this motion has the least kinetic energy.
     ///
     /// The transpose maps torques to the force on a hand that holds the end effector at a point,
     /// `[N]`.
@@ -88,26 +89,27 @@ impl TaskSpace {
         yielding
     }
 
-    /// Returns the inertia of the end effector's position, with its rotation left free.
+    /// Returns the inertia of the end effector's position with free rotation.
     pub(crate) fn translational(&self) -> &Matrix3<f64> {
         &self.blocks[0]
     }
 
-    /// Returns the inertia about the end effector, with its position left free.
+    /// Returns the inertia of the end effector's rotation with free position.
     pub(crate) fn rotational(&self) -> &Matrix3<f64> {
         &self.blocks[1]
     }
 }
 
-/// Returns the factorisation of a mobility, damped where an inertia exceeds `greatest`.
+/// Returns the factorisation of a mobility, damped if an inertia exceeds `greatest`.
 fn damped<const N: usize>(
     mobility: &SMatrix<f64, N, N>,
     greatest: &[f64; N],
 ) -> Cholesky<f64, Const<N>> {
     let factor = Cholesky::new(*mobility);
-    // The greatest inertia against the inertia along each axis, with all others held: above zero
-    // where the mobility is not singular. A pivot of the factorisation holds only the axes before
-    // it. It does not detect a loss along several axes at once.
+    // Ratio of the greatest inertia to the inertia along each axis while all other axes are held.
+    // It is above zero if the mobility is not singular. A pivot of the factorisation would hold
+    // only the axes before it, so it would not detect a direction that is lost along several axes
+    // at once.
     let room = factor.as_ref().map_or(0.0, |factor| {
         let mut root = SMatrix::<f64, N, N>::identity();
         factor
@@ -123,7 +125,7 @@ fn damped<const N: usize>(
             for i in 0..N {
                 raised[(i, i)] += (1.0 - room).powi(2) / greatest[i];
             }
-            // Replaces the factor of non-finite input, which is not expected.
+            // If the input is not finite, which is not expected, the factor is replaced.
             Cholesky::new(raised).unwrap_or_else(|| Cholesky::pack_dirty(SMatrix::identity()))
         }
     }
@@ -150,8 +152,8 @@ mod tests {
         assert!((reaction - wrench).amax() < 1e-10, "{reaction}");
     }
 
-    /// Computes the wrench of the constraint that keeps the end effector from accelerating from the
-    /// full equations of motion.
+    /// Computes the wrench that keeps the end effector from accelerating, from the full equations
+    /// of motion.
     #[test]
     fn the_reaction_holds_the_end_effector_still() {
         let (space, jacobian, mass) = space_at(&READY);
@@ -172,7 +174,7 @@ mod tests {
         assert!((space.rotational() - rotational).amax() < 1e-9);
     }
 
-    /// Passes the straight elbow, where the arm cannot reach further.
+    /// Moves through the stretched elbow, where the arm cannot reach further.
     #[test]
     fn the_damping_sets_in_without_a_jump() {
         let tau = JointVector::from([5.0, -3.0, 2.0, 7.0, 1.0, -0.5, 0.3]);
@@ -192,8 +194,8 @@ mod tests {
         assert!(greatest < 1e3, "{greatest}");
     }
 
-    /// Moves between two postures of the joints where no pivot of the factorisation shows the loss
-    /// of a direction.
+    /// Moves between two postures where no pivot of the factorisation shows that a direction is
+    /// lost.
     #[test]
     fn a_direction_that_is_lost_along_several_axes_is_damped() {
         let q = JointVector::from(OBLIQUE);

@@ -5,59 +5,60 @@ use std::io;
 
 use super::Party;
 
-/// Reason why a connection to a robot or an end effector has ended. `Display` prints the text of
-/// the reference client where that client has the same reason.
+/// Reason why a connection to a robot or an end effector has ended. If the reference client has the
+/// same reason, `Display` prints that client's text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloseReason {
-    /// Caller: this program closed the connection: by `shutdown`, a cancelled token, or dropping
-    /// the last handle.
+    /// Caller: this program closed the connection, by calling `shutdown`, by cancelling a token, or
+    /// by dropping the last handle.
     #[error("this program has closed the connection")]
     ClosedByUs,
-    /// Link: the other side closed it.
+    /// Link: the other side closed the connection.
     #[error("libfranka: server closed connection")]
     ClosedByPeer,
     /// Link: sending or receiving failed.
     #[error("{text}")]
     Io {
-        /// The class of the failure.
+        /// Kind of the I/O error.
         kind: io::ErrorKind,
-        /// Failed operation, in the words of the reference client.
+        /// Description of the failed operation, in the words of the reference client.
         text: String,
     },
-    /// Peer: a message breaks the protocol in a way that no later message can repair.
+    /// Peer: a message violates the protocol in a way that no later message can repair.
     #[error("{text}")]
     Protocol {
-        /// Expected and received values.
+        /// Description of the expected and received values.
         text: String,
     },
     /// Host: the control thread has ended or does not respond.
     #[error("the control thread failed: {text}")]
     ThreadEnded {
-        /// Evidence for this.
+        /// Observation that shows this.
         text: String,
     },
-    /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
+    /// Link: the robot sent no states although the connection seemed alive. The supervisor closed
+    /// the connection.
     #[error("no robot state for {} ms more than the link timeout", .silence.as_millis())]
     Silent {
-        /// Length of the silence, from the moment when it was noticed.
+        /// Time without a state when the supervisor noticed it.
         silence: Duration,
     },
     /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
     #[error("no new connection within {} s, {attempts} attempts; the last one: {text}", .after.as_secs())]
     GivenUp {
-        /// Attempts that failed.
+        /// Number of failed attempts.
         attempts: u32,
-        /// Time since the connection was lost.
+        /// Time from the loss of the connection to the end of the attempts.
         after: Duration,
         /// Error of the last attempt.
         text: String,
     },
-    /// Robot: after the connection was lost, another robot answered. Models and goals are made for
+    /// Robot: after the connection was lost, another robot answered. Models and goals were made for
     /// the previous robot.
     #[error("another robot answers: {text}")]
     AnotherRobot {
-        /// Description of the difference.
+        /// Description of how the robots differ.
         text: String,
     },
     /// Caller: the runtime that served the connection was shut down.
@@ -66,7 +67,8 @@ pub enum CloseReason {
 }
 
 impl CloseReason {
-    /// True if this program, or its runtime, has closed the connection: nothing was lost.
+    /// True if this program, or its runtime, has closed the connection, so that no connection was
+    /// lost.
     pub fn is_ours(&self) -> bool {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }

@@ -1,4 +1,4 @@
-//! One motion: the reports of robot and thread, and the resulting outcome.
+//! One motion: the reports of robot and thread, and the outcome that results from them.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::driver::{Ended, Ending, MotionId, Order};
 use crate::panic;
 use crate::stats::MotionTimes;
 
-/// Fault of a robot that starts a motion and shows no state of it.
+/// Fault of a robot that starts a motion but shows no state of it.
 pub(super) const NEVER_SHOWN: &str = "the robot's states never showed the motion's modes";
 
 /// One motion, with the reports of robot and thread so far.
@@ -26,16 +26,17 @@ pub(super) struct CurrentMotion {
     pub(super) command: CommandSide,
     pub(super) thread: ThreadSide,
     pub(super) deadline: Option<Duration>,
-    /// Step that the robot had not taken by a deadline. The robot was then asked to stop.
+    /// Step that the robot had not taken by a deadline. After the deadline, the robot was asked to
+    /// stop.
     pub(super) given_up: Option<&'static str>,
     /// Time at which the last command was sent.
     pub(super) finishing: Option<Duration>,
     /// Reason why the motion's program could not continue.
     pub(super) failure: Option<MotionError>,
-    /// Time at which a `StopMove` was sent, or is about to be. The reason is a request to stop, a
-    /// failed program, or an arm that does not stop.
+    /// Time at which a `StopMove` was sent, or is about to be sent. The cause is a request to stop,
+    /// a failed program, or an arm that does not stop.
     pub(super) stopped: Option<Duration>,
-    /// Counts of the times of the motion's cycles, written by the thread.
+    /// Durations of the motion's cycles, counted by the thread.
     pub(super) times: Arc<MotionTimes>,
 }
 
@@ -46,7 +47,7 @@ pub(super) struct CurrentMotion {
     reason = "one per motion, in a box of its own already"
 )]
 pub(super) enum Work {
-    /// Goals, each superseding the previous one.
+    /// Goals. Each goal supersedes the previous one.
     Goals(Goals),
     /// A program of the user.
     Program(UserProgram),
@@ -58,7 +59,7 @@ pub(super) enum CommandSide {
     Requested,
     /// The robot has started the motion.
     Started,
-    /// The motion did not end in time, and a `StopMove` was sent.
+    /// The robot did not end the motion in time, and a `StopMove` was sent.
     Cancelled,
     /// The robot has reported the end of the motion, or why it did not begin.
     Ended(MoveStatus),
@@ -76,8 +77,8 @@ pub(super) enum ThreadSide {
 }
 
 impl CurrentMotion {
-    /// Returns the outcome of the motion with a robot of this model, once robot and thread have
-    /// ended it. If the outcome is an error with a log, moves the log into it.
+    /// Returns the outcome of the motion on a robot of this model. Robot and thread must both have
+    /// ended the motion. If the outcome is an error with a log, the log is moved into the error.
     pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Outcome {
         let ThreadSide::Ended(ended) = &mut self.thread else {
             unreachable!("a motion concludes when its thread side has ended")
@@ -105,8 +106,8 @@ impl CurrentMotion {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // A motion that the robot was asked to stop ends with this status, even if its
-            // finishing command was on its way.
+            // If the robot was asked to stop a motion, the motion ends with this status, even if
+            // its finishing command was already sent.
             Some(_) if status == MoveStatus::Preempted && self.stopped.is_some() => {
                 return match &self.work {
                     Work::Goals(goals) => goals.outcome_of_stop(ended),
@@ -115,7 +116,7 @@ impl CurrentMotion {
             }
             Some(refusal) => {
                 return Err(match (status, self.given_up) {
-                    // A motion that was given up also ends with this status.
+                    // A motion that the driver gave up also ends with this status.
                     (MoveStatus::Preempted, Some(what)) => MotionError::Protocol { what },
                     _ => ControlError::new(refusal, ended, model).into(),
                 });
@@ -127,13 +128,13 @@ impl CurrentMotion {
             Work::Goals(_) => None,
             Work::Program(_) => outcome_of_program(ended, self.stopped.is_some()),
         };
-        // libfranka, `robot_impl.cpp`, has this text for this case.
+        // This is libfranka's text for this case (`robot_impl.cpp`).
         outcome.unwrap_or(Err(MotionError::Protocol {
             what: "Unexpected reply to a Move command",
         }))
     }
 
-    /// True if robot or thread has ended the motion, or the robot was asked to stop it.
+    /// True if robot or thread has ended the motion, or if the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
         self.stopped.is_some()
             || matches!(self.thread, ThreadSide::Ended(_))
@@ -150,15 +151,15 @@ impl CurrentMotion {
             }
     }
 
-    /// Returns the deadline of a motion under way; `None` unless its last command was sent or a
-    /// stop was requested.
+    /// Returns the deadline of the current motion. Returns `None` unless its last command was sent
+    /// or a stop was requested.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
         let since = self.finishing.or(self.stopped);
         since.map(|since| since + END_TIMEOUT)
     }
 
     /// True if the motion accepts goals from callers outside a session. Programs and lasting
-    /// sessions do not.
+    /// sessions do not accept them.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
             Work::Goals(goals) => goals.owner == Owner::Goal || !goals.goes_on(),
@@ -166,14 +167,15 @@ impl CurrentMotion {
         }
     }
 
-    /// True if the robot has neither reported the end of the motion nor been given up.
+    /// True if the robot has not reported the end of the motion and the driver has not given up
+    /// waiting for it.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.command, CommandSide::Requested | CommandSide::Started)
     }
 
     /// Returns the order that makes the thread end the motion, unless the order was sent before.
-    /// Called when no caller waits for the motion any more. An arm on its way to a goal brakes. A
-    /// program gets no more states, and the robot stops without commands.
+    /// Call this when no caller waits for the motion any more. An arm on its way to a goal then
+    /// brakes. A program gets no more states, and the robot stops because commands are missing.
     pub(super) fn abandon(&mut self) -> Option<Order> {
         if let Work::Goals(goals) = &mut self.work {
             goals.brake();
@@ -184,7 +186,7 @@ impl CurrentMotion {
     }
 }
 
-/// Returns the outcome of a motion of a program that succeeded or was stopped as asked.
+/// Returns the outcome of a program's motion that succeeded or was stopped as requested.
 fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     match ended.ending {
         Ending::Finished => {
@@ -211,7 +213,7 @@ impl From<Failure> for MotionError {
             Failure::GivenUp(code) => Self::GivenUp { code },
             Failure::Panicked(payload) => {
                 let message = panic::message(&*payload);
-                // The panic itself is reported, not a panic of its payload.
+                // Report the panic itself, and ignore a panic while its payload is dropped.
                 let _ = panic::free(payload);
                 Self::Panicked { message }
             }
@@ -220,8 +222,8 @@ impl From<Failure> for MotionError {
 }
 
 impl ControlError {
-    /// Returns the error for a robot of this model that ended a motion with `refusal`. Moves the
-    /// log of the motion into it.
+    /// Creates the error for a robot of this model that ended a motion with `refusal`. Moves the
+    /// motion's log into it.
     fn new(refusal: Refusal, ended: &mut Ended, model: &Arc<Model>) -> Box<Self> {
         let log = core::mem::take(&mut ended.log);
         Box::new(Self {
@@ -244,7 +246,7 @@ impl ControlError {
     }
 }
 
-/// True if the robot did not let the motion begin. False if the robot ended the motion before the
+/// True if the robot refused to begin the motion. False if the robot ended the motion before the
 /// thread saw it run.
 fn is_rejection(status: MoveStatus) -> bool {
     matches!(

@@ -1,22 +1,22 @@
-//! Differences between the robots before and after a lost connection.
+//! Differences between the robot before a lost connection and the robot after it.
 
 use core::fmt;
 
-/// Differences between the robot that answers after a lost connection and the robot before.
+/// Differences between the robot before a lost connection and the robot that answers after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Differences {
-    /// True if the description differs, or only one of the robots has one.
+    /// True if the two descriptions differ, or if only one robot has a description.
     pub description: bool,
-    /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or the end
-    /// effector's mass, centre of mass or inertia.
+    /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or if its mass,
+    /// centre of mass or inertia differs.
     pub frames: bool,
-    /// True if the clock advanced by another time than has passed: the robot was restarted, or is
-    /// another one.
+    /// True if the robot's clock did not advance by the time that has passed: the robot was
+    /// restarted, or it is another robot.
     pub clock: bool,
-    /// The first joint, from 1, that is more than 5 mrad from its earlier position. A joint that
-    /// moved may also have continued while it braked.
+    /// The first joint, from 1, that is more than 5 mrad from its earlier position. If the joint
+    /// moved when the connection was lost, it may also have continued while it braked.
     pub joint: Option<u8>,
 }
 

@@ -16,7 +16,7 @@ pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
 };
 
 impl Lifecycle {
-    /// Notes that a motion has ended for the thread.
+    /// Processes the thread's report that a motion has ended.
     pub(super) fn on_ended(&mut self, ended: Ended, now: Duration) {
         if let Program::Target(session) = &ended.program {
             self.learned = session.learned();
@@ -47,7 +47,7 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion when the thread has ended it and no more replies are expected on the command
+    /// Ends the motion if the thread has ended it and no more replies are expected on the command
     /// connection.
     pub(super) fn conclude(&mut self, now: Duration) {
         let LifecyclePhase::UnderWay(current) = &self.phase else {
@@ -66,8 +66,8 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, which robot and thread have ended, according to their reports. If the robot
-    /// has not reported the end of the motion, asks the robot to stop it.
+    /// Resolves the motion, which robot and thread have ended, according to their reports. If the
+    /// robot has not reported the end of the motion, asks the robot to stop it.
     fn finish(&mut self, now: Duration) {
         let Some(mut current) = self.take_current() else {
             return;
@@ -83,7 +83,7 @@ impl Lifecycle {
             // The session had ended before it saw this goal: the goal gets its own motion.
             let unseen = goals.current;
             let end = goals.end_of_engagement(&Ok(MotionReport::new(&counted, 0, None)));
-            // If the unseen goal is the session's own, its end is resolved below.
+            // If the unseen goal is the session's own goal, its end is resolved below.
             let end = end.filter(|(engaged, _)| *engaged != unseen.id);
             self.resolve_session(goals.after_end.clone(), end);
             if goals.cancelled {
@@ -108,10 +108,10 @@ impl Lifecycle {
         self.tell(current.work, outcome, &counted, now);
     }
 
-    /// Gives up the motion under way, if any, and resolves it at once: with the failure of its
-    /// program if there was one, because that came first, otherwise with `error`. Sends `StopMove`
-    /// unless the robot has reported the end. A thread that still runs the motion brakes (goals) or
-    /// sends no more commands (programs).
+    /// Gives up the current motion, if any, and resolves it at once. If its program failed before,
+    /// the motion resolves with that failure, otherwise with `error`. Sends `StopMove` unless the
+    /// robot has reported the end. If the thread still runs the motion, it brakes (for goals) or
+    /// sends no more commands (for programs).
     pub(super) fn give_up(&mut self, error: MotionError, now: Duration) {
         let Some(mut current) = self.take_current() else {
             return;
@@ -124,7 +124,7 @@ impl Lifecycle {
         self.tell(current.work, Err(error), &Counted::default(), now);
     }
 
-    /// Removes and returns the motion under way; sends `StopMove` unless the robot has reported its
+    /// Removes and returns the current motion. Sends `StopMove` unless the robot has reported its
     /// end.
     fn take_current(&mut self) -> Option<Box<super::current_motion::CurrentMotion>> {
         self.phase = match core::mem::replace(&mut self.phase, LifecyclePhase::Idle) {
@@ -139,7 +139,7 @@ impl Lifecycle {
         None
     }
 
-    /// Resolves everything that waits for the motion with `outcome`, then starts the next motion.
+    /// Resolves everything that waits for the motion with `outcome`. Then starts the next motion.
     fn tell(&mut self, work: Work, outcome: Outcome, counted: &Counted, now: Duration) {
         let rest = match &outcome {
             Err(error) if !error.is_ready_for_more() => Err(error.clone()),
@@ -149,8 +149,8 @@ impl Lifecycle {
         self.follow(&outcome.map(drop), counted, now);
     }
 
-    /// Starts the waiting motion, if any, once no motion is under way. `before` is the outcome of
-    /// the previous motion.
+    /// Starts the waiting motion, if any, once no other motion is running. `before` is the outcome
+    /// of the previous motion.
     fn follow(&mut self, before: &Result<(), MotionError>, counted: &Counted, now: Duration) {
         if let LifecyclePhase::Idle = self.phase
             && let Some(next) = self.next.take()
@@ -159,8 +159,8 @@ impl Lifecycle {
         }
     }
 
-    /// Begins `motion` after another motion, which has ended with `before`. If `motion` only asks
-    /// the arm to stop, resolves it at once with that outcome, and starts no motion.
+    /// Begins `motion` after another motion, which ended with `before`. If `motion` only asks the
+    /// arm to stop, starts no motion, and resolves it at once with that outcome.
     fn take_up(
         &mut self,
         motion: NewMotion,
@@ -175,7 +175,7 @@ impl Lifecycle {
             _ => return self.start(motion, now),
         }
         let outcome = match before {
-            // It is unknown whether the arm rests, or the robot decides it.
+            // Either it is unknown whether the arm rests, or the robot decides it.
             Err(error)
                 if !error.is_ready_for_more() && !matches!(error, MotionError::Rejected(_)) =>
             {
@@ -186,8 +186,8 @@ impl Lifecycle {
         self.resolve(motion.id(), outcome);
     }
 
-    /// Resolves everything that waits for the end of a motion: its goals or program with `outcome`,
-    /// requests for its stop with `rest`.
+    /// Resolves everything that waits for the end of a motion. The goals or the program resolve
+    /// with `outcome`; requests to stop resolve with `rest`.
     pub(super) fn resolve_work(&mut self, work: Work, outcome: &Outcome, rest: &Outcome) {
         match work {
             Work::Goals(goals) => {
@@ -207,7 +207,7 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the session of a motion, and the goals that came after its end.
+    /// Resolves the session of a motion, and the goals that arrived after the session's end.
     fn resolve_session(&mut self, after_end: Vec<GoalId>, end: Option<(GoalId, Outcome)>) {
         let reason = match &end {
             Some((_, Err(error))) => error.clone(),

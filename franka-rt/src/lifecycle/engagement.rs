@@ -21,12 +21,13 @@ use crate::team::Member;
 pub struct Engagement {
     /// The deadman that the session is bound to.
     pub deadman: Option<DeadmanMonitor>,
-    /// The session's membership in a team.
+    /// Membership of the session in a team.
     pub team: Option<Member>,
-    /// Keep-out regions of the arm, which replace the regions of [`Lifecycle::keep_out_of`]. At
-    /// most [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX) regions, in the base frame.
+    /// Keep-out regions for the arm, in the base frame, at most
+    /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX). They replace the regions of
+    /// [`Lifecycle::keep_out_of`].
     pub keep_out: Option<Vec<Obstacle>>,
-    /// The highest speed of any joint, the flange and the end effector, `[m/s]`: see
+    /// Speed limit for every joint, the flange and the end effector, `[m/s]`: see
     /// [`Guard::SpeedCap`](crate::session::Guard::SpeedCap).
     pub speed_cap: Option<f64>,
     /// Backend that turns setpoints into torques.
@@ -53,26 +54,27 @@ impl Engagement {
     }
 }
 
-/// Changes to the goal under way; its destination stays.
+/// Changes to the current goal. They do not change its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
-    /// Stiffness and damping; the gains fade over 0.3 s.
+    /// New stiffness and damping. The change fades over 0.3 s.
     pub gains: Option<Gains>,
-    /// Limits of the motion.
+    /// New limits of velocity, acceleration and jerk.
     pub budget: Option<Budget>,
-    /// Largest force of springs and dampers. The cap fades as the gains do.
+    /// New limit of the force of springs and dampers. It fades over the same time as the gains.
     pub force_cap: Option<ForceCap>,
-    /// Largest distance of the reference ahead of the arm. The leash fades as the gains do.
+    /// New limit of how far the reference may be ahead of the arm. It fades over the same time as
+    /// the gains.
     pub leash: Option<Leash>,
-    /// Distance that the arm may be pushed off its path.
+    /// New limit of how far the arm may be pushed off its path.
     pub deviation: Option<Deviation>,
-    /// Posture for the arm's free direction, the null space of the end effector's pose: joint
-    /// positions in `[rad]`, like the `posture` of a goal.
+    /// New joint positions, `[rad]`, toward which the arm moves in the null space of the end
+    /// effector's pose: see [`Goal::posture`].
     pub posture: Option<[f64; 7]>,
 }
 
 impl Tuning {
-    /// Returns these changes, completed by the changes of `before`.
+    /// Returns these changes. Fields that are `None` are taken from `before`.
     #[must_use]
     pub fn or(self, before: Self) -> Self {
         let Self {
@@ -94,7 +96,7 @@ impl Tuning {
     }
 
     /// Returns the goal with these changes. A goal of hand guiding keeps its gains, because its
-    /// free axes have no springs.
+    /// free axes must have no springs.
     #[must_use]
     pub fn apply(&self, goal: Goal) -> Goal {
         Goal {
@@ -113,7 +115,7 @@ impl Tuning {
 }
 
 impl Lifecycle {
-    /// Accepts a goal for the session `engaged`. The goal supersedes the previous one.
+    /// Accepts a goal for the session `engaged`. It supersedes the previous goal.
     pub(super) fn submit_within(
         &mut self,
         engaged: GoalId,
@@ -138,16 +140,20 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Passes a chunk to the session `engaged`. The chunk replaces the previous one as its own
-    /// options define. `goal` supersedes any other goal, names the chunks until another goal comes,
-    /// and has their speed and stiffness. The arm rests at the last point.
+    /// Passes a chunk to the session `engaged`. The chunk's own options define how it replaces the
+    /// previous chunk. `goal` supersedes any other goal. Until another goal arrives, it identifies
+    /// the chunks and sets their speed and stiffness. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::begin`]. [`MotionError::Held`] while a deadman holds the arm. If the previous
-    /// chunk was given up, once [`MotionError::Held`] or [`MotionError::Braked`] with the reason.
-    /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for a
-    /// chunk of another clock. [`GoalError::Outdated`] for a chunk with an older observation than
-    /// the previous chunk, and [`GoalError::Chunks`] if too many chunks are under way.
+    /// Returns the errors of [`Self::begin`], and:
+    /// - [`MotionError::Held`] while a deadman holds the arm;
+    /// - once, if the previous chunk was given up: [`MotionError::Held`] or
+    ///   [`MotionError::Braked`], with the reason;
+    /// - [`GoalError::Late`] if all points of the chunk have passed;
+    /// - [`GoalError::Ahead`] if the chunk's times are from another clock;
+    /// - [`GoalError::Outdated`] if the chunk's observation is older than the observation of the
+    ///   previous chunk;
+    /// - [`GoalError::Chunks`] if too many chunks are under way.
     pub fn chunk(
         &mut self,
         engaged: GoalId,
@@ -170,7 +176,7 @@ impl Lifecycle {
         if by > Chunk::OFFSET_MAX {
             return Err(GoalError::Ahead { by }.into());
         }
-        // Times that count from the beginning of the chunk cannot have passed.
+        // Times that count from the start of the chunk cannot have passed.
         if observed_at.is_some() && chunk.end_after(state.message_id).is_zero() {
             let by = chunk.late_by(state.message_id);
             return Err(GoalError::Late { by }.into());
@@ -189,11 +195,11 @@ impl Lifecycle {
             ..goal
         })?;
         if ending {
-            // The session has ended, and reports its end when the outcome is known.
+            // The session has ended. It reports its end when the outcome is known.
             goals.after_end.push(goal.id);
             return Ok(());
         }
-        // A cancelled goal is on its way to rest, and belongs to no caller any more.
+        // A cancelled goal brakes to rest, and no caller awaits it any more.
         let (current, cancelled) = (goals.current.id, goals.cancelled);
         let goes_on = match goals.stream {
             ChunkStream::Of { goal, observed_at } if goal == current && !cancelled => {
@@ -219,10 +225,10 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Tunes the current goal of the session `engaged`. Torques do not step.
+    /// Applies `tuning` to the current goal of the session `engaged`, without a step in torque.
     ///
     /// # Errors
-    /// As [`Self::begin`]; then nothing changes.
+    /// Returns the errors of [`Self::begin`]; then nothing changes.
     pub fn tune(
         &mut self,
         engaged: GoalId,
@@ -236,7 +242,7 @@ impl Lifecycle {
         let tuned = tuning.apply(goals.current);
         goals.backend.check(&tuned)?;
         tuned.check(&self.model, state)?;
-        // Gains that do not matter to a guiding hand must be valid for later goals.
+        // Hand guiding does not use these gains, but later goals do, so they must be valid.
         if let Some(gains) = tuning.gains {
             let target = Target::Rest;
             let later = Goal {
@@ -246,7 +252,7 @@ impl Lifecycle {
             };
             later.check(&self.model, state)?;
         }
-        // This includes a cancelled goal, which is held until the next goal comes.
+        // This includes a cancelled goal, which is held until the next goal arrives.
         if let Some(goals) = self.goals_mut() {
             goals.current = tuned;
             goals.newest.write(tuned);
@@ -254,18 +260,18 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Ends the session `engaged` as asked: brakes, releases the arm, ends the motion. Its goal
-    /// resolves as [`MotionError::Stopped`], the session itself as `Ok`. Has no effect on a session
-    /// that is ending or has ended.
+    /// Ends the session `engaged` as requested: brakes, releases the arm, and ends the motion. The
+    /// session's goal resolves as [`MotionError::Stopped`], and the session itself as `Ok`. Has no
+    /// effect if the session is ending or has ended.
     pub fn disengage(&mut self, engaged: GoalId) {
         if self.check_engaged(engaged).is_ok() {
             self.release(engaged);
         }
     }
 
-    /// Returns what follows the end of a goal: more goals, if its session lasts from goal to goal.
-    /// A session that was asked to end does end, even if the goal that ends it is cancelled: its
-    /// owner may already know that it accepts no more goals.
+    /// Returns what follows the end of a goal. If its session lasts from goal to goal, more goals
+    /// follow. A session that was asked to end always ends, even if its last goal is cancelled,
+    /// because its owner may already know that it accepts no more goals.
     pub(super) fn end_of(&self, id: GoalId) -> OnArrival {
         let waits = self.next.as_ref().is_some_and(|next| next.id() == id);
         let of_session = |goals: &Goals| goals.owner != Owner::Goal && goals.goes_on();
@@ -276,7 +282,7 @@ impl Lifecycle {
         }
     }
 
-    /// True if robot or thread has ended the motion under way, or the robot was asked to stop it.
+    /// True if robot or thread has ended the current motion, or if the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
         matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }
@@ -286,7 +292,7 @@ impl Lifecycle {
         self.goals().is_some_and(|goals| goals.owner != Owner::Goal)
     }
 
-    /// Ends the session of that name. Returns true if it controls the arm.
+    /// Ends the session `engaged`. Returns true if that session controls the arm.
     pub(super) fn release(&mut self, engaged: GoalId) -> bool {
         let ending = self.is_ending();
         let Some(goals) = self.goals_mut() else {

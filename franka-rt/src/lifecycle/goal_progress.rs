@@ -29,27 +29,27 @@ pub(super) struct Goals {
     pub(super) pulse: Option<Arc<Pulse>>,
     /// Backend that turns setpoints into torques.
     pub(super) backend: Backend,
-    /// Sender of chunks to the session.
+    /// Writer of the chunks for the session.
     pub(super) chunks: ChunkWriter,
     pub(super) stream: ChunkStream,
-    /// Goals that came for that session after its end and before its outcome was known.
+    /// Goals that arrived for that session after its end, before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
 }
 
-/// Receiver of the outcome of a motion.
+/// Receiver of the outcome of a motion's goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Owner {
-    /// The caller of the goal: the motion ends with the goal.
+    /// The caller of the goal. The motion ends with the goal.
     Goal,
-    /// A session that lasts from goal to goal. The name is of the caller that awaits the session's
-    /// end, and between goals also of the goal that the arm holds.
+    /// A session that lasts from goal to goal. The id belongs to the caller that awaits the
+    /// session's end. Between goals, it is also the id of the goal that holds the arm.
     Engaged(GoalId),
-    /// A session that lasted from goal to goal, and whose end was requested.
+    /// A session that lasted from goal to goal and was asked to end.
     Disengaged(GoalId),
 }
 
 impl Owner {
-    /// Returns the name of the session that lasts, or lasted, from goal to goal.
+    /// Returns the id of the session that lasts, or lasted, from goal to goal.
     pub(super) fn session(self) -> Option<GoalId> {
         match self {
             Self::Goal => None,
@@ -58,7 +58,7 @@ impl Owner {
     }
 }
 
-/// Report of the session of a motion on its end.
+/// What the session of a motion has reported about its end.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -66,30 +66,31 @@ impl Owner {
 )]
 pub(super) enum Verdict {
     Open,
-    /// The session cannot begin with the tool that the robot has.
+    /// The session cannot begin with the robot's tool.
     BadTool,
     /// The session has settled a goal: the current goal or an earlier one.
     Settled(Settled),
 }
 
-/// The chunks of a session, which share one goal until another goal comes.
+/// The chunks of a session. They share one goal until another goal arrives.
 #[derive(Clone, Debug)]
 pub(super) enum ChunkStream {
-    /// There is no goal of chunks; the next chunk begins with its own goal.
+    /// The chunks have no goal yet; the next chunk begins with its own goal.
     None,
-    /// The newest chunk belongs to this goal, and the next chunk continues it while that is the
-    /// current goal. The path of a goal is no such chunk: the next goal or chunk supersedes it.
+    /// The newest chunk belongs to this goal. The next chunk continues it while this goal is the
+    /// current goal. The path of a goal does not count as such a chunk: the next goal or chunk
+    /// supersedes it.
     Of {
         goal: GoalId,
-        /// `message_id` of the observation that the newest chunk was computed from.
+        /// `message_id` of the observation from which the newest chunk was computed.
         observed_at: Option<u64>,
     },
-    /// Reason why the goal of the chunks was given up. The next chunk returns it, because chunks
-    /// have no caller that awaits their end.
+    /// Reason why the goal of the chunks was given up. The next chunk returns this error, because
+    /// no caller awaits the end of chunks.
     GivenUp(MotionError),
 }
 
-/// Report of the session on the goal that it settled.
+/// Report of the session about the goal that it settled.
 #[derive(Clone, Debug)]
 pub(super) struct Settled {
     pub(super) goal: GoalId,
@@ -98,12 +99,12 @@ pub(super) struct Settled {
     pub(super) compensation: Option<[f64; 7]>,
     pub(super) line_deviation: Option<f64>,
     pub(super) reacted: Option<Reacted>,
-    /// Counts of the motion up to then.
+    /// Counts of the motion up to that time.
     pub(super) counted: Counted,
 }
 
 impl Goals {
-    /// Returns a separate motion to `goal`, which `slot` holds already.
+    /// Returns the goals of a separate motion to `goal`, which the slot of `newest` already holds.
     pub(super) fn new(goal: Goal, newest: Writer<Goal>, chunks: ChunkWriter) -> Self {
         Self {
             newest,
@@ -119,7 +120,7 @@ impl Goals {
         }
     }
 
-    /// Checks that a deadman does not hold the arm.
+    /// Checks that no deadman holds the arm.
     pub(super) fn check_deadman(&self) -> Result<(), MotionError> {
         let silent = self.pulse.as_ref().is_some_and(|pulse| pulse.is_silent());
         if silent {
@@ -128,7 +129,8 @@ impl Goals {
         Ok(())
     }
 
-    /// True if a chunk or a path can be sent. Frees the chunks that the session no longer needs.
+    /// True if a chunk or a path can be sent. Also frees the chunks that the session no longer
+    /// needs.
     pub(super) fn has_room(&mut self) -> bool {
         while let Some(done) = self.chunks.collect() {
             drop(done);
@@ -144,7 +146,7 @@ impl Goals {
         self.chunks.send(goal, chunk).map_err(|_| TooManyChunks)
     }
 
-    /// Brakes, and ends the motion at rest.
+    /// Makes the arm brake, and ends the motion when the arm rests.
     pub(super) fn brake(&mut self) {
         self.newest.write(Goal {
             revision: self.current.revision + 1,
@@ -152,8 +154,8 @@ impl Goals {
         });
     }
 
-    /// Continues with `goal`. Returns the outcome of the previous goal, with `reason` if it was not
-    /// reached; `None` if the session held the arm there.
+    /// Continues with `goal`. Returns the outcome of the previous goal, with the error `reason` if
+    /// the arm has not reached it. Returns `None` if the session only held the arm there.
     pub(super) fn supersede(
         &mut self,
         goal: Goal,
@@ -164,7 +166,7 @@ impl Goals {
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);
         let result = match &self.verdict {
-            // A goal that has settled was reached, regardless of what follows.
+            // The arm has reached a goal that has settled, regardless of what follows.
             Verdict::Settled(settled) if settled.goal == previous => {
                 settled.result(&settled.counted, cancelled)
             }
@@ -178,12 +180,12 @@ impl Goals {
         self.current.on_arrival != OnArrival::ReportAndFinish
     }
 
-    /// Notes that a goal of the session `engaged` has ended, and that the arm is held from now on.
-    /// Returns its outcome, unless a caller has received it before.
+    /// Records that a goal of the session `engaged` has ended and that the arm is held from now on.
+    /// Returns the goal's outcome, unless a caller has already received it.
     pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
         let goal = self.current;
         if goal.id == engaged {
-            // The goal was given up after its arrival: the arm must not return there.
+            // The goal was given up after its arrival, so the arm must not return there.
             if !matches!(settled.settlement, Settlement::Arrived(_)) {
                 self.current.target = Target::Rest;
             }
@@ -201,7 +203,7 @@ impl Goals {
                 reaction: None,
                 ..goal
             },
-            // The arm is not held at a goal that was not reached.
+            // The arm is not held at a goal that it did not reach.
             _ => goal.at_rest(OnArrival::Hold),
         };
         self.current = Goal {
@@ -214,7 +216,7 @@ impl Goals {
         let result = settled.result(&settled.counted, cancelled);
         self.take_chunk_error();
         match (&result, &self.stream) {
-            // A watchdog belongs to awaited goals only.
+            // Only goals that a caller awaits have a watchdog.
             (
                 Err(error @ (MotionError::Held(lapse) | MotionError::Braked(lapse))),
                 ChunkStream::Of { goal: of, .. },
@@ -226,7 +228,8 @@ impl Goals {
         Some(result)
     }
 
-    /// Removes and returns the reason why a goal of chunks was given up, if it was not reported.
+    /// Removes and returns the reason why a goal of chunks was given up, if it was not reported
+    /// yet.
     pub(super) fn take_chunk_error(&mut self) -> Option<MotionError> {
         match core::mem::replace(&mut self.stream, ChunkStream::None) {
             ChunkStream::GivenUp(error) => Some(error),
@@ -237,7 +240,7 @@ impl Goals {
         }
     }
 
-    /// Returns the outcome of a session whose last goal had this outcome.
+    /// Returns the outcome of a session, given the outcome of its last goal.
     pub(super) fn end_of_engagement(&self, result: &Outcome) -> Option<(GoalId, Outcome)> {
         match (self.owner, result) {
             (Owner::Goal, _) => None,
@@ -246,8 +249,8 @@ impl Goals {
         }
     }
 
-    /// True if the current goal came too late for the motion: the motion ended as `Ok`, or by a
-    /// stop request to the robot (`told`), with an older goal than the current one.
+    /// True if the current goal came too late for the motion. The motion then ended with an older
+    /// goal, either as `Ok` or by a stop request to the robot (`told`).
     pub(super) fn came_too_late(&self, command: CommandSide, told: bool, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;
@@ -261,8 +264,8 @@ impl Goals {
                 .is_some_and(|last| last != self.current.id)
     }
 
-    /// Returns the outcome of the current goal in a motion that succeeded, if the session reported
-    /// one.
+    /// Returns the outcome of the current goal after a motion that succeeded, if the session
+    /// reported one.
     pub(super) fn outcome(&self, ended: &Ended) -> Option<Outcome> {
         let settled = match &self.verdict {
             Verdict::Open => return None,
@@ -282,9 +285,10 @@ impl Goals {
         })
     }
 
-    /// Returns the outcome of the current goal in a motion that was stopped by a request to the
-    /// robot, because the arm did not stop. If the session reported an outcome before, returns that
-    /// outcome. Otherwise only a brake was requested, or the goal was stopped.
+    /// Returns the outcome of the current goal after a motion that the robot was asked to stop,
+    /// because the arm did not stop by itself. If the session has reported an outcome, returns that
+    /// outcome. Otherwise returns a report if the goal was only a brake, and
+    /// [`MotionError::Stopped`] if it was not.
     pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {
         let brakes = self.current.target == Target::Rest && !self.goes_on() && !self.cancelled;
         self.outcome(ended).unwrap_or_else(|| {

@@ -1,5 +1,6 @@
-//! Goals of target control: changing, superseding, cancelling. Cancelling, or dropping the goal's
-//! future, brakes the arm. `cancel` and `stop` handle programs and sessions, too.
+//! Goals of target control: they are changed, superseded and cancelled here. If a goal is
+//! cancelled, or its future is dropped, the arm brakes. `cancel` and `stop` also work for programs
+//! and sessions.
 
 use core::time::Duration;
 
@@ -11,12 +12,12 @@ use super::{Lifecycle, LifecyclePhase, MotionError, NewMotion};
 use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target};
 
 impl Lifecycle {
-    /// Moves the target of a goal under way, for a goal that follows a stream. Returns true if the
-    /// arm still follows the goal. Returns false for a cancelled goal, even if targets were still
-    /// queued for it, and for the brake of a stop or of a session that ends.
+    /// Moves the target of a goal that follows a stream. Returns true if the arm still follows the
+    /// goal. Returns false for a cancelled goal, even if targets were still queued for it. Also
+    /// returns false for the brake of a stop, or of a session that ends.
     ///
     /// # Errors
-    /// [`GoalError`] for a target that is not accepted; the previous target stays.
+    /// Returns a [`GoalError`] if the target is not accepted; the previous target then stays.
     pub fn update(
         &mut self,
         id: GoalId,
@@ -38,8 +39,8 @@ impl Lifecycle {
         self.amend(id, change, Some(state))
     }
 
-    /// Marks a held goal as complete. The motion settles at the newest target and finishes, unless
-    /// its session lasts from goal to goal. A path ends in any case.
+    /// Marks a held goal as complete. The arm settles at the newest target, and the motion finishes
+    /// unless its session lasts from goal to goal. A path ends in any case.
     pub fn close(&mut self, id: GoalId) {
         let current = self.goals().map(|goals| &goals.current);
         if current.is_some_and(|goal| goal.id == id && goal.along_path) {
@@ -59,8 +60,8 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Halts a motion on its way, within its budget, or resumes it. Has no effect on a goal that is
-    /// no longer the newest, and on chunks, whose points have fixed times.
+    /// Pauses a motion on its way, within its budget, or resumes it. Has no effect if a newer goal
+    /// exists, and none on chunks, because their points have fixed times.
     pub fn pause(&mut self, id: GoalId, paused: bool) {
         let goal = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
@@ -76,9 +77,9 @@ impl Lifecycle {
         goal.paused = paused;
     }
 
-    /// Cancels a goal. An arm on its way to the goal brakes as by a stop, and the goal resolves as
-    /// [`MotionError::Stopped`]. A program is cancelled by stopping the robot. Has no effect on a
-    /// goal that is no longer the newest.
+    /// Cancels a goal. If the arm is on its way to the goal, it brakes as for a stop, and the goal
+    /// resolves as [`MotionError::Stopped`]. To cancel a program, the robot is stopped. Has no
+    /// effect if a newer goal exists.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if self.next.take_if(|next| next.id() == id).is_some() {
             return self.resolve(id, Err(MotionError::Stopped));
@@ -96,8 +97,9 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the target of target control, and the name of its goal. This is the last accepted
-    /// target, even if the thread has not read it yet. `None` if target control moves nothing.
+    /// Returns the target that the arm moves to under target control, and the id of its goal. This
+    /// is the last accepted target, even if the thread has not read it yet. Returns `None` if
+    /// target control moves nothing.
     pub fn heading(&self) -> Option<(GoalId, Target)> {
         let goal = self.newest()?;
         Some((goal.id, goal.hand_target()))
@@ -111,7 +113,7 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the goals of the motion under way, if target control runs it.
+    /// Returns the goals of the current motion, if target control runs it.
     pub(super) fn goals(&self) -> Option<&Goals> {
         match &self.phase {
             LifecyclePhase::UnderWay(current) => match &current.work {
@@ -122,7 +124,7 @@ impl Lifecycle {
         }
     }
 
-    /// See [`Self::goals`].
+    /// Same as [`Self::goals`], but mutable.
     pub(super) fn goals_mut(&mut self) -> Option<&mut Goals> {
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) => match &mut current.work {
@@ -133,9 +135,9 @@ impl Lifecycle {
         }
     }
 
-    /// Replaces all other goals, which resolve with `reason`, by `goal`. The goal joins the motion
-    /// under way if that motion accepts goals. Otherwise it becomes a motion that waits for the end
-    /// of that one.
+    /// Replaces all other goals by `goal`; they resolve with `reason`. If the current motion
+    /// accepts goals, `goal` becomes a part of it. Otherwise `goal` becomes a motion that waits for
+    /// the end of the current one.
     pub(super) fn replace(&mut self, goal: Goal, path: Option<Box<Chunk>>, reason: MotionError) {
         let is_ending = self.is_ending();
         let previous = match self.goals_mut() {
@@ -162,7 +164,7 @@ impl Lifecycle {
         }
     }
 
-    /// Changes a goal that has not been superseded. Returns true if a goal of that name exists.
+    /// Changes a goal that has not been superseded. Returns true if such a goal exists.
     pub(super) fn amend(
         &mut self,
         id: GoalId,

@@ -1,5 +1,5 @@
-//! The state machine of a motion, from the request to the robot's final reply, across the command
-//! connection and the thread.
+//! The state machine of a motion, from the request to the robot's final reply. It combines the
+//! reports of the command connection and of the thread.
 //!
 //! ```text
 //!            begin                      both sides have ended
@@ -11,20 +11,21 @@
 //!                         +-----------> Abandoned ------------------> Idle (or the next motion)
 //! ```
 //!
-//! The thread is armed before the `Move` is sent, so the first state of the motion finds it ready.
+//! The thread is armed before the `Move` is sent, so it is ready for the first state of the motion.
 //! Robot and thread then report in any order; the motion has ended when both have reported its end.
-//! Goals come and go meanwhile: a newer goal supersedes the older one within the same motion, and a
-//! goal that came too late for it gets its own motion. A program of the user runs in a separate
-//! motion. A motion that is given up, because a reply cannot be read or a deadline has passed,
-//! resolves at once; the next motion waits until the thread has seen the robot leave it. The phases
-//! `Stalled` and `Closed` can follow on any other phase. A stop outlives the motion that it brakes:
-//! it waits until a state shows an arm at rest. If a hand keeps the arm in motion, the robot stops
-//! it, because a motion that finished with a moving arm would end in a reflex.
+//! Goals can change within a motion: a newer goal supersedes the older one, and a goal that came
+//! too late for the motion gets its own motion. Each program of the user runs in its own motion. A
+//! motion is given up if a reply cannot be read or a deadline has passed. It then resolves at once,
+//! and the next motion waits until the thread has seen the robot leave the old motion. The phases
+//! `Stalled` and `Closed` can follow any other phase. A stop lasts longer than the motion that it
+//! brakes: it waits until a state shows the arm at rest. If a hand keeps the arm in motion, the
+//! robot is asked to stop it, because a motion that finished with a moving arm would end in a
+//! reflex.
 //!
 //! Inputs are [`Lifecycle::begin`], `update`, `close`, `cancel`, `stop`, `chunk`, `tune` and
 //! `disengage` (from users), and the `on_*` methods (from the command connection, the thread and
-//! the clock). Effects are returned by [`Lifecycle::poll`]. The lifecycle has no clock, socket or
-//! task: `now` is an argument, counted from any fixed moment.
+//! the clock). [`Lifecycle::poll`] returns the effects. The lifecycle has no clock, socket or task:
+//! `now` is an argument, and it is the time since any fixed moment.
 
 mod close_reason;
 mod current_motion;
@@ -65,32 +66,35 @@ pub use new_motion::NewMotion;
 pub use outcome::{ControlError, MotionError, MotionReport, Outcome, Party, Stage};
 pub use unready::Unready;
 
-/// Time for the robot to answer a `Move`, and to show the motion's modes after that.
+/// Time within which the robot must answer a `Move`. After the answer, its states must show the
+/// motion's modes within the same time.
 pub const START_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Time for robot and thread to end a motion, counted from the first end of the two.
+/// Time within which robot and thread must both end a motion, counted from the moment when the
+/// first of them ends it.
 pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Time for a stop to bring an arm under target control to rest. After that, the robot is asked to
-/// stop the arm. The robot then has [`END_TIMEOUT`] to end the motion, and the same time to show an
-/// arm at rest.
+/// Time within which a stop must bring an arm under target control to rest. After that time, the
+/// robot is asked to stop the arm. The robot then has [`END_TIMEOUT`] to end the motion, and the
+/// same time to show an arm at rest.
 pub const BRAKE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// An effect to carry out, in the order in which effects are returned.
+/// An effect that the caller of [`Lifecycle::poll`] must carry out. Effects must be carried out in
+/// the order in which they are returned.
 #[derive(Debug)]
 pub enum Output {
     /// Pass this order to the thread.
     Order(Order),
-    /// Send this request on the command connection. Replies to `Move` come back through
-    /// [`Lifecycle::on_move_reply`] with this motion; replies to other requests are not awaited.
+    /// Send this request on the command connection. Pass the replies to a `Move` to
+    /// [`Lifecycle::on_move_reply`] with this motion. No reply to another request is needed.
     Send {
-        /// The motion of the request.
+        /// The motion that the request belongs to.
         motion: MotionId,
         /// The request.
         request: Request,
     },
-    /// Notify the caller that began this program or session that it runs now, if the caller asked
-    /// for this.
+    /// Notify the caller that began this program or session that it now runs, if the caller
+    /// requested this notice.
     Began {
         /// Name of the program or session.
         id: GoalId,
@@ -111,45 +115,46 @@ pub struct Lifecycle {
     model: Arc<Model>,
     version: Version,
     phase: LifecyclePhase,
-    /// Motion that waits for the end of the motion under way, or of an abandoned motion.
+    /// Motion that waits for the end of the current motion, or of an abandoned motion.
     next: Option<NewMotion>,
-    /// The last session that lasted from goal to goal, if it did not end as asked, and its error.
+    /// The last session that lasted from goal to goal, and its error, if it did not end as
+    /// requested.
     ended: Option<(GoalId, MotionError)>,
-    /// Stops that have not resolved.
+    /// Stops that have not resolved yet.
     stops: Vec<Stop>,
     motions: u64,
     /// Number of cycles that the log of a motion holds.
     log_size: usize,
-    /// Silence of the robot after which a change that no state has shown counts as missing.
+    /// Time without a state after which a change that no state has shown counts as missing.
     link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
-    /// Earlier knowledge of the arm; `None` once a session has begun with it.
+    /// Values of the arm from an earlier identification; `None` once a session has begun with them.
     known: Option<Box<Identified>>,
     /// Values that sessions have learned about the arm.
     learned: Learned,
     outputs: VecDeque<Output>,
 }
 
-/// Phase of the motion, as known.
+/// Phase of the motion, as far as the lifecycle knows it.
 #[derive(Debug)]
 enum LifecyclePhase {
     Idle,
     UnderWay(Box<CurrentMotion>),
     /// A motion was given up and has resolved, but the thread has not seen the robot end it. The
-    /// next motion waits for that.
+    /// next motion waits until the thread has seen it.
     Abandoned {
         motion: MotionId,
-        /// Deadline until which the next motion waits. After that, the error with which new motions
-        /// are refused.
+        /// Until the deadline, the next motion waits. After the deadline, the error with which new
+        /// motions are refused.
         deadline: Result<Duration, MotionError>,
     },
-    /// A thread of the user has borrowed the cycle and does not run it. No motion can run.
+    /// A thread of the user has borrowed the cycle and does not run the cycle. No motion can run.
     Stalled {
-        /// The motion that was given up because of this, until the thread has ended it.
+        /// The motion that was given up because of the stall, until the thread has ended it.
         abandoned: Option<MotionId>,
     },
-    /// The connection is gone, for this reason; no motion starts any more.
+    /// The connection has ended, for this reason. No motion starts any more.
     Closed {
         reason: CloseReason,
         /// The motion that still brakes, until the thread has ended it.
@@ -165,8 +170,8 @@ impl LifecyclePhase {
 }
 
 impl Lifecycle {
-    /// Returns an idle lifecycle for a robot of this model and protocol `version`. Goals must keep
-    /// the model's limits.
+    /// Creates an idle lifecycle for a robot with this model and protocol `version`. Goals must
+    /// stay within the model's limits.
     pub fn new(model: Arc<Model>, version: Version) -> Self {
         Self {
             model,
@@ -185,15 +190,16 @@ impl Lifecycle {
         }
     }
 
-    /// Replaces the number of cycles that the log of a motion holds,
-    /// [`ControlLog::DEFAULT_CAPACITY`] by default.
+    /// Sets the number of cycles that the log of a motion holds. The default is
+    /// [`ControlLog::DEFAULT_CAPACITY`].
     #[must_use]
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
     }
 
-    /// Replaces the silence after which the link counts as lost, [`LINK_TIMEOUT`] by default.
+    /// Sets the time without a state after which the link counts as lost. The default is
+    /// [`LINK_TIMEOUT`].
     #[must_use]
     pub fn with_link_timeout(mut self, timeout: LinkTimeout) -> Self {
         self.link_timeout = timeout.get();
@@ -205,8 +211,8 @@ impl Lifecycle {
         &self.model
     }
 
-    /// Returns the goal that `motion` would begin with under this host's law. `None` for a program,
-    /// and under the robot's controller.
+    /// Returns the goal with which `motion` would begin under this host's law. Returns `None` for a
+    /// program, and under the robot's controller.
     pub fn compliant_goal<'a>(&self, motion: &'a NewMotion) -> Option<&'a Goal> {
         let goals = self.goals().filter(|_| motion.is_within_a_session());
         let compliant = goals.is_none_or(|goals| goals.backend == Backend::Torques);
@@ -218,21 +224,22 @@ impl Lifecycle {
         Margin::of(gains, &self.model, state, self.version)
     }
 
-    /// Begins the first session with the identified values of the arm, which were
-    /// [checked](Identified::check). The load that is declared at that time counts.
+    /// Makes the first session begin with the identified values of the arm. They must have been
+    /// [checked](Identified::check). They are valid for the load that is declared at that time.
     #[must_use]
     pub fn knowing(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
         self
     }
 
-    /// Keeps the arm out of these regions under target control, from the next motion that starts.
+    /// Keeps the arm out of these regions under target control, beginning with the next motion that
+    /// starts.
     pub fn keep_out_of(&mut self, regions: KeepOut) {
         self.keep_out = regions;
     }
 
-    /// Returns true if no motion is under way, and no motion or stop waits. The arm may still brake
-    /// after the end of the connection: see [`Self::is_braking`].
+    /// True if no motion runs and no motion or stop waits. The arm may still brake after the end of
+    /// the connection: see [`Self::is_braking`].
     pub fn is_idle(&self) -> bool {
         if !self.stops.is_empty() {
             return false;
@@ -241,14 +248,14 @@ impl Lifecycle {
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }
             | LifecyclePhase::Closed { .. } => true,
-            // The lifecycle does not wait for a motion that has passed its deadline.
+            // The lifecycle does not wait for a motion whose deadline has passed.
             LifecyclePhase::Abandoned { deadline, .. } => deadline.is_err(),
             LifecyclePhase::UnderWay(_) => false,
         }
     }
 
-    /// True if the thread is still needed after the end of the connection, to brake an arm that was
-    /// on its way to a goal.
+    /// True if the connection has ended but the thread is still needed to brake an arm that was on
+    /// its way to a goal.
     pub fn is_braking(&self) -> bool {
         matches!(
             self.phase,
@@ -264,7 +271,7 @@ impl Lifecycle {
         self.outputs.pop_front()
     }
 
-    /// Returns the motion under way, if it is `motion`.
+    /// Returns the current motion, if it is `motion`.
     fn current(&mut self, motion: MotionId) -> Option<&mut CurrentMotion> {
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) if current.motion == motion => Some(current),

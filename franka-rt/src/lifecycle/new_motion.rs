@@ -1,4 +1,4 @@
-//! Motions that callers request: accepted or refused, kept waiting, started.
+//! Motions that callers request. They are accepted or refused, kept waiting, and started here.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -19,39 +19,39 @@ use crate::stats::MotionTimes;
 use crate::together::StartTicket;
 use crate::triple_buffer::triple_buffer;
 
-/// A motion to begin. The name of its goal, or its own name, must never have been used before.
+/// A motion to begin. The id of its goal, or its own id, must never have been used before.
 #[derive(Debug)]
 pub enum NewMotion {
     /// A motion to a goal. It supersedes every earlier goal.
     Goal {
-        /// The goal, whose `id` names the motion.
+        /// The goal. Its `id` identifies the motion.
         goal: Box<Goal>,
-        /// The path to the goal's target, which is then the end of the path.
+        /// The path to the goal's target. The target is the end of the path.
         path: Option<Box<Chunk>>,
-        /// The ticket of a common start with other robots, if any: the arm is held until all are
-        /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and removes
-        /// it from the common start.
+        /// Ticket of a common start with other robots, if any. The arm is held until all robots are
+        /// ready. A goal with a ticket supersedes nothing. A later goal supersedes it as usual, and
+        /// removes it from the common start.
         ticket: Option<StartTicket>,
-        /// The session that the goal is for; `None` begins a separate motion.
+        /// The session that the goal belongs to. `None` begins a separate motion.
         session: Option<GoalId>,
     },
-    /// A session that holds the arm where it is and then lasts from goal to goal. It resolves when
-    /// the session has ended.
+    /// A session that holds the arm where it is, and then lasts from goal to goal. The motion
+    /// resolves when the session has ended.
     Session {
-        /// Gains and budget for holding the arm. The goal's `id` names the session.
+        /// Gains and budget with which the arm is held. The goal's `id` identifies the session.
         goal: Box<Goal>,
         /// Options of the session in addition to its goals.
         engagement: Engagement,
     },
     /// A motion under a program of the user. It supersedes nothing and is not superseded.
     Program {
-        /// Name of the motion.
+        /// Id of the motion.
         id: GoalId,
         /// Program that answers the states.
         program: Program,
         /// The motion to request from the robot.
         request: Box<MoveRequest>,
-        /// The ticket of a common start with other robots, for a control function. Until all are
+        /// Ticket of a common start with other robots, for a control function. Until all robots are
         /// ready, the driver holds the arm and does not call the function. Other programs do not
         /// wait.
         ticket: Option<StartTicket>,
@@ -69,7 +69,7 @@ impl NewMotion {
         }
     }
 
-    /// Returns the name under which the motion is cancelled and resolved.
+    /// Returns the id with which the motion is cancelled and resolved.
     pub fn id(&self) -> GoalId {
         match self {
             Self::Goal { goal, .. } | Self::Session { goal, .. } => goal.id,
@@ -77,8 +77,8 @@ impl NewMotion {
         }
     }
 
-    /// Returns the goal that this host's law begins with. `None` for a program, and for a session
-    /// under the robot's controller.
+    /// Returns the goal with which this host's law begins. Returns `None` for a program, and for a
+    /// session under the robot's controller.
     pub(super) fn compliant_goal(&self) -> Option<&Goal> {
         match self {
             Self::Session { engagement, .. } if engagement.backend != Backend::Torques => None,
@@ -87,7 +87,7 @@ impl NewMotion {
         }
     }
 
-    /// True if the motion is a goal of a session.
+    /// True if the motion is a goal for an existing session.
     pub(crate) fn is_within_a_session(&self) -> bool {
         matches!(
             self,
@@ -118,21 +118,21 @@ impl NewMotion {
 }
 
 impl Lifecycle {
-    /// Begins a motion of a robot in `state`, or passes its goal to the motion under way. If the
-    /// motion under way is ending, or was stopped or cancelled, the new motion waits for its end.
+    /// Begins a motion of a robot in `state`, or passes its goal to the current motion. If the
+    /// current motion is ending, or was stopped or cancelled, the new motion waits for its end.
     ///
     /// # Errors
-    /// After an error nothing is resolved or changed, and a ticket is dropped.
-    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a
-    ///   path while the maximum number of chunks is under way.
-    /// - [`MotionError::Busy`] while another motion runs or waits and does not yield. A running
-    ///   motion yields when it is ending, stopped or cancelled. Goals outside a session also yield
-    ///   to a new goal without a ticket.
-    /// - [`MotionError::Start`] if the other motions of its common start will not come.
-    /// - For a goal of a session that has ended: [`MotionError::Disengaged`] if the end was
-    ///   requested, otherwise the error that ended the session.
-    /// - [`MotionError::Protocol`] if the robot continues the previous motion, which was given up.
-    /// - [`MotionError::ConnectionClosed`] after the connection was lost.
+    /// After an error, nothing has been resolved or changed, and a ticket is dropped.
+    /// - [`MotionError::Goal`] if a goal, a region or a posture is not accepted, or if there is no
+    ///   room for a path because too many chunks are under way.
+    /// - [`MotionError::Busy`] if another motion runs or waits and does not yield. A running motion
+    ///   yields if it is ending, stopped or cancelled. Goals outside a session also yield to a new
+    ///   goal without a ticket.
+    /// - [`MotionError::Start`] if other motions of its common start will not arrive.
+    /// - If the goal belongs to a session that has ended: [`MotionError::Disengaged`] if the end
+    ///   was requested, otherwise the error that ended the session.
+    /// - [`MotionError::Protocol`] if the previous motion was given up and the robot continues it.
+    /// - [`MotionError::ConnectionClosed`] if the connection has ended.
     pub fn begin(
         &mut self,
         mut motion: NewMotion,
@@ -188,7 +188,7 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Checks that a path can be passed to the motion under way.
+    /// Checks that a path can be passed to the current motion.
     fn check_room(&mut self) -> Result<(), GoalError> {
         match self.goals_mut().map(Goals::has_room) {
             Some(false) => Err(TooManyChunks.into()),
@@ -196,7 +196,7 @@ impl Lifecycle {
         }
     }
 
-    /// Checks that the motion under way, or waiting, yields to `motion`.
+    /// Checks that the current motion and the waiting motion yield to `motion`.
     fn check_turn(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let current_gives_way = match &self.phase {
             LifecyclePhase::UnderWay(current) => {
@@ -230,8 +230,8 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Makes a motion wait until the previous motion has ended. An earlier waiting motion resolves
-    /// with `reason`.
+    /// Makes a motion wait until the previous motion has ended. If another motion waits, that
+    /// motion resolves with `reason`.
     pub(super) fn wait(&mut self, motion: NewMotion, reason: MotionError) {
         if let Some(before) = self.next.replace(motion) {
             self.resolve(before.id(), Err(reason));
@@ -260,8 +260,8 @@ impl Lifecycle {
         }
     }
 
-    /// Starts a motion to a goal; with an `engagement`, a motion of a session that lasts from goal
-    /// to goal.
+    /// Starts a motion to a goal. With an `engagement`, the motion is a session that lasts from
+    /// goal to goal.
     fn start_goal(
         &mut self,
         goal: Goal,

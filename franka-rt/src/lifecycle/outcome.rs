@@ -1,5 +1,5 @@
-//! Outcome of a motion: the value that its future resolves with. `franka_diagnosis` finds the
-//! reason why the robot ended it.
+//! Outcome of a motion: the value that the motion's future resolves with. `franka_diagnosis` finds
+//! out why the robot ended a motion.
 
 use core::fmt;
 use core::time::Duration;
@@ -20,32 +20,33 @@ use crate::together::StartFault;
 /// Outcome of a motion.
 pub type Outcome = Result<MotionReport, MotionError>;
 
-/// Report of a motion that ended as asked.
+/// Report of a motion that ended as requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionReport {
-    /// Duration from the first state that the goal answered to the arrival, in the robot's time,
-    /// with all pauses and delays. For a control function, the duration until the end of the
-    /// motion.
+    /// Time from the first state that the goal answered to the arrival, in the robot's time, with
+    /// all pauses and delays. For a control function, the time to the end of the motion.
     ///
-    /// The arm must then rest at the target for [`Settling::hold`](crate::session::Settling::hold)
-    /// before the motion resolves. The duration does not include that time; the counts below do.
+    /// After the arrival, the arm must rest at the target for
+    /// [`Settling::hold`](crate::session::Settling::hold) before the motion resolves. The duration
+    /// does not include that time; the counts below include it.
     pub duration: Duration,
-    /// Distance of the measured end effector from its target; `None` for a motion without one.
+    /// Distance between the measured end effector and its target; `None` for a motion without a
+    /// target.
     pub final_error: Option<PoseError>,
-    /// Distance after the arm was released at the end of the motion. The robot's own controller,
-    /// which does not have the compensation, takes over after that. `None` without a target, if the
-    /// arm stays held, and if the robot's controller ran the motion.
+    /// Distance from the target after the arm was released at the end of the motion. Then the
+    /// robot's own controller takes over, which does not have this driver's compensation. `None`
+    /// without a target, if the arm stays held, and if the robot's controller ran the motion.
     pub released_error: Option<PoseError>,
     /// Greatest distance of the measured end effector from the straight line to its target, `[m]`.
-    /// The line begins where the end effector was when the motion began. `None` for a motion
-    /// without a line: to joint positions, through waypoints, of a control function, or one that
-    /// has reacted to its condition.
+    /// The line begins at the place of the end effector when the motion began. `None` for a motion
+    /// without a line: a motion to joint positions, a motion through waypoints, a control function,
+    /// or a motion that has reacted to its condition.
     pub line_deviation: Option<f64>,
     /// Torques that compensated the friction and bias of each joint at the arrival, `[N m]`, in
-    /// addition to the springs. `None` if this driver's law did not run: under the robot's
-    /// controller, and for a control function.
+    /// addition to the springs. `None` under the robot's controller and for a control function,
+    /// because this driver's law did not run.
     pub compensation: Option<[f64; 7]>,
     /// Values at the time when the condition of the motion became true, if the motion reacted to it
     /// instead of arriving: see [`Reaction`](crate::session::Reaction). `None` if the motion
@@ -53,8 +54,8 @@ pub struct MotionReport {
     pub reacted: Option<Reacted>,
     /// Number of states that never arrived while the motion ran.
     pub lost_states: u64,
-    /// Number of states that arrived but were skipped, because a newer state had come before they
-    /// were read.
+    /// Number of states that arrived but were skipped, because a newer state had arrived before
+    /// they were read.
     pub skipped_states: u64,
     /// Lowest success rate that the robot reported while the motion ran, in `[0, 1]`.
     pub success_rate_min: f64,
@@ -62,11 +63,11 @@ pub struct MotionReport {
     pub success_rate_avg: f64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
-    /// The least time that was left until the next state was due when a command departed. `None`,
-    /// like the next options, if no command left.
+    /// Shortest time between the departure of a command and the time when the next state was due.
+    /// `None` if no command left; the same holds for the next optional fields.
     pub slack_min: Option<Slack>,
-    /// Number of commands that left only after the next state was due. A simulator that waits for
-    /// commands still has them in time.
+    /// Number of commands that left after the next state was due. A simulator that waits for
+    /// commands still receives them in time.
     pub overruns: u64,
     /// The longest cycle, with its phases.
     pub worst_cycle: Option<CycleTimes>,
@@ -116,153 +117,157 @@ impl Counted {
     }
 }
 
-/// Reason why a motion ended short of its goal, grouped by the party that can act on it.
+/// Reason why a motion ended before it reached its goal. Most descriptions begin with the party
+/// that can act on the error.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// Caller: the goal was not accepted. Nothing was sent to the robot.
+    /// Caller: the driver refused the goal. Nothing was sent to the robot.
     #[error(transparent)]
     Goal(#[from] GoalError),
-    /// Caller: the path was not accepted. Nothing was sent to the robot.
+    /// Caller: the driver refused the path. Nothing was sent to the robot.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// Caller: a newer goal took over.
+    /// Caller: a newer goal replaced this goal.
     #[error("superseded by a newer goal")]
     Superseded,
     /// Caller: a stop was requested; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
-    /// Caller: the goal was given up. The arm is held at the last target, or where it stopped.
+    /// Caller: the goal was given up. The arm is held at the last target or at the place where it
+    /// stopped.
     #[error("the motion was given up and the arm holds its position: {0}")]
     Held(Lapse),
-    /// The goal was given up and the arm braked, for this reason. The arm is held where it stopped.
-    /// Caller: the targets stopped coming, or are too near to the arm itself or to a keep-out
-    /// region, or the arm was pushed off its path.
+    /// The goal was given up and the arm braked, for the reason in [`Lapse`]. The arm is held where
+    /// it stopped. Caller: the targets stopped arriving, or are too near to the arm itself or to a
+    /// keep-out region, or the arm was pushed off its path.
     #[error("the motion was given up and the arm braked: {0}")]
     Braked(Lapse),
-    /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
+    /// Caller: the session that the goal belongs to has ended, or is about to end. Nothing was
+    /// sent.
     #[error("the arm is no longer engaged: call `engage` again")]
     Disengaged,
-    /// Caller: something else controls the arm, and does not yield to this motion.
+    /// Caller: another motion or program controls the arm, and does not yield to this motion.
     #[error(
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
     )]
     Busy,
-    /// Caller: not all motions of a common start came. The arm was held, or never moved.
+    /// Caller: some motions of a common start did not arrive. The arm was held, or never moved.
     #[error(transparent)]
     Start(#[from] StartFault),
-    /// Caller: the protocol version does not have this motion. Nothing was sent.
+    /// Caller: the protocol version does not support this motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
-    /// Caller: a command cannot be sent. A control function returned it, or it was computed from a
-    /// state or a goal with non-finite numbers. The driver has asked the robot to stop.
+    /// Caller: a command cannot be sent. Either a control function returned it, or it was computed
+    /// from a state or a goal with non-finite numbers. The driver has asked the robot to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
     /// Caller: a control function gave up. The driver has asked the robot to stop.
     #[error("the control function gave up with code {code}")]
     GivenUp {
-        /// The function's own code.
+        /// Code that the function returned.
         code: i32,
     },
     /// Caller: a control function panicked. The driver has asked the robot to stop.
     #[error("the control function panicked: {message}")]
     Panicked {
-        /// Message of the panic, if it was text.
+        /// Message of the panic, if it was a string.
         message: String,
     },
-    /// Caller: the thread that runs active control has read no state for this long. The driver has
+    /// Caller: the thread that runs active control has read no state for `silence`. The driver has
     /// asked the robot to stop.
     #[error(
         "active control has read no state for {} ms, expected a `read_once` every millisecond",
         .silence.as_millis()
     )]
     Stalled {
-        /// Length of the silence when the motion was given up.
+        /// Time without a read when the motion was given up.
         silence: Duration,
     },
-    /// Caller: the control thread has run no cycle for this long, and the robot has ended the
-    /// motion because commands were missing. A control function has not returned, or the thread was
-    /// not scheduled.
+    /// Caller: the control thread has run no cycle for `silence`, and the robot has ended the
+    /// motion because commands were missing. Either a control function has not returned, or the
+    /// thread was not scheduled.
     #[error(
         "the control thread has run no cycle for {} ms, expected one every millisecond: the \
          control function has not returned, or this computer delays the thread",
         .silence.as_millis()
     )]
     Hung {
-        /// Least time without a cycle.
+        /// Time without a cycle, at least.
         silence: Duration,
     },
-    /// Robot: it refused to start the motion. The text is libfranka's, followed by the remedy after
-    /// a reflex.
+    /// Robot: it refused to start the motion. The text is libfranka's. After a reflex, the remedy
+    /// follows the text.
     #[error("{}{}", .0, recover_first(.0))]
     Rejected(Refusal),
-    /// Robot: it ended the motion: by a reflex, a user stop, another client's stop, or a safety
-    /// function. Clear the cause; after a reflex, recover.
+    /// Robot: it ended the motion, by a reflex, a user stop, another client's stop or a safety
+    /// function. Remove the cause. After a reflex, recover the robot.
     #[error(transparent)]
     Control(#[from] Box<ControlError>),
     /// Robot or link: the supervised robot accepts no motions now, and this motion did not wait, or
-    /// no longer waits. It has not begun. Who can act depends on the reason.
+    /// stopped waiting. It has not begun. The party that can act depends on the reason.
     #[error("{}", not_ready(*.why, *.waited))]
     NotReady {
-        /// Reason.
+        /// Reason why the robot accepts no motions.
         why: Unready,
         /// Time that the motion waited.
         waited: Duration,
     },
-    /// Robot or surroundings: the reference reached the target and the arm did not follow. The arm
-    /// rests where it is.
+    /// Robot or surroundings: the reference reached the target, but the arm did not. The arm rests
+    /// where it is.
     ///
-    /// Caller: if a torque limit of the gains kept the arm back, see [`Shortfall::limited`].
+    /// Caller: if a torque limit in the gains held the arm back, see [`Shortfall::limited`].
     #[error("the arm stopped {0}")]
     TargetNotReached(Shortfall),
-    /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
-    /// guides it, or its joints still move.
+    /// Robot or surroundings: no motion runs, but after a stop no state showed the arm at rest.
+    /// Either a hand guides the arm, or its joints still move.
     #[error("joint {joint} moves at {velocity:.3} rad/s without a motion, expected an arm at rest")]
     NotAtRest {
-        /// A joint that moves, 1 to 7.
+        /// One of the joints that move, 1 to 7.
         joint: usize,
         /// Velocity of that joint, `[rad/s]`.
         velocity: f64,
     },
-    /// The condition of the motion was true, but the arm did not reach its new target. `error` is
-    /// [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]; the party of `error` can act
-    /// on it.
+    /// The condition of the motion became true, but the arm did not reach its new target. `error`
+    /// is [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]; the party of `error` can
+    /// act on it.
     #[error("{error} (after the motion's condition was true at {} ms)", .reacted.after.as_millis())]
     AfterReaction {
-        /// Values at the time when the condition became true.
+        /// Values at the time when the condition of the motion became true.
         reacted: Box<Reacted>,
         /// Reason why the arm did not reach the new target.
         error: Box<Self>,
     },
-    /// Link: the robot fell silent.
+    /// Link: the robot stopped sending states.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
-        /// Length of the silence when the motion was given up.
+        /// Time without a state when the motion was given up.
         silence: Duration,
     },
-    /// The command connection has ended. Who can act depends on the reason.
+    /// The command connection has ended. The party that can act depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// Cause of the end.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
     /// Peer: a reply of the robot cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
-    /// Peer: the robot broke the protocol. Please report it.
+    /// Peer: the robot violated the protocol. Please report it.
     #[error("{what}")]
     Protocol {
-        /// Action of the robot that broke the protocol.
+        /// Action of the robot that violated the protocol.
         what: &'static str,
     },
 }
 
 impl MotionError {
-    /// True if the robot accepts a new motion after this error without help from outside.
+    /// True if the robot accepts a new motion after this error without help from people or the
+    /// program.
     ///
     /// After a reflex the robot must be recovered first. After a lost link or connection, the
-    /// program must reconnect. A failed control function may also have left the robot without
-    /// commands until the robot stopped itself.
+    /// program must reconnect. After a failed control function, the robot may have received no
+    /// commands and may have stopped itself.
     pub fn is_ready_for_more(&self) -> bool {
         matches!(
             self,
@@ -282,7 +287,7 @@ impl MotionError {
     }
 
     /// Returns the values at the time when the motion's condition became true, if the motion failed
-    /// after that. For a motion that the robot ended, see
+    /// after that. If the robot ended the motion, look for
     /// [`Guard::Reaction`](crate::session::Guard::Reaction) in the records of the log.
     pub fn reacted(&self) -> Option<&Reacted> {
         match self {
@@ -291,7 +296,7 @@ impl MotionError {
         }
     }
 
-    /// Returns this error for a motion whose condition was true before.
+    /// Returns this error for a motion whose condition became true before the error.
     pub(super) fn after(self, reacted: Reacted) -> Self {
         Self::AfterReaction {
             reacted: Box::new(reacted),
@@ -373,7 +378,7 @@ impl MotionError {
     }
 }
 
-/// Returns the advice for a robot that refuses in the mode "Reflex".
+/// Returns the advice for a robot that refused a motion because it is in the mode "Reflex".
 fn recover_first(refusal: &Refusal) -> &'static str {
     let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
     match (refusal.status() == not_possible, refusal.mode()) {
@@ -389,20 +394,20 @@ fn not_ready(why: Unready, waited: Duration) -> String {
     }
 }
 
-/// Party that can act on an error. Every error has one, see [`MotionError::party`].
+/// Party that can act on an error. Every error has one: see [`MotionError::party`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Party {
-    /// The program: it made an impossible request, or ended something itself.
+    /// The program: it made an impossible request, or it ended something itself.
     Caller,
-    /// People at the robot: it refused, stopped itself, or something is in its way.
+    /// People at the robot: the robot refused or stopped itself, or something is in its way.
     Robot,
     /// The network.
     Link,
-    /// This computer: privileges, kernel, resources.
+    /// This computer: its privileges, its kernel or its resources.
     Host,
-    /// The code of one side: the other side breaks the protocol, or has another version.
+    /// The code of one side: the other side violates the protocol, or uses another version of it.
     Peer,
 }
 
@@ -424,11 +429,12 @@ impl fmt::Display for Party {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Stage {
-    /// No state of the motion had been answered.
+    /// No state of the motion had been answered yet.
     Starting,
     /// The motion was under way.
     Running,
-    /// The finishing command was sent: the robot may have refused to finish a moving command.
+    /// The finishing command was sent. The robot may have refused to finish a motion in which the
+    /// arm still moved.
     Finishing,
 }
 
@@ -440,21 +446,21 @@ pub enum Stage {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ControlError {
-    /// The robot's answer, the errors that stopped it (`reflex_reason` of the state that ended the
-    /// motion) and the success rate before it.
+    /// The robot's answer, the errors that stopped the robot (`reflex_reason` of the state that
+    /// ended the motion), and the success rate before that state.
     pub failure: ControlFailure,
-    /// Errors that are active in the last state.
+    /// Errors that are active in the last state of the motion.
     pub errors: Errors,
-    /// Progress of the motion.
+    /// How far the motion had progressed.
     pub stage: Stage,
-    /// The last cycles of the motion. The newest one shows its end. An option of the connection
-    /// sets their number.
+    /// The last cycles of the motion. The newest cycle shows its end. An option of the connection
+    /// sets the number of cycles.
     pub log: Arc<ControlLog>,
-    /// Source of the motion's commands.
+    /// Source of the commands of the motion.
     pub commander: Commander,
-    /// Counts over the motion.
+    /// Counts over all cycles of the motion.
     pub statistics: MotionStatistics,
-    /// The model that control computed with.
+    /// Model with which the driver computed the commands.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub model: Arc<Model>,
 }
@@ -465,8 +471,9 @@ impl ControlError {
         self.failure.refusal
     }
 
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`: the row
-    /// of the first error that stopped the robot, or of the robot's answer.
+    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`. It is the
+    /// row of the first error that stopped the robot; without such an error, it is the row of the
+    /// robot's answer.
     pub fn entry(&self) -> &'static str {
         let first = self.failure.reflex_reason.iter().next();
         match first.filter(|_| self.is_reflex()) {
@@ -485,13 +492,13 @@ impl ControlError {
 impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self.stage {
-            // libfranka 0.21, `robot_impl.cpp`: for a motion that has not begun, the text is the
-            // refusal's.
+            // libfranka 0.21, `robot_impl.cpp`: if the motion has not begun, the text is that of
+            // the refusal.
             Stage::Starting if self.is_reflex() && !self.failure.reflex_reason.is_empty() => {
                 write!(f, "{} {}", self.failure.refusal, self.failure.reflex_reason)
             }
             Stage::Starting => write!(f, "{}", self.failure.refusal),
-            // For a motion that was finishing, this text replaces the refusal's.
+            // If the motion was finishing, this text replaces the text of the refusal.
             Stage::Finishing if self.is_reflex() => {
                 write!(
                     f,

@@ -1,4 +1,5 @@
-//! Programs of the user: control functions and commands from a thread of the user, one per motion.
+//! Programs of the user: control functions, and commands from a thread of the user. Each program
+//! has its own motion.
 
 use core::time::Duration;
 
@@ -11,15 +12,14 @@ use crate::session::GoalId;
 /// A motion under a program of the user.
 #[derive(Debug)]
 pub(super) struct UserProgram {
-    /// Name of the caller that awaits the program's end.
+    /// Id under which a caller awaits the program's end.
     pub(super) id: GoalId,
-    /// Other callers that requested the end and await it.
+    /// Ids of other callers that requested the end and await it.
     pub(super) stops: Vec<GoalId>,
 }
 
 impl Lifecycle {
-    /// Stops the robot that runs the program of that name. Returns true if it is the current
-    /// program.
+    /// Stops the robot if the current program has this id. Returns true if it has.
     pub(super) fn cancel_program(&mut self, id: GoalId, now: Duration) -> bool {
         let named = self.program().is_some_and(|program| program.id == id);
         if named {
@@ -28,8 +28,8 @@ impl Lifecycle {
         named
     }
 
-    /// Stops the robot that runs the current program; `id` resolves when the robot has stopped.
-    /// Returns true if there is a program.
+    /// Stops the robot if it runs a program. `id` resolves when the robot has stopped. Returns true
+    /// if there is a program.
     pub(super) fn stop_program(&mut self, id: GoalId, now: Duration) -> bool {
         let Some(program) = self.program() else {
             return false;
@@ -49,9 +49,9 @@ impl Lifecycle {
         }
     }
 
-    /// Asks the robot to stop the motion under way, unless it was asked already or has ended the
-    /// motion. The robot's answer is not awaited; only the end of the motion counts. A robot that
-    /// continues is asked once more, then given up.
+    /// Asks the robot to stop the current motion, unless it was already asked or has ended the
+    /// motion. The driver does not wait for the reply, only for the end of the motion. If the robot
+    /// continues, it is asked once more, and then the motion is given up.
     pub(super) fn send_stop(&mut self, now: Duration) {
         let LifecyclePhase::UnderWay(current) = &mut self.phase else {
             return;

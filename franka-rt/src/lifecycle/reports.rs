@@ -1,4 +1,4 @@
-//! Reports of the command connection, the thread and the clock.
+//! Reports from the command connection, the thread and the clock.
 
 use core::time::Duration;
 
@@ -43,9 +43,9 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Notes that a reply to the `Move` of `motion` could not be read. It is then unknown what the
-    /// robot does. The arm is braked, the robot is asked to stop, and the goal resolves. New
-    /// motions wait until states show that this motion has ended.
+    /// Processes a reply to the `Move` of `motion` that could not be read. It is then unknown what
+    /// the robot does. Therefore the arm is braked, the robot is asked to stop, and the goal
+    /// resolves. New motions wait until states show that this motion has ended.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         if self.current(motion).is_some() {
             self.give_up(MotionError::Violation(violation), now);
@@ -89,7 +89,7 @@ impl Lifecycle {
                 }
             }
             Event::Ended(ended) => self.on_ended(ended, now),
-            // A motion that the silence ended has its own event; a motion without an observer
+            // If the silence ends a motion, another event reports it. A motion without an observer
             // continues.
             Event::LinkLost { .. } | Event::Unobserved { .. } => {}
         }
@@ -144,10 +144,10 @@ impl Lifecycle {
         }
     }
 
-    /// Closes the lifecycle, because the command connection is gone. Every goal resolves with an
+    /// Closes the lifecycle, because the command connection has ended. Every goal resolves with an
     /// error, and no motion starts any more.
     ///
-    /// An arm on its way to a goal is braked, for as long as the thread runs: see
+    /// If the arm is on its way to a goal, it is braked as long as the thread runs: see
     /// [`Self::is_braking`]. If a program of the user moves the arm, no more commands are sent, and
     /// the robot stops the arm.
     pub fn on_connection_closed(&mut self, reason: CloseReason) {
@@ -178,9 +178,9 @@ impl Lifecycle {
         self.fail_stops(&error);
     }
 
-    /// Notes that a thread that has borrowed the cycle has not run it for `silence`, or with `None`
-    /// that the thread runs it again. Meanwhile no state arrives and no motion can run. The motion
-    /// under way and a motion that waits for it are given up and resolve as
+    /// Processes a stall: a thread that has borrowed the cycle has not run it for `silence`. With
+    /// `None`, the thread runs the cycle again. During a stall, no state arrives and no motion can
+    /// run. The current motion and the waiting motion are given up and resolve as
     /// [`MotionError::Stalled`].
     pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
         match (&self.phase, silence) {
@@ -209,7 +209,7 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the time at which [`Self::on_time`] must be called, if no other input comes before.
+    /// Returns the time at which [`Self::on_time`] must be called if no other input arrives before.
     pub fn deadline(&self) -> Option<Duration> {
         let deadlines = [self.phase_deadline(), self.deadline_of_stops()];
         deadlines.into_iter().flatten().min()
@@ -225,9 +225,9 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the error of a motion whose end was not seen, if no state has come for `silence`.
-    /// `None` if the silence is too short to matter. `turning` is true if the control thread has
-    /// run meanwhile.
+    /// Returns the error of a motion whose end was not seen, if no state has arrived for `silence`.
+    /// Returns `None` if the silence is too short to matter. `turning` is true if the control
+    /// thread has run during the silence.
     pub fn unseen(silence: Duration, turning: bool) -> Option<MotionError> {
         (silence >= END_TIMEOUT / 2).then_some(match turning {
             true => MotionError::LinkLost { silence },
@@ -235,8 +235,8 @@ impl Lifecycle {
         })
     }
 
-    /// Postpones the deadlines that have passed by `now`. They belong to the motion under way or
-    /// given up, and to stops.
+    /// Postpones the deadlines that have passed by `now`: of the current or abandoned motion, and
+    /// of stops.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {
@@ -251,10 +251,10 @@ impl Lifecycle {
         }
     }
 
-    /// Checks the deadline at `now`. If neither robot nor thread has ended the motion by then, the
-    /// robot is asked to stop and has [`END_TIMEOUT`] more. Otherwise the motion is given up. If no
-    /// state was seen, it resolves as [`unseen`](Self::unseen), but not before the link counts as
-    /// lost.
+    /// Processes a deadline that has passed by `now`. If neither robot nor thread has ended the
+    /// motion, the robot is asked to stop it within [`END_TIMEOUT`]. Otherwise the motion is given
+    /// up. If no state was seen, the motion resolves as [`unseen`](Self::unseen), but only after
+    /// the link counts as lost.
     pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;

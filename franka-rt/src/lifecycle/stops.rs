@@ -1,4 +1,4 @@
-//! Stops: the moving arm brakes, and then the states must show that the arm rests.
+//! Stops: the moving arm brakes, and after that the states must show that the arm rests.
 
 use core::mem;
 use core::time::Duration;
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::session::{Goal, GoalId, OnArrival, REST_VELOCITY};
 
-/// A stop that has not resolved.
+/// A stop that has not resolved yet.
 #[derive(Debug)]
 pub(super) struct Stop {
     id: GoalId,
@@ -22,20 +22,22 @@ pub(super) struct Stop {
 
 #[derive(Debug)]
 enum StopStage {
-    /// The motion under way brakes.
+    /// The current motion brakes.
     Braking {
-        /// The goal whose outcome decides. Several stops may share it.
+        /// The goal whose outcome decides the outcome of the stop. Several stops may share one
+        /// goal.
         goal: GoalId,
-        /// Deadline after which the robot is asked to stop; `None` once it was asked.
+        /// Deadline after which the robot is asked to stop the motion; `None` once the robot was
+        /// asked.
         until: Option<Duration>,
     },
-    /// Nothing of this program moves any more. The states must show this.
+    /// Nothing that this program started moves any more. The states must show this.
     Showing {
         /// Report on the motion that was stopped.
         report: Box<MotionReport>,
-        /// Deadline for the states to show this; `None` until the first state.
+        /// Deadline until which the states must show it; `None` until the first state.
         until: Option<Duration>,
-        /// Reason why the newest state does not show it.
+        /// Reason why the newest state does not show an arm at rest.
         why: MotionError,
     },
 }
@@ -61,14 +63,14 @@ impl StopStage {
 }
 
 impl Lifecycle {
-    /// Brakes everything that moves. Goals before the stop resolve as [`MotionError::Stopped`]. The
-    /// stop resolves under the name `id` when the motion has ended and a state shows an arm at rest
-    /// and a robot without a motion. Does nothing and returns false if the arm rests already, and
-    /// after the end of the connection.
+    /// Brakes everything that moves. Goals from before the stop resolve as
+    /// [`MotionError::Stopped`]. The stop resolves with `id` when the motion has ended and a state
+    /// shows the arm at rest and the robot without a motion. Does nothing and returns false if the
+    /// arm already rests, or if the connection has ended.
     ///
-    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is
-    /// also sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are
-    /// requested at the same time share one braking and its outcome.
+    /// `StopMove` is sent again if a motion was given up and the robot may still run it. It is also
+    /// sent if the current motion has not ended after [`BRAKE_TIMEOUT`]. Stops that are requested
+    /// at the same time share one braking and its outcome.
     pub fn stop(&mut self, id: GoalId, state: &RobotState, now: Duration) -> bool {
         match &self.phase {
             LifecyclePhase::Closed { .. } => return false,
@@ -117,21 +119,21 @@ impl Lifecycle {
         self.stops.push(Stop { id, stage });
     }
 
-    /// Returns the newest goal, if it is the brake of a stop.
+    /// Returns the newest goal if it brakes for a stop.
     fn brake_of_a_stop(&self) -> Option<GoalId> {
         let (newest, _) = self.heading()?;
         let brakes = |stop: &Stop| stop.stage.is_braking_by(newest);
         self.stops.iter().any(brakes).then_some(newest)
     }
 
-    /// Processes the newest state, for stops that wait until a state shows an arm at rest.
+    /// Processes the newest state for stops that wait until a state shows an arm at rest.
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.stops.is_empty() {
             return;
         }
         let unrest = match &self.phase {
             LifecyclePhase::Idle => unrest(state),
-            // Another motion has begun, or a goal that continues within the stopped motion.
+            // Another motion has begun, or a goal within the stopped motion.
             LifecyclePhase::UnderWay(_) => return self.fail_stops(&MotionError::Superseded),
             // The thread has not seen the end of the motion.
             _ => Some(STILL_SHOWN),
@@ -154,8 +156,8 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the stops that brake by this goal with its outcome. Returns the outcome if no stop
-    /// does.
+    /// Resolves the stops that brake with this goal, using its outcome. Returns the outcome if
+    /// there is no such stop.
     pub(super) fn share_with_stops(&mut self, goal: GoalId, result: Outcome) -> Option<Outcome> {
         let brakes = |stop: &Stop| stop.stage.is_braking_by(goal);
         if !self.stops.iter().any(brakes) {
@@ -174,9 +176,9 @@ impl Lifecycle {
         None
     }
 
-    /// Handles stops whose time has passed. If a motion still brakes, asks the robot to stop it. A
-    /// stop that waits for a state resolves: with `unseen` if no state came, otherwise with the
-    /// reason from the newest state.
+    /// Handles stops whose deadline has passed. If a motion still brakes, the robot is asked to
+    /// stop it. A stop that waits for a state resolves: with `unseen` if no state arrived,
+    /// otherwise with the reason from the newest state.
     pub(super) fn give_up_stops(&mut self, now: Duration, unseen: Option<&MotionError>) {
         for mut stop in mem::take(&mut self.stops) {
             let is_over = stop.stage.until().is_some_and(|until| until <= now);
@@ -206,7 +208,7 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the earliest deadline of the stops.
+    /// Returns the earliest deadline of all stops.
     pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
         let until = self.stops.iter().map(|stop| stop.stage.until());
         until.flatten().min()
@@ -233,10 +235,10 @@ impl Lifecycle {
     }
 }
 
-/// Returns the reason why `state` does not show an arm at rest and a robot without a motion; `None`
-/// if it does.
+/// Returns the reason why `state` does not show an arm at rest and a robot without a motion.
+/// Returns `None` if it shows both.
 fn unrest(state: &RobotState) -> Option<MotionError> {
-    // The modes of a motion show before the robot's mode does.
+    // The modes of a motion appear in the states before the robot's mode changes.
     let begins = state.robot_mode == RobotMode::Idle
         && state.motion_generator_mode != MotionGeneratorMode::Idle;
     if begins || state.robot_mode == RobotMode::Move {

@@ -1,4 +1,4 @@
-//! The lifecycle, with a driver whose states a test makes up.
+//! The lifecycle, with a driver whose states the test supplies.
 
 mod product;
 mod stops;
@@ -213,8 +213,8 @@ fn motion_waits_for_end_of_an_abandoned_one_or_fails() {
     assert_eq!(moves(&pair), 2);
 }
 
-/// A session ends, but its outcome is not yet known. A separate path waits for the outcome, and a
-/// path for the session resolves with it.
+/// A session ends, but its outcome is not known yet. A separate path waits for the outcome. A path
+/// for the session resolves with the outcome.
 #[test]
 fn two_paths_that_wait_for_the_same_end_do_not_change_places() {
     let mut pair = LifecycleAndDriver::new();

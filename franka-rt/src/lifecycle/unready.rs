@@ -1,11 +1,11 @@
-//! Reasons why a robot accepts no motion.
+//! Reasons why a robot accepts no motions.
 
 use franka_proto::Command;
 
 use super::{Differences, Party};
 
-/// Reason why a robot accepts no motion now. The driver checks this for supervised robots; a robot
-/// without supervision refuses motions itself, except while a stop is latched.
+/// Reason why a robot accepts no motions now. The driver checks it for supervised robots. Without
+/// supervision, the robot itself refuses motions, except while a stop is latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -13,26 +13,26 @@ pub enum Unready {
     /// Link: there is no connection. The supervisor reconnects.
     #[error("the robot is not connected")]
     Disconnected,
-    /// Link: the robot is silent.
+    /// Link: the robot sends no states.
     #[error("no states arrive from the robot")]
     Silent,
-    /// Robot: a reflex, from which the supervisor recovers the robot.
+    /// Robot: it stopped with a reflex, and the supervisor is recovering it.
     #[error("the robot is being recovered from a reflex")]
     Recovering,
-    /// Robot: a reflex. Its recovery waits for the user's approval.
+    /// Robot: it stopped with a reflex. The recovery waits for the user's approval.
     #[error("the recovery from a reflex waits for approval (`agree`)")]
     AgreementAwaited,
-    /// Robot: after a lost connection, the robot differs from before. Its recovery from a reflex
-    /// waits for the user's approval, and a motion that waited does not begin.
+    /// Robot: after a lost connection, the robot differs from the robot before. Its recovery from a
+    /// reflex waits for the user's approval, and waiting motions do not begin.
     #[error("the robot differs from the robot before the connection was lost: {0}")]
     Unrecognised(Differences),
-    /// Robot: the settings of this program are being sent again after a reconnect.
+    /// Robot: this program's settings are being sent again after a reconnect.
     #[error("the settings of this program are being restored on the robot")]
     Configuring,
-    /// Robot: a setting of this program could not be restored after a reconnect.
+    /// Robot: one of this program's settings could not be restored after a reconnect.
     #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
-    /// Robot: a reflex, from which the user must recover the robot.
+    /// Robot: it stopped with a reflex, and the user must recover it.
     #[error("the robot stopped itself by a reflex (`recover` first)")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.
@@ -50,7 +50,8 @@ pub enum Unready {
 }
 
 impl Unready {
-    /// True if the supervisor is about to end this condition. People must end all other conditions.
+    /// True if the supervisor is about to end this condition. All other conditions must be ended by
+    /// people.
     pub fn is_passing(self) -> bool {
         matches!(
             self,

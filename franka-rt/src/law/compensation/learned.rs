@@ -1,10 +1,11 @@
-//! Torque of each joint in steady motion that its model does not have: friction, which opposes the
-//! motion, and bias, which does not depend on the direction.
+//! The torque of each joint in steady motion that the robot's model does not contain. It has two
+//! parts: friction, which opposes the motion, and bias, which does not depend on the direction.
 //!
-//! In one direction only the sum of friction and bias is visible. A Kalman filter of two states per
-//! joint separates them: `takes = direction * friction + bias`. Friction changes slowly, bias
-//! quickly, because a load weighs differently in every pose. Covariances are relative to the noise
-//! density of the measurement, `[1/s]`, so they are the rates of learning.
+//! While a joint moves in one direction, only the sum of friction and bias is visible. For each
+//! joint, a Kalman filter with two states separates them: `takes = direction * friction + bias`.
+//! Friction changes slowly. Bias changes quickly, because the torque of a load depends on the pose.
+//! Covariances are divided by the noise density of the measurement, `[1/s]`, so they are the rates
+//! of learning.
 
 use crate::shaping::CYCLE;
 
@@ -19,7 +20,7 @@ struct Joint {
     friction: f64,
     /// Bias, `[N m]`.
     bias: f64,
-    /// Covariance of the friction, of the bias, and of both, `[1/s]`.
+    /// Variance of the friction, variance of the bias, and covariance of the two, `[1/s]`.
     covariance: [f64; 3],
 }
 
@@ -34,7 +35,8 @@ impl Default for Joint {
 }
 
 impl Learned {
-    /// Begins with a friction and a bias of each joint, and their standard deviations, `[N m]`.
+    /// Creates the values of an arm from a friction and a bias of each joint. Each comes with its
+    /// standard deviation; all are in `[N m]`.
     pub(crate) fn known(joints: [((f64, f64), (f64, f64)); 7]) -> Self {
         Self(joints.map(|((friction, of_friction), (bias, of_bias))| {
             let covariance = |deviation: f64, most: f64| (deviation * deviation / NOISE).min(most);
@@ -50,9 +52,9 @@ impl Learned {
         }))
     }
 
-    /// Returns friction and bias of a joint, `[N m]`.
+    /// Returns the friction and the bias of a joint, `[N m]`.
     ///
-    /// Even an arm without friction needs a little torque, because its torques lag. For such an arm
+    /// Even an arm without friction needs a small torque, because its torques lag. For such an arm
     /// both values are zero.
     pub(crate) fn of(&self, joint: usize) -> (f64, f64) {
         let Joint { friction, bias, .. } = self.0[joint];
@@ -61,7 +63,8 @@ impl Learned {
         (friction * sticks, bias - unsure)
     }
 
-    /// Returns the uncertainty of a joint: 1 until it has moved in both directions, then down to 0.
+    /// Returns the uncertainty of a joint: 1 until the joint has moved in both directions, after
+    /// that a value that falls to 0.
     pub(super) fn unknown(&self, joint: usize) -> f64 {
         let [of_friction, ..] = self.0[joint].covariance;
         (of_friction / KNOWN - 1.0).clamp(0.0, 1.0)
@@ -88,31 +91,33 @@ impl Learned {
     }
 }
 
-/// Friction up to which a joint counts as smooth, `[N m]`. From twice this value the joint sticks.
+/// Friction up to which a joint counts as smooth, `[N m]`. At twice this value or more, the joint
+/// counts as sticking.
 const SMOOTH: f64 = 0.1;
 
-/// Bias of a smooth joint that springs and integral compensate alone, `[N m]`.
+/// Bias of a smooth joint that the springs and the integral compensate alone, `[N m]`.
 pub(super) const UNBIASED: f64 = 0.1;
 
-/// Initial covariance of friction and bias, for an unknown arm, `[1/s]`.
+/// Initial variances of friction and bias for an unknown arm, `[1/s]`.
 const UNKNOWN: [f64; 2] = [5.0, 3.0];
 
-/// Noise density of the measured torque of a joint, `[N^2 m^2 s]`. With it, the prior of an unknown
-/// friction is some 1 N m.
+/// Noise density of the measured torque of a joint, `[N^2 m^2 s]`. With it, the prior standard
+/// deviation of an unknown friction is about 1 N m.
 const NOISE: f64 = 0.2;
 
-/// Covariance of the friction of a joint that has moved in both directions, `[1/s]`. With one
-/// direction only, the covariance does not fall below twice this value.
+/// Variance of the friction once a joint has moved in both directions, `[1/s]`. While it has moved
+/// in only one direction, the variance stays at twice this value or more.
 const KNOWN: f64 = 0.9;
 
-/// Growth of the covariances of friction and bias, `[1/s^2]`.
+/// Growth rates of the variances of friction and bias, `[1/s^2]`.
 const DRIFT: [f64; 2] = [0.2, 5.0];
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Moves to and fro for four seconds. The joint has this friction and, over time, this bias.
+    /// Moves to and fro for four seconds. The joint has this friction, and this bias as a function
+    /// of time.
     fn to_and_fro(friction: f64, bias: impl Fn(f64) -> f64) -> Learned {
         let mut this = Learned::default();
         for cycle in 0..4000 {
@@ -129,7 +134,7 @@ mod tests {
         assert!((bias + 0.3).abs() < 0.05, "{bias}");
     }
 
-    /// A load that weighs more on the way out than on the way back is not friction.
+    /// A load that has more torque on the way out than on the way back does not count as friction.
     #[test]
     fn a_bias_that_changes_with_the_pose_is_not_taken_for_friction() {
         let pose = |t: f64| 2.0 * (core::f64::consts::PI * t).sin().abs();

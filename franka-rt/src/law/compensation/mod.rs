@@ -1,9 +1,9 @@
-//! Torques in addition to the springs: against friction, and against an undeclared load or a biased
-//! torque sensor.
+//! Torques that are added to the springs, against friction, an undeclared load or a biased torque
+//! sensor.
 //!
-//! A joint with friction leaves a spring stretched by its static torque over the stiffness. If the
-//! spring is soft enough for a person to push the arm, this is millimetres. Three torques per joint
-//! compensate it:
+//! If a joint has friction, its spring stays stretched by the friction torque divided by the
+//! stiffness. With springs soft enough for a person to push the arm, the stretch is millimetres.
+//! Three torques per joint compensate it:
 //!
 //! ```text
 //! tau = c tanh(dq_ref / v0)                       friction, along the reference in motion
@@ -13,25 +13,26 @@
 //! ```
 //!
 //! - `c` and `b` are [`learned`] in motion, from the torque that the springs exert in addition to
-//!   them. On an arm without friction and bias both are zero.
-//! - `i` is an integral that grows where the arm rests outside its [`DEAD_ZONE`], or creeps to its
+//!   `c` and `b`. On an arm without friction and bias both are zero.
+//! - `i` is an integral that grows while the arm rests outside its [`DEAD_ZONE`] or creeps to its
 //!   target. It decays in motion. Inside the dead zone it stays constant, to avoid limit cycles.
-//!   Springs and integral together are limited to the torque that friction can explain, counted
-//!   from where the arm stopped; the integral may always return to zero. A push on the arm
-//!   therefore meets little more than the springs, and leaves nothing behind. Until the arm has
-//!   stopped, its unknown torques and a possible new grip also count for a while.
-//! - The second line is a spring that saturates at 0.6 of the friction. For every delay of the
-//!   torque loop it therefore adds less energy to an oscillation than friction removes. It also
-//!   shortens the slip of a joint that breaks away, even where the springs are soft.
+//!   Springs and integral together may change only by the torque that friction can explain, counted
+//!   from the torque with which the arm stopped; the integral may always return to zero. Therefore
+//!   a push on the arm meets little more than the springs, and has no effect after it ends. Until
+//!   the arm has stopped, the limit is higher for a while, because torques of the arm may be
+//!   unknown and the hand may hold a new object.
+//! - The second line is a spring that saturates at 0.6 of the friction. Therefore, for every delay
+//!   of the torque loop, it adds less energy to an oscillation than friction removes. It also
+//!   shortens the slip of a joint that breaks away, even if the springs are soft.
 //!
 //! [`Gains::compensation`](crate::law::Gains::compensation) bounds the sum for each joint. Torque
 //! clamp and force cap treat the sum as part of the springs.
 //!
-//! Something holds the arm if the springs demand more than that bound or a guard bounds them. Then
-//! nothing is learned, the torques against friction at rest fade, and the integral returns to the
-//! value that held the arm at rest. After a goal has reacted to a contact, nothing is learned until
-//! the next goal. A push on the arm would look like friction or a load, and later motions would end
-//! short of their targets.
+//! If the springs demand more than that bound, or a guard bounds them, something holds the arm.
+//! Then nothing is learned, the torques against friction at rest fade, and the integral returns to
+//! the value that held the arm at rest. After a goal has reacted to a contact, nothing is learned
+//! until the next goal. Otherwise, a push on the arm would be learned as friction or as a load, and
+//! later motions would end short of their targets.
 
 mod learned;
 
@@ -48,9 +49,10 @@ pub(crate) struct Compensation {
     learned: Learned,
     /// The integral at rest, `[N m]`.
     rest: JointVector,
-    /// Share of the sum that acts. It rises from zero at the start, and falls to zero at the end.
+    /// Share of the sum that is applied. It rises from zero when the motion starts, and falls to
+    /// zero when the motion ends.
     acting: f64,
-    /// Share of the torques that fade while something holds the arm.
+    /// Share that is left of the torques that fade while something holds the arm.
     free: f64,
     /// Number of cycles for which each joint and its reference have rested.
     rested: [u32; 7],
@@ -59,18 +61,19 @@ pub(crate) struct Compensation {
     is_working: bool,
 }
 
-/// Progress of the arm towards rest at its target.
+/// Progress of the arm toward rest at its target.
 #[derive(Debug)]
 enum Approach {
     /// The arm has not stopped at its target yet.
     Arriving {
-        /// Number of cycles for which the reference has rested. Beyond [`ARRIVES`], unknown torques
-        /// of the arm no longer count. A push sets the number beyond it at once.
+        /// Number of cycles for which the reference has rested. After [`ARRIVES`] cycles, unknown
+        /// torques of the arm no longer count. A push raises the number above [`ARRIVES`] at once.
         cycles: u32,
-        /// Least distance from the target at which each joint has rested meanwhile, `[rad]`.
+        /// Least distance from the target at which each joint has rested during the approach,
+        /// `[rad]`.
         nearest: JointVector,
     },
-    /// The arm has stopped, with this integral, `[N m]`.
+    /// The arm has stopped; the integral had this value, `[N m]`.
     Settled(JointVector),
 }
 
@@ -84,7 +87,7 @@ impl Approach {
     }
 }
 
-/// The arm against its reference in one cycle.
+/// Arm and reference in one cycle.
 #[derive(Debug)]
 pub(crate) struct Demand<'a> {
     /// Velocity of the reference, `[rad/s]`.
@@ -97,9 +100,9 @@ pub(crate) struct Demand<'a> {
     pub(crate) error: &'a JointVector,
     /// Torques of the springs alone, `[N m]`.
     pub(crate) springs: &'a JointVector,
-    /// Greatest compensation, `[N m]`.
+    /// Greatest compensation of each joint, `[N m]`.
     pub(crate) bounds: &'a [f64; 7],
-    /// True if a guard of the interaction binds.
+    /// True if a guard of the interaction limits the torques.
     pub(crate) held: bool,
     /// True if the goal has reacted to a contact. Nothing is learned then.
     pub(crate) met: bool,
@@ -108,7 +111,7 @@ pub(crate) struct Demand<'a> {
 }
 
 impl Compensation {
-    /// Returns a compensation that starts with the known values of the arm.
+    /// Creates a compensation that starts with the learned values of the arm.
     pub(crate) fn new(learned: Learned) -> Self {
         Self {
             learned,
@@ -125,7 +128,8 @@ impl Compensation {
         self.learned
     }
 
-    /// True if the compensation still grows to move a joint that rests outside its dead zone.
+    /// True if the compensation still grows in order to move a joint that rests outside its dead
+    /// zone.
     pub(crate) fn is_working(&self) -> bool {
         self.is_working
     }
@@ -141,7 +145,7 @@ impl Compensation {
                 return;
             }
             let distance = demand.error.abs();
-            // After it has rested, an arm that nothing pushes only comes nearer.
+            // Unless something pushes it, an arm that has rested only comes nearer to its target.
             let is_pushed = (distance - *nearest).max() > PUSHED;
             for i in (0..7).filter(|&i| self.rested[i] > RESTED[1]) {
                 nearest[i] = nearest[i].min(distance[i]);
@@ -246,8 +250,8 @@ impl Compensation {
         let room = (resists - demand.springs[i].abs()).max(0.0);
         let within = |torque: f64| torque.clamp(-bound, bound);
         // The torque with which the arm stopped may have resisted a push that has ended since.
-        // Therefore the integral may always return to zero, unless more than friction holds the
-        // joint now and did not hold it then.
+        // Therefore the integral may return to zero. The exception is a joint that is now held by
+        // more than friction, and was not when the arm stopped.
         let (low, high) = match room > 0.0 || settled.abs() > resists {
             true => (settled.min(0.0), settled.max(0.0)),
             false => (settled, settled),
@@ -255,12 +259,13 @@ impl Compensation {
         (within(low - room), within(high + room))
     }
 
-    /// Learns the torque of a joint that is compensated by `compensated`, while its reference moves
-    /// steadily and nothing holds the arm.
+    /// Learns the torque of a joint whose compensation is `compensated`, while the joint's
+    /// reference moves steadily and nothing holds the arm.
     fn learn(&mut self, i: usize, compensated: f64, demand: &Demand<'_>) {
         let v = demand.dq_ref[i];
         let steady = v.abs() > MOVING && demand.ddq_ref[i].abs() < STEADY;
-        // A joint that hits an obstacle stops long before its springs demand more than friction.
+        // When a joint hits an obstacle, it stops long before its springs demand more than
+        // friction.
         let keeps_up = demand.dq[i] * v.signum() > KEEPS_UP * v.abs();
         if demand.met || self.free < 1.0 || !steady || !keeps_up {
             return;
@@ -272,7 +277,7 @@ impl Compensation {
 }
 
 /// Distances from the reference within which a resting joint is not corrected, `[rad]`. Together
-/// they are some 0.3 mm and 1 mrad at the end effector.
+/// they amount to about 0.3 mm and 1 mrad at the end effector.
 pub(crate) const DEAD_ZONE: [f64; 7] = [3e-4, 3e-4, 3e-4, 3e-4, 5e-4, 5e-4, 5e-4];
 
 /// Velocity of the reference above which a joint counts as moving, `[rad/s]`.
@@ -282,10 +287,10 @@ const MOVING: f64 = 0.02;
 const REFERENCE_RESTS: f64 = 1e-3;
 
 /// Acceleration of the reference above which nothing is learned, `[rad/s^2]`. Above it, the springs
-/// also compensate the error of the inertia.
+/// also compensate errors of the modelled inertia.
 const STEADY: f64 = 2.5;
 
-/// Share of its reference's velocity below which a joint does not learn.
+/// Ratio of a joint's velocity to its reference's velocity, below which the joint does not learn.
 const KEEPS_UP: f64 = 0.2;
 
 /// Velocity of the reference at which friction is compensated by 76 %, `[rad/s]`.
@@ -294,72 +299,75 @@ const SIGN_VELOCITY: f64 = 0.01;
 /// Error at rest at which friction is compensated by 76 % of [`AT_REST`], `[rad]`.
 const SIGN_ERROR: f64 = 1e-3;
 
-/// Share of the friction that is compensated towards the target at rest. The learned value includes
-/// viscous friction, up to a third on the simulated arms. Even with that part the share is below 1.
+/// Share of the friction that is compensated toward the target at rest. The learned friction
+/// includes viscous friction, which is up to a third of it on the simulated arms. Even with viscous
+/// friction, the torque stays below the static friction.
 const AT_REST: f64 = 0.6;
 
-/// Rate of the integral per torque of the springs, `[1/s]`: slower than the settling of the
-/// springs.
+/// Growth rate of the integral per torque of the springs, `[1/s]`. It is slower than the springs
+/// settle.
 const INTEGRAL: f64 = 5.0;
 
-/// Least rate outside the dead zone of a joint with friction, in parts of the friction per second.
+/// Least growth rate of the integral for a joint with friction outside its dead zone, in parts of
+/// the friction per second.
 const BREAK_AWAY: f64 = 2.5;
 
 /// Velocity below which a joint of the arm counts as resting, `[rad/s]`.
 const REST_VELOCITY: f64 = 0.01;
 
-/// Velocity up to which a joint that has not settled yet counts as resting, relative to its error,
-/// `[1/s]`. At that velocity the joint would reach its target later than its springs do.
+/// Velocity up to which a joint that has not settled yet counts as resting, divided by its error,
+/// `[1/s]`. A joint at that velocity would reach its target later than its springs settle.
 const CREEP: f64 = 2.0;
 
-/// Cycles of rest after which the integral grows, for a joint without known friction and for a
-/// joint with known friction. The springs alone have moved the former as near as they can.
+/// Cycles of rest after which the integral grows: for a joint without known friction, and for a
+/// joint with known friction. In the first case, the springs alone have moved the joint as near as
+/// they can.
 const RESTED: [u32; 2] = [150, 20];
 
-/// Factor of the integral's speed back to zero if it pulls away from the target.
+/// Factor by which the integral changes faster while it pulls away from the target.
 const UNWIND: f64 = 4.0;
 
-/// Time in which the integral decays in motion and while something holds the arm, `[s]`.
+/// Time constant of the integral's decay in motion and while something holds the arm, `[s]`.
 const FORGET: f64 = 0.15;
 
-/// Cycles of rest after which an arm no longer moves without a push.
+/// Cycles of rest after which an arm moves only if something pushes it.
 const SETTLED: u32 = 300;
 
-/// Cycles of a resting reference within which unknown torques of an arm are compensated.
+/// Cycles of a resting reference within which unknown torques of the arm are compensated.
 const ARRIVES: u32 = 2500;
 
-/// Distance by which a joint moves back from its target only if something pushes it, `[rad]`.
+/// Distance from its target by which a joint moves back only if something pushes it, `[rad]`.
 const PUSHED: f64 = 5e-3;
 
-/// Greatest ratio of the breakaway torque of a joint to its learned friction.
+/// Greatest ratio of a joint's breakaway torque to its learned friction.
 const FRICTION_SPREAD: f64 = 2.0;
 
 /// Largest breakaway torque of the joints of a realistic arm, `[N m]`: the product of the upper
 /// ends of the family's `static_friction` and `static_friction_scale`.
 pub(crate) const STATIC_FRICTION: [f64; 7] = [1.52, 1.59, 1.31, 1.79, 1.45, 0.83, 0.69];
 
-/// Largest ratio of the torque that holds an unknown joint to its [`STATIC_FRICTION`]: its bias
-/// adds to the friction. Without this factor, nine of ten arms that were pushed before they had
-/// moved stayed millimetres away.
+/// Greatest ratio of the torque that holds an unknown joint to its [`STATIC_FRICTION`]. It is above
+/// 1 because the bias adds to the friction. Without this factor, nine of ten arms that were pushed
+/// before they had moved stopped millimetres from their targets.
 const UNKNOWN_SPREAD: f64 = 1.5;
 
 /// Largest relative difference of a bias between two poses.
 const BIAS_SPREAD: f64 = 0.5;
 
-/// Greatest change of the integral of a joint without friction after the arm has stopped, `[N m]`.
+/// Greatest change of the integral of a joint without friction, after the arm has stopped, `[N m]`.
 const FELT: f64 = 0.3;
 
 /// Greatest change of a joint's load from one motion to the next, `[N m]`: the torque of 0.3 kg at
 /// half a metre.
 const LOADED: f64 = 1.6;
 
-/// Change of the acting share at the start and the end, per cycle.
+/// Change per cycle of the share that is applied, when a motion starts and ends.
 const RAMP: f64 = 0.01;
 
-/// Share by which the torques at rest fade per cycle while something holds the arm.
+/// Share by which the torques at rest fade in each cycle while something holds the arm.
 const LET_GO: f64 = 0.02;
 
-/// Share by which the torques at rest return per cycle.
+/// Share by which the torques at rest return in each cycle.
 const TAKE_UP: f64 = 1.0 / 300.0;
 
 #[cfg(test)]
@@ -370,7 +378,7 @@ mod tests {
 
     const BOUNDS: [f64; 7] = Gains::COMPENSATION;
 
-    /// Runs one cycle in which every joint has this error and its spring this torque.
+    /// Runs one cycle. Every joint has this error, and its spring has this torque.
     fn step(this: &mut Compensation, v: f64, e: f64, spring: f64, held: bool) -> f64 {
         let demand = Demand {
             dq_ref: &JointVector::repeat(v),
@@ -393,7 +401,8 @@ mod tests {
             .expect("a cycle")
     }
 
-    /// Learns over motions to and fro, in which the springs supply the uncompensated torque.
+    /// Learns over motions to and fro in which the springs supply the torque that is not
+    /// compensated.
     fn learned(friction: f64, bias: f64) -> Compensation {
         let mut this = Compensation::new(Learned::default());
         let mut last = 0.0;
@@ -451,7 +460,7 @@ mod tests {
         assert!(run(&mut this, 100, 0.0, 5e-4, 0.05) > at_once + 0.05);
     }
 
-    /// Counts cycles beyond the range of a counter: 49.7 days.
+    /// Runs more cycles than the range of a counter: 49.7 days.
     #[test]
     fn an_arm_may_rest_for_months() {
         let mut this = learned(0.8, 0.0);
@@ -478,7 +487,7 @@ mod tests {
         }
         let held = step(&mut this, 0.0, 5e-3, 0.5, true);
         assert!((held - before.of(0).1).abs() < 1e-3, "{held}");
-        // Springs that demand more than friction and bias can explain.
+        // The springs demand more than friction and bias can explain.
         for _ in 0..1500 {
             step(&mut this, 0.0, 2e-2, 6.0, false);
         }
@@ -520,7 +529,7 @@ mod tests {
         let mut this = learned(0.8, 0.0);
         let mut last = run(&mut this, 5000, 0.0, 3.1e-4, 0.05);
         for cycle in (0..300).rev() {
-            // The joint is just within its dead zone for a while, where the integral stays
+            // For a while, the joint is just inside its dead zone, where the integral stays
             // constant.
             let error = if (100..200).contains(&cycle) {
                 2.9e-4

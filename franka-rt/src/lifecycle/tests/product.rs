@@ -1,5 +1,5 @@
-//! Tries every input in every state, with a stop around each: no stop is lost, no path becomes a
-//! straight line, and nothing that has ended moves the arm again.
+//! Tries every input in every state, with a stop before and after each. No stop is lost, no path
+//! becomes a straight line, and nothing that has ended moves the arm again.
 
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ enum Step {
     Run,
     /// The robot leaves the motion without a reply.
     Leaves,
-    /// The robot ends the motion by a reply, but still shows it.
+    /// The robot reports the end of the motion, but still shows the motion.
     Preempts,
     Garbles,
     Stalls,
@@ -64,7 +64,7 @@ const STEPS: [Step; 22] = [
     Disconnects,
 ];
 
-/// Steps that lead into the states of the motion, its goals, its session and stops.
+/// Steps that lead to each state of the motion, its goals, its session and its stops.
 const STATES: [&[Step]; 24] = [
     &[],
     &[Begin],
@@ -105,8 +105,8 @@ struct Accepted {
 
 struct Bench {
     pair: LifecycleAndDriver,
-    /// Motion that the robot was asked to run, until it runs; then the motion that it runs, until
-    /// it ends.
+    /// Motion that the robot was asked to run. Once it runs, the motion that it runs, until it
+    /// ends.
     robot: Robot,
     motions: u64,
     ids: u64,
@@ -125,9 +125,9 @@ enum Robot {
     Idle,
     Asked(MotionId, Modes),
     Runs(MotionId),
-    /// The robot shows no motion any more, but has not reported how the motion ended.
+    /// The robot no longer shows a motion, but has not reported how the motion ended.
     Left(MotionId),
-    /// The robot has reported how the motion ended, and shows it for one state more.
+    /// The robot has reported how the motion ended, and shows the motion for one more state.
     Ended,
 }
 
@@ -238,7 +238,7 @@ impl Bench {
                 let taken = self.pair.lifecycle.chunk(session, goal, chunk, &state);
                 let after = self.pair.lifecycle.heading().map(|(id, _)| id);
                 if taken.is_ok() && (after == Some(id) || before == after) {
-                    // The motion has its own name only if it is the first one, or comes too late.
+                    // The motion has its own id only if it is the first motion or comes too late.
                     self.accept(id, Accepted::default());
                     if after != Some(id) && !self.pair.lifecycle.is_ending() {
                         self.goals.remove(&id);
@@ -355,7 +355,7 @@ impl Bench {
         self.settle();
     }
 
-    /// The robot runs the requested motion, as an arm that follows its reference.
+    /// The robot runs the requested motion. Its arm follows the reference.
     fn run(&mut self, cycles: u32) {
         for _ in 0..cycles {
             match self.robot {

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Returns the outcome of a stop; of a success, the report is ignored.
+/// Returns the outcome of a stop, without the report of a success.
 fn ended(pair: &LifecycleAndDriver, id: u64) -> Option<Result<(), MotionError>> {
     let mut of_id = pair.resolved.iter().filter(|(goal, _)| *goal == GoalId(id));
     let outcome = of_id.next().map(|(_, result)| result.clone().map(drop));
@@ -22,14 +22,14 @@ impl LifecycleAndDriver {
         sent.filter(|sent| **sent == Request::StopMove).count()
     }
 
-    /// Lets the present deadline pass.
+    /// Lets the next deadline pass.
     fn time_passes(&mut self, unseen: Option<MotionError>) {
         let deadline = self.lifecycle.deadline().expect("it does not wait forever");
         self.lifecycle.on_time(deadline, unseen);
         self.settle();
     }
 
-    /// The robot shows no motion, and this velocity at joint 1.
+    /// The robot shows no motion, and this velocity of joint 1.
     fn comes_to(&mut self, dq: f64) {
         self.state.motion_generator_mode = MotionGeneratorMode::Idle;
         self.state.dq[0] = dq;
@@ -37,7 +37,7 @@ impl LifecycleAndDriver {
     }
 }
 
-/// The robot was asked to stop, but shows the motion beyond the deadline.
+/// The robot was asked to stop, but still shows the motion after the deadline.
 fn given_up() -> LifecycleAndDriver {
     let (mut pair, motion, _) = LifecycleAndDriver::moving();
     let violation = Violation::SecondMotionStarted { id: CommandId(1) };
