@@ -1,4 +1,4 @@
-//! Attempts: growing pauses between them, and a limit of their number within a time.
+//! Attempts: growing pauses between them, and a limit of how many are made within a time.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -31,13 +31,13 @@ impl Pauses {
         let longest = first.saturating_mul(1 << doublings).min(most);
         let jitter = if jitter.is_nan() { 0.0 } else { jitter };
         let share = jitter.clamp(0.0, 1.0) * self.draw();
-        // Times a share, the longest duration is rounded up beyond its range.
+        // Multiplied by a share, the longest duration would be rounded up beyond its range.
         let pause = longest.as_secs_f64() * (1.0 - share);
         Duration::try_from_secs_f64(pause).unwrap_or(longest)
     }
 
-    /// Returns a number in [0, 1), by SplitMix64. Source: Steele, Lea, Flood: Fast splittable
-    /// pseudorandom number generators, 2014.
+    /// Returns a random number in [0, 1) with SplitMix64. Source: Steele, Lea, Flood: Fast
+    /// splittable pseudorandom number generators, 2014.
     fn draw(&mut self) -> f64 {
         self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.random;
@@ -53,8 +53,8 @@ impl Pauses {
 pub(super) struct Attempts(VecDeque<Duration>);
 
 impl Attempts {
-    /// Notes an attempt at `now`, unless `most` attempts were made within `window` before. Returns
-    /// true if the attempt may be made.
+    /// Records an attempt at `now`, unless `most` attempts were made within the `window` before.
+    /// Returns true if the attempt may be made.
     pub(super) fn note(&mut self, most: u32, window: Duration, now: Duration) -> bool {
         self.forget(window, now);
         let may = self.0.len() < most as usize;

@@ -11,60 +11,61 @@ use crate::lifecycle::{CloseReason, Differences, Unready};
 /// State of the connection.
 #[derive(Debug)]
 pub(super) enum Connection {
-    /// The first connection is being made.
+    /// The program is connecting for the first time.
     First,
-    /// The connection is up.
+    /// The program is connected.
     Up(Up),
-    /// The connection is lost, but its resources are not yet released.
+    /// The connection is lost, but its resources are not released yet.
     Ending(Loss),
-    /// The next attempt comes at `at`.
+    /// The next attempt to connect is made at `at`.
     Pausing { loss: Loss, at: Duration },
-    /// An attempt is under way.
+    /// An attempt to connect is under way.
     Connecting(Loss),
-    /// The connection has ended, and there will be no other.
+    /// The connection has ended, and no other connection will follow.
     Closed,
 }
 
-/// A connection that stands.
+/// A connection that exists.
 #[derive(Debug)]
 pub(super) struct Up {
     /// Time at which the connection was made.
     pub(super) since: Duration,
-    /// Number of attempts that the connection took.
+    /// Number of attempts until the connection was made.
     pub(super) attempts: u32,
-    /// The silence of the robot, if it is silent.
+    /// Data about the silence, while the robot sends no states.
     pub(super) silent: Option<Silent>,
-    /// Last state seen; `None` before the first state since the connection was made, or since a
+    /// Condition in the last state. `None` before the first state on this connection, or after a
     /// silence.
     pub(super) seen: Option<Seen>,
-    /// The mode that was reported last; before the first report, the mode of an idle robot.
+    /// The mode that was reported last. Before the first report, it is the mode of an idle robot.
     pub(super) told: RobotMode,
     /// The reflex that the robot is in, if any.
     pub(super) reflex: Option<ReflexCase>,
-    /// Differences from the robot of the previous connection, until the user has agreed to a
-    /// recovery or a motion was requested.
+    /// Differences from the robot of the previous connection. `None` once the user has agreed to a
+    /// recovery, or a motion was requested.
     pub(super) differences: Option<Differences>,
-    /// Progress of sending the program's settings again.
+    /// How far this program's settings have been sent again.
     pub(super) configuration: Configuration,
 }
 
-/// Progress of sending the program's settings again on a connection.
+/// How far this program's settings have been sent again on a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Configuration {
-    /// All settings hold, or the program has set nothing.
+    /// The robot has all settings, or the program has made no settings.
     Done,
     /// The settings must be sent again once the robot is idle.
     Due,
-    /// The settings are being sent. A setting that fails is tried again at once if the robot has
-    /// become idle again since.
+    /// The settings are being sent. If the robot has become idle again meanwhile, a setting that
+    /// fails is tried again at once.
     Requested { is_idle_anew: bool },
-    /// The robot has refused this setting. It is tried again when the robot becomes idle again.
+    /// The robot has refused this setting. The setting is tried again when the robot becomes idle
+    /// again.
     Failed(Command),
 }
 
 impl Configuration {
-    /// Makes the failed settings be tried again, because the robot has become idle again. Returns
-    /// true if there are any.
+    /// Requests another attempt for the failed settings, because the robot has become idle again.
+    /// Returns true if there are any.
     pub(super) fn retry(&mut self) -> bool {
         match self {
             Self::Requested { is_idle_anew } => *is_idle_anew = true,
@@ -90,7 +91,7 @@ impl Configuration {
 #[derive(Debug)]
 pub(super) struct Silent {
     pub(super) since: Duration,
-    /// True if the connection is about to be closed because of the silence.
+    /// True if the connection is about to be closed because of this silence.
     pub(super) is_given_up: bool,
 }
 
@@ -99,9 +100,9 @@ pub(super) struct Silent {
 pub(super) struct Loss {
     pub(super) since: Duration,
     pub(super) reason: CloseReason,
-    /// True if no further connection will come.
+    /// True if no other connection will follow.
     pub(super) is_final: bool,
-    /// Number of attempts to connect since then that failed, or whose connection did not last.
+    /// Number of attempts since the loss that failed, or whose connection did not last.
     pub(super) failed: u32,
 }
 
@@ -114,9 +115,9 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns the condition in `state`. Of two states with the same condition it is enough to pass
-    /// one to [`Supervision::on_state`](super::Supervision::on_state), unless there was a silence
-    /// between them.
+    /// Returns the condition in `state`. If several states have the same condition, pass only one
+    /// of them to [`Supervision::on_state`](super::Supervision::on_state), unless there was a
+    /// silence between them.
     pub fn of(state: &RobotState) -> Self {
         Self {
             mode: state.robot_mode,
@@ -131,7 +132,7 @@ impl Seen {
 }
 
 impl Silent {
-    /// Returns the time at which the connection will be given up, if it will.
+    /// Returns the time at which the connection will be given up, if any.
     pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
         let policy = policy.filter(|policy| policy.reconnects && !self.is_given_up)?;
         Some(self.since.saturating_add(policy.silence))
@@ -139,7 +140,7 @@ impl Silent {
 }
 
 impl Up {
-    /// Returns a connection that has just been made, and that no state has shown yet.
+    /// Returns a connection that has just been made, before its first state.
     pub(super) fn new(attempts: u32, differences: Option<Differences>, now: Duration) -> Self {
         Self {
             since: now,
@@ -153,12 +154,12 @@ impl Up {
         }
     }
 
-    /// Returns the time of the next step of a reflex, if the step only waits for time to pass.
+    /// Returns the time of the next step of a reflex, if that step waits only for time to pass.
     pub(super) fn deadline_of_reflex(&self) -> Option<Duration> {
         self.reflex.as_ref()?.deadline(self.seen?.mode)
     }
 
-    /// Returns the reason why the robot accepts no motions; `None` if it does.
+    /// Returns the reason why the robot accepts no motions; `None` if it accepts motions.
     pub(super) fn unready(&self) -> Option<Unready> {
         if self.silent.is_some() {
             return Some(Unready::Silent);
@@ -181,8 +182,8 @@ impl Up {
 }
 
 impl Connection {
-    /// Returns the reason why the robot accepts no motions; `None` if it does. A closed connection
-    /// reports its end itself.
+    /// Returns the reason why the robot accepts no motions; `None` if it accepts motions, or if the
+    /// connection is closed. A closed connection reports its own end.
     pub(super) fn unready(&self) -> Option<Unready> {
         match self {
             Self::Up(up) => up.unready(),
@@ -193,7 +194,8 @@ impl Connection {
         }
     }
 
-    /// True if the robot has the settings of this program, if there is a connection.
+    /// True if there is a connection and the robot has this program's settings, or if there is no
+    /// connection.
     pub(super) fn is_configured(&self) -> bool {
         match self {
             Self::Up(up) => up.configuration == Configuration::Done,
@@ -201,7 +203,7 @@ impl Connection {
         }
     }
 
-    /// Returns the reflex that the robot is in.
+    /// Returns the robot's present reflex.
     pub(super) fn reflex(&self) -> Option<&ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_ref(),
@@ -209,7 +211,7 @@ impl Connection {
         }
     }
 
-    /// Returns the reflex that the robot is in.
+    /// Returns the robot's present reflex, mutable.
     pub(super) fn reflex_mut(&mut self) -> Option<&mut ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_mut(),
@@ -217,7 +219,7 @@ impl Connection {
         }
     }
 
-    /// Returns the connection that was lost, while a new one is awaited.
+    /// Returns data about the lost connection while a new connection is awaited.
     pub(super) fn loss(&self) -> Option<&Loss> {
         match self {
             Self::Ending(loss) | Self::Pausing { loss, .. } | Self::Connecting(loss) => Some(loss),

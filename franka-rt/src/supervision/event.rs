@@ -9,74 +9,74 @@ use franka_proto::{Command, Errors, Load};
 use crate::lifecycle::{CloseReason, ControlError, Differences, Outcome, Unready};
 use crate::sched::SchedError;
 
-/// Something that happened to a robot.
+/// An event of a robot, with its time.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
     /// Time since the first connection to the robot, by this computer's clock.
     pub at: Duration,
-    /// Time by the robot's clock: `message_id` of its newest state, `[ms]`. `None` without a
-    /// connection. A restarted robot may begin to count anew.
+    /// Time by the robot's clock, `[ms]`: the `message_id` of its newest state. `None` without a
+    /// connection. The clock of a restarted robot may start at zero again.
     pub robot_time: Option<u64>,
     /// Kind of event.
     pub kind: EventKind,
 }
 
-/// Event of a robot.
+/// Kind of an event of a robot.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
-    /// The robot is connected. Unusual conditions (a reflex, a pressed stop) follow in separate
-    /// events.
+    /// The program has connected to the robot. If the robot is in an unusual condition, such as a
+    /// reflex or a pressed stop, separate events report it.
     Connected {
-        /// Number of attempts that connecting took.
+        /// Number of attempts until the connection was made.
         attempts: u32,
         /// Time since the previous connection was lost; `None` for the first connection.
         after: Option<Duration>,
     },
-    /// The operating system refused a request of the control thread, which continues without it.
-    /// Follows on `Connected`.
+    /// The operating system refused a request of the control thread, and the thread continues
+    /// without it. Comes after `Connected`.
     RealtimeRefused {
         /// Refused requests.
         refusals: Arc<[SchedError]>,
     },
-    /// The robot differs from the robot of the previous connection, and may be another one. Follows
-    /// on `Connected`. A waiting motion is refused, and a recovery needs the user's approval.
+    /// The robot differs from the robot of the previous connection, and may be another robot. Comes
+    /// after `Connected`. A waiting motion is refused, and a recovery needs the user's approval.
     Unrecognised {
-        /// Differences.
+        /// How the robots differ.
         differences: Differences,
     },
-    /// A setting that this program had made before a connection was lost does not hold again. The
-    /// robot refused it, or a state shows another value. Motions are refused.
+    /// A setting that this program had made before a connection was lost could not be restored.
+    /// Either the robot refused the setting, or a state shows another value. Motions are refused.
     NotConfigured {
-        /// The command of that setting.
+        /// Command that makes the setting.
         command: Command,
-        /// Answer or state of the robot.
+        /// Description of the robot's answer or state.
         text: String,
     },
-    /// The connection has ended. Motions end with it.
+    /// The connection has ended. Its motions end, too.
     Lost {
-        /// Reason.
+        /// Reason why the connection ended.
         reason: CloseReason,
     },
-    /// No state has come for the link timeout; the connection is still there.
+    /// No state has arrived for the link timeout. The connection still exists.
     Silent {
-        /// Length of the silence so far.
+        /// Time without a state so far.
         silence: Duration,
     },
-    /// States come again, over the same connection, after a silence.
+    /// After a silence, states arrive again over the same connection.
     Resumed {
         /// Time since the silence was noticed.
         after: Duration,
     },
-    /// The robot stopped itself, or was found in a reflex.
+    /// The robot stopped with a reflex, or was found in a reflex.
     Reflex(Reflex),
-    /// The supervisor does not recover the robot from its reflex: a person or this program must do
-    /// so.
+    /// The supervisor will not recover the robot from its reflex. A person or this program must
+    /// recover it.
     NotRecovered {
         /// Number of the reflex.
         reflex: u64,
-        /// Reason.
+        /// Reason why the supervisor does not recover the robot.
         why: NotRecovered,
     },
     /// The robot has left a reflex and accepts motions again.
@@ -98,10 +98,10 @@ pub enum EventKind {
         /// True if a hand guides the arm now.
         active: bool,
     },
-    /// The brakes were closed or opened. A robot that is not ready for another reason reports the
-    /// same.
+    /// The brakes were closed or opened.
     Brakes {
-        /// True if the brakes are closed now.
+        /// True if the brakes are now closed. Also true if the robot is not ready for another
+        /// reason.
         closed: bool,
     },
     /// This program has latched a stop, or released it.
@@ -109,34 +109,34 @@ pub enum EventKind {
         /// True if no motion is admitted now.
         latched: bool,
     },
-    /// A motion, a session or a program was passed to the connection. Goals that a session accepts
-    /// without a future (`set`, `chunk`, `guide`) are not reported.
+    /// A motion, a session or a program was passed to the connection. If a session accepts a goal
+    /// without a future (`set`, `chunk`, `guide`), no event reports it.
     MotionBegun {
-        /// Name of the motion, session or program, as in the log.
+        /// Id of the motion, session or program, as in the log.
         goal: u64,
     },
     /// A motion, a session or a program has ended, or was not accepted.
     MotionEnded {
-        /// Name of the motion, session or program.
+        /// Id of the motion, session or program.
         goal: u64,
         /// Outcome.
         outcome: Arc<Outcome>,
     },
-    /// The load that the robot computes with has changed, through this program or Desk. A change
-    /// while the connection was lost is reported, too.
+    /// The load with which the robot computes has changed, through this program or through Desk. A
+    /// change during a lost connection is also reported.
     LoadChanged {
         /// The present load.
         load: Load,
     },
-    /// The connection is closed, and no further one will come.
+    /// The connection is closed, and no other connection will follow.
     Closed {
-        /// Reason.
+        /// Reason why the connection is closed.
         reason: CloseReason,
     },
 }
 
 impl fmt::Display for EventKind {
-    /// Prints one line for people.
+    /// Prints one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Connected { attempts, after } => {
@@ -200,20 +200,20 @@ impl fmt::Display for EventKind {
     }
 }
 
-/// The robot stopped itself.
+/// A reflex: the robot stopped itself.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reflex {
-    /// Number of the reflex, from 1 on. A reflex that is found after a lost connection has a new
+    /// Number of the reflex, from 1. If a reflex is found after a lost connection, it gets a new
     /// number.
     pub number: u64,
     /// The errors of the robot.
     pub errors: Errors,
-    /// Error of the motion that the reflex ended, with its last cycles. `None` if the reflex ended
-    /// no motion of this program. `franka_diagnosis` explains the cause.
+    /// Error of the motion that the reflex ended, with the motion's last cycles. `None` if the
+    /// reflex ended no motion of this program. `franka_diagnosis` explains the cause.
     pub error: Option<Arc<ControlError>>,
-    /// Differences from the robot before a connection was lost, if the robot is not recognised. The
-    /// recovery then needs the user's approval, under any policy.
+    /// Differences from the robot before a lost connection, if there are any. The recovery then
+    /// needs the user's approval under every policy.
     pub differences: Option<Differences>,
 }
 
@@ -225,54 +225,54 @@ pub enum NotRecovered {
     /// The policy allows no recovery.
     #[error("the policy does not recover from reflexes")]
     Never,
-    /// The policy names the errors to recover from, and the reflex has other errors.
+    /// The policy limits recovery to some errors, and the reflex has other errors.
     #[error("the policy does not allow recovery from all errors of the reflex")]
     OtherError,
-    /// The robot was recovered as often as the policy allows within its window.
+    /// Within its window, the robot was already recovered as often as the policy allows.
     #[error("the policy allows no more recoveries for now")]
     TooOften,
-    /// The person or function that was asked did not agree.
+    /// The user, or the function that was asked, did not approve.
     #[error("the recovery was declined")]
     Declined,
-    /// The robot demands a recovery by hand, in Desk.
+    /// The robot requires a recovery by hand, in Desk.
     #[error("the robot must be recovered by hand, in Desk")]
     ByHand,
 }
 
-/// Health of a robot.
+/// Health of a robot: its condition and its counters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Health {
-    /// Condition of the robot: whether it accepts motions.
+    /// Condition of the robot, which shows if it accepts motions.
     pub condition: Condition,
-    /// Start of that condition, counted from the first connection to the robot.
+    /// Time at which that condition began, counted from the first connection to the robot.
     pub since: Duration,
-    /// Number of the robot's reflex, if it is in one. Use it to agree to the recovery.
+    /// Number of the robot's present reflex, if any. Use it to approve the recovery.
     pub reflex: Option<u64>,
-    /// Number of attempts to connect since the connection was lost; 0 while there is a connection.
+    /// Number of attempts to connect since the connection was lost; 0 while the program is
+    /// connected.
     pub attempts: u32,
     /// Number of connections made after the first one.
     pub reconnects: u64,
     /// Number of recoveries by the supervisor.
     pub recoveries: u64,
-    /// Time that the newest reconnect took, counted from the loss.
+    /// Time from the last loss of a connection to the reconnect.
     pub last_reconnect: Option<Duration>,
-    /// Time that the newest recovery by the supervisor took, counted from when the reflex was
-    /// noticed.
+    /// Duration of the last recovery by the supervisor, from the time when the reflex was noticed.
     pub last_recovery: Option<Duration>,
 }
 
-/// Condition of a robot: whether it accepts motions.
+/// Condition of a robot, which shows if it accepts motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Condition {
-    /// The robot accepts motions, or a motion runs.
+    /// The robot accepts motions, or it runs a motion.
     Ready,
     /// The robot accepts no motions now, for this reason.
     Unready(Unready),
-    /// The connection is closed, and no further one will come.
+    /// The connection is closed, and no other connection will follow.
     Closed,
 }
 

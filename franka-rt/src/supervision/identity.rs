@@ -1,4 +1,4 @@
-//! Check whether the robot that answers after a lost connection is the same robot, unchanged.
+//! Checks if the robot that answers after a lost connection is the same robot, unchanged.
 
 use core::time::Duration;
 
@@ -6,7 +6,7 @@ use franka_proto::RobotState;
 
 use crate::lifecycle::Differences;
 
-/// Record of a robot, used to recognise it after a lost connection.
+/// Data about a robot with which it is recognised after a lost connection.
 #[derive(Clone, Debug)]
 pub(super) struct Identity {
     /// Hash of the robot's description; `None` for a robot without one.
@@ -22,7 +22,7 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    /// Returns the record of a robot that has shown this state just now.
+    /// Returns the data of a robot that has just shown this state.
     pub(super) fn of(description: Option<u64>, state: &RobotState, now: Duration) -> Self {
         let [x, y, z] = state.F_x_Cee;
         Self {
@@ -36,17 +36,17 @@ impl Identity {
         }
     }
 
-    /// Updates the record with a newer state.
+    /// Updates the data with a newer state.
     pub(super) fn update(&mut self, state: &RobotState, now: Duration) {
         *self = Self::of(self.description, state, now);
     }
 
-    /// Notes that the newest state came `silence` before `now`.
+    /// Records that the newest state arrived `silence` before `now`.
     pub(super) fn silent_for(&mut self, silence: Duration, now: Duration) {
         self.at = now.saturating_sub(silence);
     }
 
-    /// Returns the differences between this record and `other`, a later one.
+    /// Returns the differences between this robot and `other`, whose data are newer.
     pub(super) fn differences(&self, other: &Self) -> Differences {
         let differs =
             |a: &[f64], b: &[f64]| core::iter::zip(a, b).any(|(a, b)| (a - b).abs() > EPS);
@@ -75,19 +75,19 @@ impl Identity {
     }
 }
 
-/// Distance from its earlier position beyond which a joint counts as moved, `[rad]`.
+/// Distance of a joint from its earlier position above which the joint counts as moved, `[rad]`.
 const MOVED: f64 = 5e-3;
 
-/// Time for which a joint may have continued at its last velocity, `[s]`. A robot that misses its
-/// client bridges 20 ms and then brakes. From its highest velocities that takes about 0.3 s.
+/// Time for which a joint may have continued at its last velocity, `[s]`. A robot without commands
+/// continues for 20 ms and then brakes. From its highest velocities, braking takes about 0.3 s.
 const BRAKING: f64 = 0.3;
 
-/// Difference beyond which two numbers of a frame or a tool are not the same; states of protocol 10
-/// have single precision.
+/// Difference above which two numbers of a frame or a tool count as different. States of protocol
+/// 10 have single precision.
 const EPS: f64 = 1e-5;
 
-/// Tolerance between the robot's clock and the time that has passed. Much more than the lateness of
-/// states, and much less than the startup time of a robot.
+/// Tolerance between the robot's clock and the time that has passed. It is much longer than states
+/// can be late, and much shorter than a robot takes to start.
 const CLOCK: Duration = Duration::from_secs(5);
 
 #[cfg(test)]
@@ -132,7 +132,7 @@ mod tests {
             };
             assert_eq!(differences, clock, "{at}");
         }
-        // The newest state may be older than the loss.
+        // The newest state may be older than the loss of the connection.
         let mut silent = seen(&state(100_000), 26_000);
         silent.silent_for(MS(6000), MS(26_000));
         assert!(

@@ -1,5 +1,5 @@
-//! Supervision of a robot between its motions: lost connections and reconnects, reflexes and
-//! recoveries, and motions that callers request meanwhile.
+//! Supervision of a robot between its motions. It handles lost connections and reconnects, reflexes
+//! and recoveries, and the motions that callers request during them.
 //!
 //! ```text
 //!   First --> Up ----lost----> Ending --given back--> Connecting --connected--> Up
@@ -13,14 +13,14 @@
 //!          +------- the robot shows that it takes motions <-- answered <-- requested <--+
 //! ```
 //!
-//! The supervision decides when to connect and when to recover. **It moves nothing**: the only
-//! motions that it lets begin have a caller that waits for them. A reflex, a lost connection, a
-//! user stop, a hand on the arm and closed brakes each refuse the waiting motion.
+//! The supervision decides when to connect and when to recover. **It moves nothing**: it only lets
+//! motions begin for which a caller waits. It refuses the waiting motion after a reflex, a lost
+//! connection or a user stop, and if a hand guides the arm or the brakes are closed.
 //!
-//! Inputs are the `on_*` methods (of the connection and the clock), [`Supervision::submit`],
-//! `withdraw`, `stop`, `agree` and `close` (of callers). Effects are returned by
-//! [`Supervision::poll`]. The supervision has no clock, socket or task: `now` is an argument,
-//! counted from any fixed moment, and never decreases.
+//! Inputs are the `on_*` methods (from the connection and the clock), and [`Supervision::submit`],
+//! `withdraw`, `stop`, `agree` and `close` (from callers). [`Supervision::poll`] returns the
+//! effects. The supervision has no clock, socket or task: `now` is an argument. It is the time
+//! since any fixed moment, and never decreases.
 
 mod attempts;
 mod connection;
@@ -57,41 +57,42 @@ pub use reports::ConnectFailure;
 pub use settings::{Answer, SettingId};
 pub use waiting::Admission;
 
-/// An effect to carry out, in the order in which effects are returned.
+/// An effect that the caller of [`Supervision::poll`] must carry out. Effects must be carried out
+/// in the order in which they are returned.
 #[derive(Debug)]
 pub enum Output {
-    /// Send this to the listeners.
+    /// Send this event to the listeners.
     Event(Event),
-    /// Connect. Report the result by [`Supervision::on_connected`] or
-    /// [`Supervision::on_connect_failed`].
+    /// Connect to the robot. Then call [`Supervision::on_connected`] or
+    /// [`Supervision::on_connect_failed`] with the result.
     Connect,
-    /// Close the connection for this reason. Report the end by [`Supervision::on_lost`].
+    /// Close the connection for this reason. Then call [`Supervision::on_lost`].
     Disconnect {
-        /// Reason.
+        /// Reason to close the connection.
         reason: CloseReason,
     },
-    /// Recover the robot (`AutomaticErrorRecovery`). Report the result by
-    /// [`Supervision::on_recovery`] with this number.
+    /// Recover the robot (`AutomaticErrorRecovery`). Then call [`Supervision::on_recovery`] with
+    /// this number and the result.
     Recover {
         /// Number of the reflex.
         reflex: u64,
     },
-    /// Send the settings of this program again: call [`Supervision::next_setting`], one at a time,
-    /// until it returns nothing. Not needed for a connection that has ended.
+    /// Send this program's settings again: call [`Supervision::next_setting`], one at a time, until
+    /// it returns `None`. Not needed if the connection has ended.
     Configure,
-    /// Ask the user to approve the recovery from this reflex. Report an answer by
+    /// Ask the user to approve the recovery from this reflex. Pass an answer to
     /// [`Supervision::agree`].
     Ask(Reflex),
     /// Begin the waiting motion.
     Begin {
-        /// Name of the motion.
+        /// Id of the motion.
         goal: GoalId,
     },
     /// Refuse the waiting motion.
     Refuse {
-        /// Name of the motion.
+        /// Id of the motion.
         goal: GoalId,
-        /// Reason.
+        /// Error to return to the caller of the motion.
         error: MotionError,
     },
 }
@@ -106,29 +107,29 @@ pub struct Supervision {
     robot_time: Option<u64>,
     /// The load in the last state.
     load: Option<Load>,
-    /// Record of the robot when its last state came.
+    /// Data of the robot when its last state arrived, to recognise it later.
     identity: Option<Identity>,
     /// Number of reflexes so far.
     reflexes: u64,
     recoveries: Attempts,
     pauses: Pauses,
-    /// Error of the last motion, if a reflex ended it that no state has shown yet.
+    /// Error of the last motion, if a reflex ended it and no state has shown that reflex yet.
     unshown: Option<Box<ControlError>>,
-    /// Motions that have begun and not ended.
+    /// Motions that have begun and have not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
     /// Settings that this program has made at the robot.
     settings: Settings,
     /// Number of connections made so far.
     connections: u64,
-    /// True if a stop is latched, which outlives connections.
+    /// True if a stop is latched. The latch remains when the connection changes.
     stop_latched: bool,
     health: Health,
     outputs: VecDeque<Output>,
 }
 
 impl Supervision {
-    /// Returns the supervision of a robot that is about to be connected to. Without a policy the
+    /// Creates the supervision of a robot before the first connection to it. Without a policy, the
     /// supervision only watches: it neither reconnects nor recovers, and lets every motion begin.
     pub fn new(policy: Option<Policy>) -> Self {
         let pauses = policy.map(|policy| policy.pauses).unwrap_or_default();
@@ -167,7 +168,7 @@ impl Supervision {
         self.health
     }
 
-    /// True if there is a connection, or an earlier connection still holds resources.
+    /// True if there is a connection, or if an earlier connection still holds resources.
     pub fn has_connection(&self) -> bool {
         matches!(self.connection, Connection::Up(_) | Connection::Ending(_))
     }
@@ -204,7 +205,7 @@ impl Supervision {
         admission
     }
 
-    /// Cancels the waiting motion if it has this name. Returns true if it was cancelled.
+    /// Cancels the waiting motion if it has this id. Returns true if it was cancelled.
     pub fn withdraw(&mut self, goal: GoalId) -> bool {
         self.waiting.take_if(|it| it.goal == goal).is_some()
     }
@@ -214,8 +215,8 @@ impl Supervision {
         self.refuse(|_| MotionError::Stopped);
     }
 
-    /// Cancels the waiting motion, and admits none until [`Self::release_stop`], on this connection
-    /// and on later ones.
+    /// Cancels the waiting motion, and admits no motion until [`Self::release_stop`]. The latch
+    /// applies to this connection and to later connections.
     pub fn latch_stop(&mut self, now: Duration) {
         self.stop();
         self.set_latch(true, now);
@@ -231,13 +232,13 @@ impl Supervision {
         self.stop_latched
     }
 
-    /// Checks that no stop is latched. The result applies to every goal, of any motion or session.
+    /// Checks that no stop is latched. The check applies to every goal of a motion or a session.
     ///
     /// # Errors
-    /// [`MotionError::NotReady`] while a stop is latched.
+    /// Returns [`MotionError::NotReady`] if a stop is latched.
     pub fn check_latch(&self) -> Result<(), MotionError> {
         match self.connection {
-            // A closed connection reports its end itself.
+            // A closed connection reports its own end.
             Connection::Closed => Ok(()),
             _ if self.stop_latched => Err(MotionError::NotReady {
                 why: Unready::StopLatched,
@@ -257,14 +258,14 @@ impl Supervision {
         before
     }
 
-    /// Notes a setting that this program is about to send over the newest connection, in this
-    /// order. The setting will be sent on every later connection, unless the robot refuses it. Pass
-    /// the answer to [`Self::on_set`].
+    /// Records a setting that this program is about to send over the newest connection. Settings
+    /// must be recorded in the order in which they are sent. The setting will be sent on every
+    /// later connection, unless the robot refuses it. Pass the answer to [`Self::on_set`].
     pub fn declare(&mut self, request: Request) -> SettingId {
         self.settings.declare(request, self.connections)
     }
 
-    /// Processes the answer to a setting of the program.
+    /// Processes the answer to a setting that the program sent.
     pub fn on_set(&mut self, id: SettingId, answer: &Answer, now: Duration) {
         self.settings.on_answer(id, answer, self.connections);
         if self.policy.is_some()
@@ -272,7 +273,7 @@ impl Supervision {
         {
             let is_refused = matches!(answer, Answer::Refused { .. });
             up.configuration = match up.configuration {
-                // The setting is being sent again, or will be.
+                // The setting is being sent again, or will be sent again.
                 before @ (Configuration::Requested { .. } | Configuration::Due) => before,
                 _ if self.settings.all_hold() => Configuration::Done,
                 Configuration::Done if self.settings.any_open() => Configuration::Due,
@@ -321,7 +322,7 @@ impl Supervision {
         None
     }
 
-    /// Processes the answer to a setting of [`Self::next_setting`].
+    /// Processes the answer to a setting that [`Self::next_setting`] returned.
     pub fn on_set_again(&mut self, id: SettingId, answer: Answer) {
         if let Connection::Up(up) = &self.connection
             && matches!(up.configuration, Configuration::Requested { .. })
@@ -330,7 +331,7 @@ impl Supervision {
         }
     }
 
-    /// Approves or rejects the recovery from the reflex of this number. Returns true if the answer
+    /// Approves or rejects the recovery from the reflex with this number. Returns true if an answer
     /// was awaited.
     pub fn agree(&mut self, reflex: u64, agreed: bool, now: Duration) -> bool {
         let Connection::Up(up) = &mut self.connection else {
@@ -345,7 +346,7 @@ impl Supervision {
         awaited
     }
 
-    /// Ends the supervision: this program closes the connection, or its runtime does. No further
+    /// Ends the supervision, because this program or its runtime closes the connection. No further
     /// effects are requested.
     pub fn close(&mut self, reason: CloseReason, now: Duration) {
         if matches!(self.connection, Connection::Closed) {
@@ -360,7 +361,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Returns the time at which [`Self::on_time`] must be called, if no other input comes before.
+    /// Returns the time at which [`Self::on_time`] must be called if no other input arrives before.
     pub fn deadline(&self) -> Option<Duration> {
         let of_connection = match &self.connection {
             Connection::Up(up) => match &up.silent {
@@ -423,7 +424,7 @@ impl Supervision {
         }
     }
 
-    /// Refuses the waiting motion, because another mishap has happened.
+    /// Refuses the waiting motion, because another fault has occurred.
     fn turn_away(&mut self, now: Duration) {
         if let Some(why) = self.connection.unready() {
             self.refuse(|waiting| waiting.refusal(why, now));

@@ -1,22 +1,25 @@
-//! Policy of a supervisor: its permitted actions and their limits.
+//! Policy of a supervisor: what it may do, and how often.
 
 use core::time::Duration;
 
 use franka_proto::{Errors, RobotError};
 
-/// Actions of a supervisor when the connection or the robot fails. The default reconnects without a
-/// time limit, never recovers from a reflex, and refuses motions meanwhile.
+/// What a supervisor does when the connection or the robot fails. The default policy reconnects
+/// without a time limit, never recovers from a reflex, and refuses motions until the robot is ready
+/// again.
 ///
-/// No earlier motion resumes under any policy: motions and sessions end with the mishap.
+/// No policy resumes an earlier motion: motions and sessions end when the connection or the robot
+/// fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "a policy does nothing until a robot is supervised by it"]
 pub struct Policy {
     pub(super) recovery: Option<Recovery>,
-    /// The only errors to recover from. A reflex with any other error is not recovered.
+    /// The only errors from which the supervisor recovers. A reflex with any other error is not
+    /// recovered.
     pub(super) only: Option<Errors>,
     pub(super) agreement: bool,
     pub(super) reconnects: bool,
-    /// Pauses between attempts to connect, and to recover.
+    /// Pauses between attempts to connect, and between attempts to recover.
     pub(super) pauses: Backoff,
     pub(super) give_up_after: Option<Duration>,
     pub(super) silence: Duration,
@@ -24,28 +27,28 @@ pub struct Policy {
     pub(super) seed: Option<u64>,
 }
 
-/// Rules for recovering from a reflex.
+/// Rules for the recovery from a reflex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Recovery {
     pub(super) times: u32,
     pub(super) window: Duration,
 }
 
-/// Pauses between two attempts. The pause after the first attempt is `first`; each further pause is
-/// twice as long as the previous one, but at most `most`. The first attempt is made at once.
+/// Pauses between attempts. The first attempt is made at once. The pause after it is `first`; each
+/// further pause is twice as long as the previous pause, but at most `most`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backoff {
     /// The first pause.
     pub first: Duration,
     /// The longest pause.
     pub most: Duration,
-    /// Random share of each pause, 0 to 1, by which the pause may be shorter. Robots that were lost
-    /// at the same time then reconnect at different times.
+    /// Greatest random reduction of each pause, as a share between 0 and 1. With it, robots that
+    /// were lost at the same time reconnect at different times.
     pub jitter: f64,
 }
 
 impl Default for Backoff {
-    /// Returns pauses from 100 ms to 5 s. The jitter is 0.3.
+    /// Returns pauses from 100 ms to 5 s, with a jitter of 0.3.
     fn default() -> Self {
         Self {
             first: Duration::from_millis(100),
@@ -72,15 +75,15 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// Recovers from reflexes automatically, at most `times` times within any `window`, failed
-    /// attempts included. Further reflexes are left to a person.
+    /// Recovers from reflexes automatically, at most `times` times within any `window`. Failed
+    /// attempts count. A person must recover the robot from further reflexes.
     pub fn recover(mut self, times: u32, window: Duration) -> Self {
         self.recovery = Some(Recovery { times, window });
         self
     }
 
-    /// Limits [`Self::recover`] to reflexes all of whose errors are among these. A reflex whose
-    /// state has no error is not recovered either.
+    /// Limits [`Self::recover`] to reflexes that have only errors from this list. A reflex whose
+    /// state has no error is not recovered.
     pub fn only(mut self, errors: impl IntoIterator<Item = RobotError>) -> Self {
         self.only = Some(errors.into_iter().collect());
         self
@@ -92,60 +95,63 @@ impl Policy {
         self
     }
 
-    /// Replaces the pauses between two attempts to connect. Failed recoveries are repeated after
-    /// the same pauses, even [without reconnecting](Self::without_reconnecting).
+    /// Sets the pauses between attempts to connect. The same pauses apply between failed
+    /// recoveries, even [without reconnecting](Self::without_reconnecting).
     pub fn reconnect(mut self, backoff: Backoff) -> Self {
         self.pauses = backoff;
         self
     }
 
-    /// Makes no new connection when one is lost, regardless of the pauses of [`Self::reconnect`].
+    /// Makes no new connection after a lost connection, regardless of the pauses of
+    /// [`Self::reconnect`].
     pub fn without_reconnecting(mut self) -> Self {
         self.reconnects = false;
         self
     }
 
-    /// Gives up when a lost connection was not restored within `time`; never by default.
+    /// Gives up if a lost connection was not restored within `time`. By default the supervisor
+    /// never gives up.
     pub fn give_up_after(mut self, time: Duration) -> Self {
         self.give_up_after = Some(time);
         self
     }
 
-    /// Sets how long the robot may be silent on a connection that looks alive. After that, the
-    /// supervisor closes the connection and makes a new one. 3 s by default. The time begins when
-    /// the silence is noticed, after the link timeout.
+    /// Sets how long the robot may send no states on a connection that seems alive. After that
+    /// time, the supervisor closes the connection and makes a new one. The default is 3 s. The time
+    /// begins when the silence is noticed, after the link timeout.
     pub fn silence(mut self, time: Duration) -> Self {
         self.silence = time;
         self
     }
 
-    /// Lets a motion that is requested while the supervisor reconnects or recovers wait, for `most`
-    /// at most, and begin when the robot is ready. By default such a motion is refused at once, as
-    /// [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
+    /// Lets motions wait that are requested while the supervisor reconnects or recovers. Such a
+    /// motion waits for at most `most`, and begins when the robot is ready. By default it is
+    /// refused at once, as [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
     ///
-    /// The motion waits for the end of this mishap only. Another reflex, a reflex during the
-    /// recovery, a connection that is lost again, a user stop, a hand on the arm and closed brakes
-    /// refuse the motion. A newer motion supersedes it like a motion under way, and a stop cancels
-    /// it.
+    /// The motion waits only for the present reconnect or recovery. It is refused after another
+    /// reflex (also one during the recovery), after another lost connection or a user stop, and if
+    /// a hand guides the arm or the brakes are closed. A newer motion supersedes the waiting motion
+    /// as it would supersede a running one, and a stop cancels it.
     pub fn motions_wait(mut self, most: Duration) -> Self {
         self.motions_wait = Some(most);
         self
     }
 
-    /// Sets the seed of the random jitter; by default each robot has a different seed.
+    /// Sets the seed of the random jitter. By default each robot has a different seed.
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
         self
     }
 
-    /// As [`Self::seed`], unless a seed was set already.
+    /// Same as [`Self::seed`], but has no effect if a seed was already set.
     pub fn or_seed(mut self, seed: u64) -> Self {
         self.seed = self.seed.or(Some(seed));
         self
     }
 }
 
-/// Silence after which a connection is given up, counted from when the silence is noticed.
+/// Time without a state after which a connection is given up, counted from the time when the
+/// silence is noticed.
 const SILENCE: Duration = Duration::from_secs(3);
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! One reflex, from when it is noticed until the robot accepts motions again.
+//! One reflex, from the time when it is noticed until the robot accepts motions again.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -10,17 +10,17 @@ use super::event::{NotRecovered, Reflex};
 use super::policy::{Policy, Recovery};
 use crate::lifecycle::{ControlError, Differences, Unready};
 
-/// Reason why a recovery did not succeed.
+/// Reason why a recovery failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecoveryFailure {
     /// The robot requires a recovery by hand.
     ByHand,
-    /// Any other failure: the recovery was refused or given up, or there was no answer. It may be
-    /// repeated.
+    /// Any other failure: the recovery was refused or given up, or there was no answer. The
+    /// recovery may be tried again.
     Other,
 }
 
-/// A reflex that the robot is in.
+/// The robot's present reflex.
 #[derive(Debug)]
 pub(super) struct ReflexCase {
     pub(super) number: u64,
@@ -28,11 +28,11 @@ pub(super) struct ReflexCase {
     pub(super) errors: Errors,
     error: Option<Arc<ControlError>>,
     differences: Option<Differences>,
-    /// True if the reflex has been reported. The report waits for the end of the motion, which has
-    /// the log.
+    /// True if the reflex has been reported. The report waits for the end of the motion, because
+    /// the motion has the log.
     told: bool,
     stage: Stage,
-    /// True if the need for a person has been reported in this stage.
+    /// True if this stage has reported that a person is needed.
     stage_told: bool,
 }
 
@@ -43,11 +43,11 @@ enum Stage {
     Left(NotRecovered),
     /// The user must approve the recovery.
     AgreementAwaited,
-    /// The recovery is due, not before `at`, after `failed` failed attempts.
+    /// The recovery is due at `at` or later, after `failed` failed attempts.
     Due { at: Duration, failed: u32 },
     /// The request to recover was sent.
     Requested { failed: u32 },
-    /// The robot has recovered, and must show this in a state before `until`.
+    /// The robot has answered that it recovered. A state before `until` must show it.
     Answered { until: Duration, failed: u32 },
 }
 
@@ -61,8 +61,8 @@ pub(super) enum Step {
 }
 
 impl ReflexCase {
-    /// Returns a reflex that was noticed at `now`, of a robot with these differences from the
-    /// previous robot.
+    /// Creates the data of a reflex that was noticed at `now`. The robot has these differences from
+    /// the robot of the previous connection.
     pub(super) fn new(
         number: u64,
         errors: Errors,
@@ -93,7 +93,7 @@ impl ReflexCase {
         self.told
     }
 
-    /// Continues an unreported reflex, with more errors.
+    /// Continues a reflex that was not reported yet, with more errors.
     pub(super) fn continue_from(&mut self, before: Self) {
         (self.number, self.since, self.error) = (before.number, before.since, before.error);
     }
@@ -114,7 +114,7 @@ impl ReflexCase {
         matches!(self.stage, Stage::Requested { .. } | Stage::Answered { .. })
     }
 
-    /// Processes the user's answer. Returns true if an answer was awaited.
+    /// Processes the user's answer about the recovery. Returns true if an answer was awaited.
     pub(super) fn agree(&mut self, agreed: bool, now: Duration) -> bool {
         let awaited = self.stage == Stage::AgreementAwaited;
         if awaited {
@@ -126,7 +126,7 @@ impl ReflexCase {
         awaited
     }
 
-    /// Processes the robot's answer to the request.
+    /// Processes the robot's answer to the request to recover.
     pub(super) fn on_answer(
         &mut self,
         answer: Result<(), RecoveryFailure>,
@@ -146,8 +146,8 @@ impl ReflexCase {
         });
     }
 
-    /// Returns the next step, if one is due with the robot in this mode. `is_moving` is true while
-    /// a motion has not been reported as ended. Each step is returned once.
+    /// Returns the next step if one is due while the robot is in this mode. `is_moving` is true
+    /// until the end of the motion was reported. Each step is returned once.
     pub(super) fn step(
         &mut self,
         (mode, is_moving): (RobotMode, bool),
@@ -192,7 +192,7 @@ impl ReflexCase {
     }
 
     /// Returns the time at which [`Self::step`] must be called for a robot in this mode, if no
-    /// other input comes before.
+    /// other input arrives before.
     pub(super) fn deadline(&self, mode: RobotMode) -> Option<Duration> {
         match self.stage {
             Stage::Due { at, .. } if mode == RobotMode::Reflex => Some(at),
@@ -215,8 +215,8 @@ impl ReflexCase {
 }
 
 impl Stage {
-    /// Returns the stage that the policy prescribes for a reflex with these errors, of a robot that
-    /// may be another one.
+    /// Returns the stage that the policy requires for a reflex with these errors, on a robot that
+    /// may be another robot than before.
     fn of(
         errors: Errors,
         is_unlike: bool,
@@ -248,5 +248,6 @@ impl Stage {
     }
 }
 
-/// Time for a robot that has answered a recovery to show this in a state.
+/// Time within which a state must show that the robot has recovered, after the robot has answered
+/// so.
 const SHOWN_WITHIN: Duration = Duration::from_secs(2);

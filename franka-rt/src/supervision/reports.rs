@@ -1,4 +1,4 @@
-//! Reports of the connection.
+//! Reports from the connection.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -14,25 +14,25 @@ use crate::lifecycle::{CloseReason, MotionError, Outcome, Unready};
 use crate::sched::SchedError;
 use crate::session::GoalId;
 
-/// Reason why there is no new connection.
+/// Reason why an attempt to connect failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConnectFailure {
-    /// The robot that answers is not the robot that was connected before.
+    /// The robot that answers is not the robot of the previous connection.
     AnotherRobot {
-        /// Difference.
+        /// Description of how the robots differ.
         text: String,
     },
-    /// Another reason, which may pass.
+    /// Another reason, which may be temporary.
     Other {
-        /// Error.
+        /// Text of the error.
         text: String,
     },
 }
 
 impl Supervision {
-    /// Notes that a connection was made, with its first state and the refused requests of the
+    /// Records that a connection was made, with its first state and the refused requests of the
     /// control thread. `description` is a hash of the robot's description, if it has one. Returns
-    /// false if no connection is wanted any more; it must then be closed.
+    /// false if no connection is needed any more; the caller must then close it.
     pub fn on_connected(
         &mut self,
         description: Option<u64>,
@@ -76,8 +76,8 @@ impl Supervision {
         true
     }
 
-    /// Processes a state of the robot. A state that is not newer than the newest is ignored. States
-    /// with the same condition as the previous one may be left out: see [`Seen`].
+    /// Processes a state of the robot. A state that is not newer than the newest state is ignored.
+    /// States with the same condition as the state before may be left out: see [`Seen`].
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.robot_time < Some(state.message_id) {
             self.show(state, now);
@@ -119,7 +119,7 @@ impl Supervision {
         }
         if seen.mode == RobotMode::Reflex {
             let is_new = self.on_reflex(seen.errors, now);
-            // Something has stopped the robot again, even if for the same errors.
+            // Something has stopped the robot again, possibly with the same errors.
             let is_again = told == RobotMode::AutomaticErrorRecovery;
             if (is_new || is_again) && !is_first {
                 self.turn_away(now);
@@ -128,7 +128,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Notes that the robot is in a reflex with these errors. Returns true if they are new.
+    /// Records that the robot is in a reflex with these errors. Returns true if the errors are new.
     fn on_reflex(&mut self, errors: Errors, now: Duration) -> bool {
         let Connection::Up(up) = &mut self.connection else {
             return false;
@@ -151,7 +151,7 @@ impl Supervision {
         true
     }
 
-    /// Notes that the robot has sent no state for `silence`.
+    /// Records that the robot has sent no state for `silence`.
     pub fn on_silence(&mut self, silence: Duration, now: Duration) {
         let Connection::Up(up) = &mut self.connection else {
             return;
@@ -172,7 +172,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Notes that the connection has ended. Its resources may still be in use until
+    /// Records that the connection has ended. Its resources may be in use until
     /// [`Self::on_released`].
     pub fn on_lost(&mut self, reason: CloseReason, now: Duration) {
         let Connection::Up(up) = &self.connection else {
@@ -203,8 +203,8 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Notes that all resources of the lost connection are released: its control thread has ended,
-    /// and its socket is closed.
+    /// Records that all resources of the lost connection are released: its control thread has
+    /// ended, and its socket is closed.
     pub fn on_released(&mut self, now: Duration) {
         if let Connection::Ending(loss) = &self.connection {
             let loss = loss.clone();
@@ -220,7 +220,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Notes that an attempt to connect has failed.
+    /// Records that an attempt to connect has failed.
     pub fn on_connect_failed(&mut self, failure: ConnectFailure, now: Duration) {
         let Connection::Connecting(loss) = &self.connection else {
             return;
@@ -250,7 +250,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Processes the answer to a request to recover from the reflex of this number.
+    /// Processes the answer to a request to recover from the reflex with this number.
     pub fn on_recovery(&mut self, reflex: u64, answer: Result<(), RecoveryFailure>, now: Duration) {
         if let Connection::Up(up) = &mut self.connection
             && let Some(case) = &mut up.reflex
@@ -261,19 +261,19 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Notes that a motion, a session or a program is about to be passed to the connection. The
-    /// robot is not recovered until its end is reported.
+    /// Records that a motion, a session or a program is about to be passed to the connection. Until
+    /// [`Self::on_ended`] reports its end, the robot is not recovered.
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;
-        // A caller that requests a motion accepts the robot as it is.
+        // A caller that requests a motion accepts the robot in its present condition.
         if let Connection::Up(up) = &mut self.connection {
             up.differences = None;
         }
         self.tell(EventKind::MotionBegun { goal: goal.0 }, now);
     }
 
-    /// Notes the outcome of a motion. Motions that were not reported as begun are ignored.
+    /// Records the outcome of a motion. Motions that were not reported as begun are ignored.
     pub fn on_ended(&mut self, goal: GoalId, outcome: &Outcome, now: Duration) {
         if !self.motions.remove(&goal) {
             return;
@@ -294,7 +294,7 @@ impl Supervision {
     }
 }
 
-/// Returns the event of a mode that has begun or ended; `None` for reflexes and motions.
+/// Returns the event for a mode that has begun or ended. Returns `None` for reflexes and motions.
 fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     Some(match mode {
         RobotMode::UserStopped => EventKind::UserStop { pressed: begun },
@@ -307,6 +307,6 @@ fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     })
 }
 
-/// Duration below which a connection counts as a failed attempt. If a robot drops each connection,
-/// the next attempt then comes after a pause.
+/// Shortest duration of a connection that does not count as a failed attempt. If a robot drops each
+/// connection early, the next attempt is made after a pause.
 const LASTING: Duration = Duration::from_secs(1);

@@ -1,30 +1,30 @@
-//! Settings that this program has made at the robot, and that every connection should have.
+//! Settings that this program has made on the robot, and that every connection should have.
 
 use franka_proto::{Command, Request};
 
 /// Result of a setting that was sent to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// The robot has accepted the setting. Its states show the value, if states have it.
+    /// The robot has accepted the setting. If states contain the value, they show it.
     Taken,
     /// The robot has accepted the setting, but its states show another value.
     NotShown {
         /// Description of the values shown and set, for a person.
         text: String,
     },
-    /// The robot has refused the setting, or it was not sent: the earlier setting holds.
+    /// The robot has refused the setting, or it was not sent. The earlier value stays in effect.
     Refused {
         /// Description of the robot's answer and the value set, for a person.
         text: String,
     },
-    /// There was no answer: the robot may have accepted the setting.
+    /// There was no answer. The robot may have accepted the setting.
     Unknown {
         /// Description of the missing answer, for a person.
         text: String,
     },
 }
 
-/// Name of a setting, from [`Supervision::declare`](super::Supervision::declare).
+/// Identifies a setting. [`Supervision::declare`](super::Supervision::declare) returns it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SettingId(u64);
 
@@ -40,25 +40,25 @@ pub(super) struct Settings {
 struct Setting {
     id: SettingId,
     request: Request,
-    /// Number of the connection over which the program has sent the setting.
+    /// Number of the connection over which the program sent the setting.
     connection: u64,
     standing: Standing,
     /// True if states have shown the setting.
     was_shown: bool,
-    /// The earlier setting of this kind, which counts again if the robot refuses this one. Kept
-    /// until the robot has answered.
+    /// The earlier setting of this kind, until the robot has answered. It is used again if the
+    /// robot refuses this setting.
     before: Option<Box<Setting>>,
 }
 
 /// State of a setting on the newest connection.
 #[derive(Debug)]
 enum Standing {
-    /// The program has sent the setting, and has no answer yet.
+    /// The program has sent the setting, and there is no answer yet.
     Sent,
-    /// The robot may have the setting or not.
+    /// It is unknown if the robot has the setting.
     Open,
     Holds,
-    /// The robot could not be given the setting, for this reason.
+    /// The setting could not be restored, for this reason.
     Failed {
         text: String,
     },
@@ -69,7 +69,7 @@ impl Settings {
         self.newest.is_empty()
     }
 
-    /// True if all settings hold on the newest connection.
+    /// True if the robot has all settings on the newest connection.
     pub(super) fn all_hold(&self) -> bool {
         let holds = |setting: &Setting| matches!(setting.standing, Standing::Holds);
         self.newest.iter().all(holds)
@@ -80,15 +80,15 @@ impl Settings {
         self.next().is_some()
     }
 
-    /// True if the program waits for an answer. Until the answer comes, it is unknown which value
-    /// counts.
+    /// True if the program waits for an answer. Until the answer arrives, it is unknown which value
+    /// is in effect.
     pub(super) fn any_sent(&self) -> bool {
         let is_sent = |setting: &Setting| matches!(setting.standing, Standing::Sent);
         self.newest.iter().any(is_sent)
     }
 
-    /// Notes a setting that the program is about to send over the connection of this number. The
-    /// setting counts unless the robot refuses it.
+    /// Records a setting that the program is about to send over the connection with this number.
+    /// The setting is kept unless the robot refuses it.
     pub(super) fn declare(&mut self, request: Request, connection: u64) -> SettingId {
         let is_same = |setting: &Setting| setting.request.command() == request.command();
         let before = self.newest.iter().position(is_same);
@@ -127,13 +127,13 @@ impl Settings {
         }
     }
 
-    /// Processes the answer to a setting of [`Self::next`].
+    /// Processes the answer to a setting that [`Self::next`] returned.
     pub(super) fn on_answer_again(&mut self, id: SettingId, answer: Answer) {
         let Some(setting) = self.find(id) else {
             return;
         };
         setting.standing = match answer {
-            // A robot that rounds the numbers never shows exactly the set ones.
+            // If a robot rounds numbers, its states never show exactly the number that was set.
             Answer::NotShown { .. } if !setting.was_shown => Standing::Holds,
             Answer::Taken => {
                 setting.was_shown = true;
@@ -152,7 +152,7 @@ impl Settings {
         Some((open.id, open.request))
     }
 
-    /// Returns the settings that could not be set, and the reasons.
+    /// Returns the settings that could not be restored, and the reasons.
     pub(super) fn failures(&self) -> impl Iterator<Item = (Command, &String)> {
         self.newest
             .iter()
@@ -162,7 +162,7 @@ impl Settings {
             })
     }
 
-    /// Makes the failed settings be tried again.
+    /// Requests another attempt for the failed settings.
     pub(super) fn retry(&mut self) {
         for setting in &mut self.newest {
             if let Standing::Failed { .. } = setting.standing {
@@ -171,7 +171,7 @@ impl Settings {
         }
     }
 
-    /// Notes a new connection, on which nothing is set.
+    /// Processes a new connection, on which no setting has been made.
     pub(super) fn on_connected(&mut self) {
         for newest in &mut self.newest {
             let mut setting = Some(newest);
@@ -192,7 +192,7 @@ impl Settings {
         })
     }
 
-    /// Removes a setting, so that the previous one counts again.
+    /// Removes a setting, so that the earlier setting is used again.
     fn remove(&mut self, id: SettingId) {
         if let Some(place) = self.newest.iter().position(|newest| newest.id == id) {
             match self.newest[place].before.take() {

@@ -8,10 +8,10 @@ use crate::session::GoalId;
 /// Decision on a motion that a caller requests.
 #[derive(Debug)]
 pub enum Admission {
-    /// Begin the motion now. If the robot accepts no motions, it refuses this one itself.
+    /// Begin the motion now. If the robot accepts no motions, it refuses the motion itself.
     Begin,
     /// Keep the motion until [`Output::Begin`](super::Output::Begin) or
-    /// [`Output::Refuse`](super::Output::Refuse) names it.
+    /// [`Output::Refuse`](super::Output::Refuse) contains its id.
     Wait,
     /// The motion does not begin, for this reason.
     Refuse(MotionError),
@@ -28,8 +28,8 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Decides on `motion`, which would wait for `most`. If it waits, it becomes `waiting`. Returns
-    /// the earlier waiting motion that it supersedes, if any.
+    /// Decides on `motion`, which may wait for `most`. If it waits, it becomes the new `waiting`.
+    /// Returns the earlier waiting motion, if `motion` supersedes it.
     pub(super) fn admit(
         waiting: &mut Option<Self>,
         motion: &NewMotion,
@@ -40,7 +40,7 @@ impl Waiting {
             why,
             waited: Duration::ZERO,
         };
-        // The other members of a common start would have to wait, too.
+        // The other members of a common start would also have to wait.
         let Some(most) = most.filter(|_| !motion.has_ticket()) else {
             return (Admission::Refuse(refusal), None);
         };
@@ -58,7 +58,7 @@ impl Waiting {
         (Admission::Wait, before.map(|before| before.goal))
     }
 
-    /// Returns the error of a motion that does not begin because the robot is not ready at `now`.
+    /// Returns the error for a motion that does not begin because the robot is not ready at `now`.
     pub(super) fn refusal(&self, why: Unready, now: Duration) -> MotionError {
         let waited = now - self.since;
         MotionError::NotReady { why, waited }

@@ -1,12 +1,12 @@
-//! The backstop: the limiter between the reference and the robot's own controller.
+//! The backstop: a limiter between the reference and the robot's own controller.
 
 use franka_proto::Version;
 
 use crate::shaping::Bounds;
 
-/// Share of the robot's acceleration and jerk that the backstop permits. It limits against an echo
-/// that a Franka Research 3 rounds to `f32`. The rounding changes the acceleration computed from
-/// two positions by up to 0.25 rad/s^2.
+/// Share of the robot's acceleration and jerk limits that the backstop permits. The limiter
+/// compares with the robot's echo of the setpoint, which a Franka Research 3 rounds to `f32`. This
+/// rounding changes the acceleration computed from two positions by up to 0.25 rad/s^2.
 pub(crate) const BACKSTOP: f64 = 0.95;
 
 /// Returns the bounds of the limiter for setpoints.

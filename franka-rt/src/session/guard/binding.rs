@@ -1,54 +1,55 @@
-//! Guards that limited a command; every record has this field.
+//! Guards that limited a command. The record of each cycle contains them.
 
-/// A guard that can hold a command back or give up a goal.
+/// A guard that can limit a command or give up a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Guard {
-    /// The reference ran ahead of the measured arm by the length of the leash and was held there.
+    /// The reference was ahead of the measured arm by the length of the leash, and was held there.
     Leash,
-    /// On the way to a pose a joint reached the bound of its acceleration or jerk.
+    /// On the way to a pose, a joint reached its limit of acceleration or jerk.
     InverseKinematics,
-    /// A spring and damper torque reached its clamp.
+    /// The torque of springs and dampers at a joint reached its clamp.
     TorqueClamp,
-    /// Spring and damper would have exerted more force than the goal allows. The excess was
+    /// Springs and dampers would have exerted more force than the goal allows. The excess was
     /// removed.
     ForceCap,
-    /// A joint came near the robot's velocity limit and was braked.
+    /// A joint came near the robot's velocity limit, and was braked.
     VelocityBarrier,
-    /// The torque changed faster than the robot accepts and was slowed.
+    /// The torque would have changed faster than the robot accepts. The change was slowed.
     TorqueRate,
     /// The targets stopped arriving, so the arm brakes or rests.
     Watchdog,
     /// The deadman is silent, so the arm brakes or rests.
     Deadman,
-    /// The limiter before the robot's own controller changed a setpoint.
+    /// The limiter in front of the robot's own controller changed a setpoint.
     Backstop,
-    /// On the way to a pose a joint reached the cap of its velocity.
+    /// On the way to a pose, a joint reached its velocity cap.
     JointVelocity,
-    /// On the way to a pose a joint reached the end of its range, or had to keep enough distance to
+    /// On the way to a pose, a joint reached the end of its range, or was slowed so that it could
     /// stop before the end.
     PositionEnvelope,
-    /// The arm came near itself or a keep-out region. The reference slows down, or stops before
-    /// that.
+    /// The arm came near itself or near a keep-out region. The reference slowed down, or stopped in
+    /// time.
     Clearance,
-    /// The arm was displaced from its path, and its goal was given up.
+    /// The arm was pushed off its path, and its goal was given up.
     Deviation,
-    /// The target was further ahead of the arm than the lead allows, and was drawn nearer.
+    /// The target was further ahead of the arm than the lead allows, and was moved closer.
     Lead,
-    /// No plan to the target could be made (only by a defect). The previous plan continues.
+    /// No plan to the target could be made (only a defect can cause this). The previous plan
+    /// continues.
     PlanFailure,
-    /// The condition of the goal was true. The arm therefore brakes, moves to the other target, or
-    /// has reached it.
+    /// The condition of the goal became true. Therefore the arm brakes, moves to the other target,
+    /// or has reached it.
     Reaction,
     /// A member of the team has a fault, or the team was stopped, so the arm brakes or rests.
     Team,
-    /// On the way to a pose a point of the arm reached the session's speed cap and the joints were
-    /// slowed. Otherwise the arm exceeded the cap, and its goal was given up.
+    /// On the way to a pose, a point of the arm reached the session's speed cap and the joints were
+    /// slowed. Or the arm exceeded the cap and its goal was given up.
     SpeedCap,
-    /// The arm stood still under commands that should have moved it, without an error, and its goal
-    /// was given up.
+    /// The arm stood still under commands that should have moved it, although the robot reported no
+    /// error. Its goal was given up.
     Unresponsive,
 }
 
@@ -87,7 +88,7 @@ impl Guard {
     ];
 }
 
-/// Formats the common name of the guard, such as `joint range`.
+/// Writes the common name of the guard, such as `joint range`.
 impl core::fmt::Display for Guard {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.pad(match self {
@@ -115,7 +116,7 @@ impl core::fmt::Display for Guard {
 }
 
 impl Bindings {
-    /// Adds `guard` if `binds`.
+    /// Adds `guard` if `binds` is true.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
         self.0 |= u32::from(binds) << guard as u32;
     }
@@ -127,7 +128,7 @@ impl Bindings {
         bindings
     }
 
-    /// Returns the guards of either set.
+    /// Returns the guards that are in either set.
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }

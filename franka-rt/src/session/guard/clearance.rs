@@ -1,49 +1,50 @@
-//! Clearance: decides whether the reference may make its next step without coming too near to the
-//! arm itself or to a keep-out region. `obstacle_braking` then slows down or brakes the reference.
+//! Clearance: the reference slows down when it approaches the arm itself or a keep-out region, and
+//! stops before it is too near.
 //!
-//! The whole path to rest must stay clear. Before the reference makes a step, the brake after that
-//! step is planned. Its postures at rest and half way there are checked against the arm's shape. A
-//! step after which the arm could not stop in time is not made. The reference brakes from its place
-//! instead; the check of the previous step has shown that this brake is clear.
+//! The whole path to rest must be clear. Before the reference makes a step, the brake after that
+//! step is planned. Two of its postures are checked with the arm's shape: at rest, and half way
+//! there. If the arm could not stop in time after the step, the step is not made. Instead, the
+//! reference brakes from where it is; the check of the previous step has shown that this brake is
+//! clear.
 //!
-//! The distance is therefore kept for every kind of motion, under the generator's own brake, which
-//! keeps the robot's limits. Between the two checked postures the path may sag: by less than a
-//! tenth of a millimetre at the default pace, and by half a millimetre at a quick pace.
+//! Therefore every kind of motion keeps the distance, and brakes within the robot's limits. Between
+//! the two checked postures, the path may come a little nearer: by less than a tenth of a
+//! millimetre at the default pace, and by half a millimetre at a quick pace.
 //!
-//! Only approaches are held back. A motion out of a zone is free, even for an arm that begins
-//! inside.
+//! Only approaches are limited. An arm that begins inside a zone may move out of it freely.
 
 use franka_model::collision::{
     Arrangement, CandidateMask, Item, MotionBound, Obstacle, REGIONS_MAX, Shape, Spacing,
 };
 use franka_model::{JointVector, Model};
 
-/// Distance kept between two links that have two other links between them, `[m]`. The robot's
-/// self-collision avoidance is assumed to require 0.05. The rest is for the arm, which follows like
-/// a spring and overshoots its reference.
+/// Distance that is kept between links with at least two other links between them, `[m]`. The
+/// robot's own self-collision avoidance is assumed to require 0.05. The rest is a margin for the
+/// arm, which follows like a spring and overshoots its reference.
 pub const SELF_STOP: f64 = 0.06;
 
-/// Distance kept between the capsules around the links and a keep-out region, `[m]`.
+/// Distance that is kept between the capsules around the links and a keep-out region, `[m]`.
 pub const KEEP_OUT_STOP: f64 = 0.02;
 
-/// Additional distance below which the approach is slow, `[m]`.
+/// Width of the zone beyond those distances in which an approach is slow, `[m]`.
 pub const SLOW_ZONE: f64 = 0.06;
 
 /// Maximum number of keep-out regions of a session.
 pub const KEEP_OUT_MAX: usize = REGIONS_MAX;
 
-/// Keep-out regions of the arm and its Hand in the base frame; room for [`KEEP_OUT_MAX`] regions.
+/// Keep-out regions for the arm and its Hand, in the base frame, with room for [`KEEP_OUT_MAX`]
+/// regions.
 pub type KeepOut = [Option<Obstacle>; KEEP_OUT_MAX];
 
-/// Least distance along the chain between two links that are checked, in links; a tool comes after
-/// link 7. Closer links come near each other in everyday postures.
+/// Least number of links, along the chain, between two links that are checked; a tool comes after
+/// link 7. Links that are closer along the chain come near each other in ordinary postures.
 const APART: u8 = 3;
 
-/// Least change that counts as an approach, `[m]`: above the rounding of distances, and below the
-/// first cycle of a motion from rest.
+/// Least change of a distance that counts as an approach, `[m]`. It is above the rounding of
+/// distances, and below the change in the first cycle of a motion from rest.
 const NEARER: f64 = 1e-9;
 
-/// Surroundings of which one session keeps clear.
+/// Surroundings from which a session keeps its arm clear.
 #[derive(Debug)]
 pub(crate) struct Clearance {
     /// Distances within the arm, and between its capsules and the regions.
@@ -54,26 +55,27 @@ pub(crate) struct Clearance {
 /// Result of the last full check, at a posture on the path of the arm.
 #[derive(Debug)]
 struct Known {
-    /// Bound on the turns of the joints from that posture before a distance is small.
+    /// Bound on how far the joints may turn from that posture before a distance can become small.
     bound: MotionBound,
     /// Distances that could be small on the path from that posture to rest.
     candidates: CandidateMask,
 }
 
-/// Obstacles on the path to rest.
+/// What is on the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ahead {
-    /// Nothing near.
+    /// No obstacle is near.
     Clear,
-    /// An obstacle that is approached slowly.
+    /// An obstacle is near, so the approach is slow.
     Near,
-    /// An obstacle that the arm must not approach: the region with this index, or the arm itself.
+    /// An obstacle that the arm must not come nearer to: the region with this index, or the arm
+    /// itself.
     TooNear(Option<usize>),
 }
 
 impl Clearance {
-    /// Creates the clearance of an arm with this model. With `hand`, the vendor's Hand is on its
-    /// flange, otherwise nothing.
+    /// Creates the clearance of an arm with this model. With `hand`, the vendor's Hand is on the
+    /// flange; without it, the flange is empty.
     pub(crate) fn new(model: &Model, hand: bool, keep_out: KeepOut) -> Self {
         let shapes = [Shape::vendor(), Shape::covering(model.kind())];
         let [arm, cover] = shapes.map(|shape| shape.with_lengths(*model.lengths()));
@@ -89,7 +91,7 @@ impl Clearance {
         }
     }
 
-    /// Checks the path from `next` to rest at `end`, for a reference at `now`.
+    /// Checks the path from `next` to rest at `end`, while the reference is at `now`.
     pub(crate) fn ahead(
         &mut self,
         now: &JointVector,
@@ -99,8 +101,8 @@ impl Clearance {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
         let still = JointVector::zeros();
-        // Nearly always the arm has moved too little since the last full check to be near anything
-        // else.
+        // Nearly always, the arm has moved too little since the last full check for any other
+        // obstacle to be near.
         if let Some(known) = &self.known {
             let candidates = known.bound.candidates(&self.spacing, &half, &way);
             if candidates.is_empty() {
@@ -124,7 +126,7 @@ impl Clearance {
         self.on_the_way(now, Some((&middle, there)), (end, candidates))
     }
 
-    /// Returns the first distance that is too small at `next` and smaller than at `now`.
+    /// Returns the first distance that is too small at `next`, and smaller there than at `now`.
     pub(crate) fn too_near(&self, now: &JointVector, next: &JointVector) -> Option<Item> {
         let (here, there) = (self.spacing.at(now), self.spacing.at(next));
         self.spacing.items(CandidateMask::ALL).find(|&item| {
@@ -134,11 +136,11 @@ impl Clearance {
         })
     }
 
-    /// Checks the path from `now` to `half` and to `end`. Only distances of the candidates may be
-    /// small on it; `half` is `None` if none may be there.
+    /// Checks the path from `now` to `half` and to `end`. Only the distances in the candidates can
+    /// be small on it.
     ///
     /// Only distances that are small on the path are compared with their present values. Once an
-    /// obstacle is known to be near, only distances that would be too small can change the result.
+    /// obstacle is known to be near, only a distance that is too small can change the result.
     fn on_the_way(
         &self,
         now: &JointVector,
@@ -166,8 +168,8 @@ impl Clearance {
     }
 }
 
-/// Classifies a margin that changes from `now` to `then`, both in metres: to a region, or within
-/// the arm.
+/// Classifies a margin that changes from `now` to `then`, in metres. It is the margin to a region,
+/// or to the arm itself.
 fn judge(region: Option<usize>, now: f64, then: f64) -> Ahead {
     if then >= SLOW_ZONE || then >= now - NEARER {
         Ahead::Clear

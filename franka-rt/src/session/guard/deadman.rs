@@ -1,5 +1,5 @@
-//! The deadman: a token that the program must keep alive. The arm brakes when its owner is silent
-//! or gone.
+//! The deadman: a token that the program must keep alive. If its owner is silent, or drops the
+//! token, the arm brakes.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
@@ -7,34 +7,34 @@ use std::sync::Arc;
 
 use crate::session::Goal;
 
-/// The value of the counter once the token is dropped.
+/// Value of the counter after the token was dropped.
 const GONE: u64 = u64::MAX;
 
 /// A count that no token reaches.
 const NEVER: u64 = u64::MAX - 1;
 
-/// Shared state of the two ends of a deadman.
+/// State that both ends of a deadman share.
 #[derive(Debug)]
 pub struct Pulse {
-    /// Number of times that the owner kept the token alive.
+    /// Number of times that the owner has kept the token alive.
     beats: AtomicU64,
-    /// Count at which the thread last found the token silent.
+    /// Count at which the thread last found that the token was silent.
     silent: AtomicU64,
 }
 
 impl Pulse {
-    /// True if the control thread has found the token silent, and the owner has not kept it alive
-    /// since.
+    /// True if the control thread has found that the token was silent, and the owner has not kept
+    /// it alive since.
     pub fn is_silent(&self) -> bool {
         // Relaxed, as below.
         self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
     }
 }
 
-/// The owner's end of a deadman, a token bound to a session. Call [`Self::keep_alive`] at least
-/// once every `silence`. Otherwise, and once the token is dropped, the arm brakes and holds, and
-/// every goal ends as held. This lasts until the token is kept alive again. A dropped token never
-/// returns.
+/// The owner's end of a deadman: a token to which a session is bound. Call [`Self::keep_alive`] at
+/// least once in every `silence`. If you do not, or if the token is dropped, the arm brakes and
+/// holds, and every goal ends as held. The next call of [`Self::keep_alive`] ends this state; after
+/// a drop it is permanent.
 ///
 /// The control thread checks the token by the robot's clock, independently of the rest of the
 /// program.
@@ -51,7 +51,7 @@ pub struct Deadman {
 pub struct DeadmanMonitor {
     pulse: Arc<Pulse>,
     silence: Duration,
-    /// The newest count, and the robot's time when it was first seen, `[ms]`.
+    /// The newest count, and the time when it was first seen, by the robot's clock, `[ms]`.
     seen: Option<(u64, u64)>,
 }
 
@@ -59,7 +59,7 @@ impl Deadman {
     /// The shortest silence that a session accepts.
     pub const SILENCE_MIN: Duration = Goal::SILENCE_MIN;
 
-    /// Returns a token that may be silent for `silence`, in whole milliseconds, and its monitor for
+    /// Creates a token that may be silent for `silence`, in whole milliseconds, and its monitor for
     /// a session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
         let pulse = Arc::new(Pulse {
@@ -78,7 +78,7 @@ impl Deadman {
         (token, monitor)
     }
 
-    /// Restarts the time of silence. Wait-free.
+    /// Keeps the token alive: restarts the timer of its silence. Wait-free.
     pub fn keep_alive(&self) {
         // Relaxed: only the count is passed between the threads.
         self.pulse.beats.fetch_add(1, Ordering::Relaxed);
@@ -92,7 +92,7 @@ impl Deadman {
 
 impl Drop for Deadman {
     fn drop(&mut self) {
-        // Relaxed, as above. The counter has no other writer any more.
+        // Relaxed, as above. The counter has no other writer at this point.
         self.pulse.beats.store(GONE, Ordering::Relaxed);
     }
 }
@@ -109,8 +109,8 @@ impl DeadmanMonitor {
         self.pulse.beats.load(Ordering::Relaxed) == GONE
     }
 
-    /// True if the token is alive at the robot's time `now`, `[ms]`. The silence counts from the
-    /// first call.
+    /// True if the token is alive at the robot's time `now`, `[ms]`. The timer of the silence
+    /// starts with the first call.
     pub(crate) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.pulse.beats.load(Ordering::Relaxed);
         let since = match self.seen {
@@ -128,7 +128,7 @@ impl DeadmanMonitor {
         alive
     }
 
-    /// Returns the part of the token that is visible outside the control thread.
+    /// Returns the state of the token that can be read outside the control thread.
     pub fn pulse(&self) -> Arc<Pulse> {
         self.pulse.clone()
     }

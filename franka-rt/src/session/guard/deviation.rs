@@ -1,25 +1,25 @@
-//! Deviation: prevents an arm that was displaced too far from swinging back.
+//! Deviation: stops an arm that was pushed too far off its path from swinging back.
 //!
-//! The leash moves the reference along with a pushed arm, and the course begins again wherever the
-//! arm is released. Only this guard therefore bounds the displacement of the arm, and its motion
-//! after the release.
+//! The leash moves the reference along with a pushed arm, and the course continues from the place
+//! where the arm is released. Therefore only this guard limits how far the arm can be pushed, and
+//! how far it moves back after the release.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use nalgebra::{Isometry3, Vector3};
 
 use crate::session::{Target, rigid};
 
-/// Greatest displacement of the arm from its path. The path begins at the last free reference,
-/// which the leash did not hold, and ends at the target. A motion with a greater displacement is
-/// given up. Infinite numbers switch the guard off. A distance within the
-/// [`Leash`](crate::session::Leash) is never a deviation.
+/// Greatest distance that the arm may be pushed off its path. The path leads from the last
+/// reference that the leash did not hold to the target. Beyond this distance, the goal is given up.
+/// Infinite numbers switch the guard off. A distance within the [`Leash`](crate::session::Leash)
+/// never counts as a deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Translation of the end effector, `[m]`.
+    /// Greatest translation of the end effector, `[m]`.
     pub translation: f64,
-    /// Rotation of the end effector, `[rad]`.
+    /// Greatest rotation of the end effector, `[rad]`.
     pub rotation: f64,
-    /// Displacement of each joint, `[rad]`.
+    /// Greatest displacement of each joint, `[rad]`.
     pub joints: f64,
 }
 
@@ -37,7 +37,7 @@ impl Default for Deviation {
 /// Remembers the reference before the leash moved it along.
 #[derive(Debug)]
 pub(crate) struct Displacement {
-    /// Joint positions of the reference when it was last free, `[rad]`.
+    /// Joint positions of the reference when the leash last did not hold it, `[rad]`.
     anchor: JointVector,
 }
 
@@ -47,13 +47,13 @@ impl Displacement {
         Self { anchor }
     }
 
-    /// Records a reference that its leash does not hold.
+    /// Records a reference that the leash does not hold.
     pub(crate) fn set_free(&mut self, reference: &JointVector) {
         self.anchor = *reference;
     }
 
     /// True if the arm, at `q` and `measured`, is further than `most` from the path between the
-    /// last free reference and the target. An arm that follows slowly is on its path, and not
+    /// last free reference and the target. An arm that follows slowly is on its path, so it is not
     /// displaced.
     pub(crate) fn is_exceeded(
         &self,
@@ -90,7 +90,7 @@ impl Displacement {
     }
 }
 
-/// Returns the distance of a point from the line from the origin to `end`.
+/// Returns the distance between `point` and the line from the origin to `end`.
 pub(crate) fn beside(point: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
     let along = point.dot(end) / end.norm_squared().max(f64::MIN_POSITIVE);
     (point - end * along.clamp(0.0, 1.0)).norm()

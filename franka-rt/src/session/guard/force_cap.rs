@@ -1,29 +1,30 @@
-//! The force cap: limits the joint force of springs and dampers on a hand that holds the end
-//! effector.
+//! The force cap: limits the total force of springs and dampers on a person's hand that holds the
+//! end effector.
 //!
-//! The leash bounds only the spring. In a quick push the damper adds to the spring, and the springs
-//! of the joints press at the end effector, too. This guard limits their sum only: the torques of
-//! the motion itself, inertia and Coriolis torques, are added after the guard.
+//! The leash bounds only the spring. In a quick push, the damper adds to the spring, and the
+//! springs of the joints also press at the end effector. This guard limits the sum of these forces.
+//! The torques of the motion itself (inertia and Coriolis) are added after the guard.
 //!
-//! The limited force is the force on a hand that holds the end effector at a point, `Lambda J M^-1
-//! tau` with the `J` and `Lambda` of its position alone. It follows from the equations of motion
-//! for a point that does not move while the rest of the arm may. At rest against a wall it is the
-//! force on the wall. It does not count torques that only turn the hand or move the elbow.
+//! The limited force is the force on a hand that holds the end effector at a point:
+//! `Lambda J M^-1 tau`, with the `J` and `Lambda` of the position alone. It follows from the
+//! equations of motion if that point does not move while the rest of the arm may move. If the arm
+//! rests against a wall, it is the force on the wall. Torques that only turn the hand or move the
+//! elbow do not count.
 //!
-//! Near a singularity a small torque may cause any force along the lost direction. There the
-//! computed force is damped and too low. Singularities of the position are few. If the rotation
-//! were held as well there would be many more, and paths of the joints between two postures pass
-//! through them. There every torque would count as thousands of newtons.
+//! Near a singularity, a small torque may cause any force in the direction in which the end
+//! effector cannot move. The computed force is damped there, and too low. The position has few
+//! singularities. If the rotation were also held, there would be many more, and joint paths pass
+//! through them. Every torque would count as thousands of newtons there.
 //!
-//! First the spring is reduced to the cap, then its sum with the damper. Therefore, at full force,
-//! the damper still brakes an arm that returns to its reference, and only the excess over the cap
-//! is removed. If spring and damper were scaled together, they would be one constant force without
-//! damping.
+//! First the force of the spring is reduced to the cap, and then the sum of spring and damper.
+//! Therefore the damper still brakes an arm that returns to its reference at full force, and only
+//! the excess over the cap is removed. If spring and damper were scaled together, their sum would
+//! be a constant force without damping.
 //!
 //! The excess over the cap is removed as a force at the end effector, `J' (F - F')`. The torques
-//! that turn the hand and move the elbow remain, and so does the balance of an arm that leans on an
-//! obstacle. In the metric of the inertia, neither the torques of the springs nor the torques of
-//! the dampers grow.
+//! that turn the hand and move the elbow do not change. An arm that leans on an obstacle stays in
+//! balance. In the metric of the inertia, neither the torques of the springs nor the torques of the
+//! dampers grow.
 
 use core::ops::RangeInclusive;
 
@@ -32,35 +33,35 @@ use nalgebra::Vector3;
 
 use crate::law::task_space::TaskSpace;
 
-/// Greatest force of springs and dampers at the end effector.
+/// Greatest force that springs and dampers may exert at the end effector.
 ///
-/// Only the session's own law keeps the cap. If the robot's controller turns setpoints into torques
-/// ([`Backend::RobotController`](crate::session::Backend::RobotController)), a goal with
+/// Only the session's own law supports a cap. If the robot's controller turns setpoints into
+/// torques ([`Backend::RobotController`](crate::session::Backend::RobotController)), a goal with
 /// [`Self::Newtons`] is refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ForceCap {
     /// The cap is [`Self::DEFAULT_NEWTONS`].
     #[default]
     Default,
-    /// The cap, `[N]`, in [`Self::RANGE`].
+    /// The cap in newtons, within [`Self::RANGE`].
     Newtons(f64),
     /// No cap: springs and dampers exert their full force.
     Off,
 }
 
 impl ForceCap {
-    /// Accepted force caps, `[N]`. Below this range friction alone would keep the arm from
+    /// Accepted force caps, `[N]`. With a lower cap, friction alone could keep the arm from
     /// following.
     pub const RANGE: RangeInclusive<f64> = 5.0..=200.0;
 
     /// Default force cap of goals, `[N]`.
     ///
-    /// The default is just above the weight of the robot's whole payload of 3 kg. It is also above
-    /// the force of the default gains when the arm is held back without a push.
+    /// It is just above the weight of the robot's full payload, 3 kg. It is also above the force of
+    /// the default gains while the arm is held back without a push.
     ///
-    /// Simulated motions within the default budget never reached it, even with 3 kg declared or 0.5
-    /// kg undeclared. Without a cap, a hand that pushes against a held arm at 0.25 m/s would meet
-    /// 40 to 54 N, and 67 to 115 N with stiff joints.
+    /// In simulated motions within the default budget, the force never reached this cap, even with
+    /// 3 kg declared or 0.5 kg undeclared. Without a cap, a hand that pushes against a held arm at
+    /// 0.25 m/s would meet 40 to 54 N, and 67 to 115 N with stiff joints.
     pub const DEFAULT_NEWTONS: f64 = 30.0;
 
     /// Returns the cap, `[N]`; `None` without a cap.
@@ -73,8 +74,8 @@ impl ForceCap {
     }
 }
 
-/// Limits the force of the torques of `springs` and `dampers`, `[N m]`, to `cap`, `[N]`. Returns
-/// the sum of the torques, and true if the cap changed it.
+/// Limits the force of `springs` and `dampers`, given as torques `[N m]`, to `cap`, `[N]`. Returns
+/// the sum of the limited torques, and true if the cap changed it.
 pub(crate) fn hold(
     springs: &JointVector,
     dampers: &JointVector,
@@ -93,7 +94,7 @@ pub(crate) fn hold(
     (tau - jacobian.fixed_rows::<3>(0).tr_mul(&excess), true)
 }
 
-/// Shortens the force to `most`, if it is longer.
+/// Shortens the force to the length `most`, if it is longer.
 fn within(force: &Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = force.norm();
     if length <= most {
@@ -120,14 +121,14 @@ mod tests {
         Model::fr3().dynamics(q, &still, &ee, &Load::NONE, &GRAVITY_EARTH)
     }
 
-    /// Inverse of the inertia of links and rotors.
+    /// Returns the inverse of the inertia of links and rotors.
     fn mobility(dynamics: &Dynamics) -> MassMatrix {
         let mass = dynamics.mass + MassMatrix::from_diagonal(&task_space::ROTORS.into());
         mass.try_inverse().expect("a physical arm")
     }
 
-    /// Returns the force on a hand that holds the end effector at a point, with every matrix
-    /// inverted in full.
+    /// Returns the force on a hand that holds the end effector at a point. Inverts every matrix in
+    /// full.
     fn force(tau: &JointVector, dynamics: &Dynamics) -> Vector3<f64> {
         let jacobian = dynamics.jacobian.fixed_rows::<3>(0).into_owned();
         let inverse = mobility(dynamics);
@@ -135,7 +136,7 @@ mod tests {
         point.try_inverse().expect("regular") * jacobian * inverse * tau
     }
 
-    /// Torques of springs and of dampers.
+    /// Returns the torques of springs and of dampers.
     fn torques(
         gains: &Gains,
         dynamics: &Dynamics,
@@ -198,7 +199,7 @@ mod tests {
             }
         }
 
-        /// A spring that is stretched too far keeps the direction of its force, and a damper brakes
+        /// If a spring is stretched too far, its force keeps its direction, and the damper brakes
         /// it with its full force.
         #[test]
         fn a_damper_brakes_a_spring_at_full_force(
@@ -274,7 +275,7 @@ mod tests {
                 let free = torques(&gains, &dynamics, &(READY - q), &-dq);
                 let (tau, binds) = held(&free, 10.0, &dynamics);
                 bound += u32::from(binds);
-                // Coriolis torques cancel.
+                // Coriolis torques cancel each other.
                 dq += mobility(&dynamics) * tau * CYCLE;
                 q += dq * CYCLE;
                 if cycle > 1000 {

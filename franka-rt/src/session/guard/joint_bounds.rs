@@ -1,4 +1,5 @@
-//! The joints' bounds on the way to a pose: velocity cap, position envelope, acceleration and jerk.
+//! Bounds of the joints on the way to a pose: velocity cap, position envelope, acceleration and
+//! jerk.
 
 use franka_model::JointVector;
 use franka_model::limits::JointLimits;
@@ -10,10 +11,10 @@ use crate::shaping::CYCLE;
 /// Share of each joint's velocity limit that the reference may use.
 const VELOCITY_CAP: f64 = 0.7;
 
-/// Factor by which a joint may exceed its budget's velocity on the way to a pose. On a straight
-/// line near a singular posture, joints turn fast while the hand hardly moves, which a person next
-/// to the arm does not expect. A factor of 2 would needlessly hold back an arm that stretches at
-/// the default pace.
+/// Factor by which a joint may exceed the velocity of its budget on the way to a pose. On a
+/// straight line near a singular posture, joints turn fast while the hand hardly moves. A person
+/// next to the arm does not expect this. A factor of 2 would needlessly slow an arm that stretches
+/// at the default pace.
 const HASTE: f64 = 3.0;
 
 /// Share of each joint's acceleration limit that the reference may use.
@@ -22,35 +23,36 @@ const ACCELERATION_CAP: f64 = 0.9;
 /// Share of each joint's jerk limit that the reference may use.
 const JERK_CAP: f64 = 0.9;
 
-/// Share of the jerk limit in the first cycle after a plan of the joints. The acceleration of a
-/// plan grows within a cycle, but steps here between two cycles. The robot differentiates positions
-/// numerically: it sees five sixths of the jerk of the plan's last two cycles and half of this step
-/// at once.
+/// Share of the jerk limit that may be used in the first cycle after a plan of the joints. The
+/// acceleration of a plan grows within a cycle, but here it steps between two cycles. The robot
+/// differentiates positions numerically: it sees five sixths of the jerk in the plan's last two
+/// cycles and half of this step at the same time.
 const TAKE_OVER_JERK_CAP: f64 = 1.0 / 3.0;
 
-/// Distance kept from the ends of each joint's range, `[rad]`.
+/// Distance that is kept from the ends of each joint's range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.05;
 
 /// Deceleration with which a joint must be able to stop before that margin, `[rad/s^2]`. It is less
-/// than half of the value in the robot's velocity envelope at joint 2, its gentlest joint (2.585).
-/// The arm follows the reference like a spring and overshoots where the reference slows down.
+/// than half of the robot's own value for joint 2, which has the gentlest velocity envelope
+/// (2.585). A margin is needed because the arm follows the reference like a spring and overshoots
+/// when the reference slows down.
 pub(crate) const BRAKING: f64 = 1.2;
 
-/// Bounds that held joints back in a cycle: true, or a value, for each bound that did.
+/// Bounds that limited joints in a cycle. A field is true or has a value if its bound did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BoundsReached {
-    /// Velocity of the joints.
+    /// Velocity cap of a joint.
     pub(crate) velocity: bool,
-    /// Ends of the joints' ranges.
+    /// End of a joint's range.
     pub(crate) position: bool,
-    /// Acceleration or jerk of the joints.
+    /// Acceleration or jerk limit of a joint.
     pub(crate) acceleration: bool,
-    /// Share of the joints' velocities that remained because of the speed of a point of the arm.
+    /// Factor that reduced the joint velocities because a point of the arm reached the speed cap.
     pub(crate) speed: Option<f64>,
 }
 
 impl BoundsReached {
-    /// True if any bound held a joint back.
+    /// True if any bound limited a joint.
     pub(crate) fn any(self) -> bool {
         self != Self::default()
     }
@@ -58,17 +60,17 @@ impl BoundsReached {
 
 /// Velocities that a joint may have in the next cycle.
 ///
-/// The joint stays below its cap and able to stop before the end of its range, with an acceleration
-/// that can be removed in time. If the bounds contradict each other, jerk takes precedence over
-/// acceleration, and both over velocity and position, because jerk and acceleration act on the
-/// robot at once.
+/// The joint must stay below its velocity cap and must be able to stop before the end of its range,
+/// with an acceleration that can be removed in time. If the bounds contradict each other, jerk has
+/// priority over acceleration, and both have priority over velocity and position, because jerk and
+/// acceleration act on the robot at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenVelocities {
     pub(crate) lower: Bound,
     pub(crate) upper: Bound,
 }
 
-/// An end of an interval, and its cause.
+/// One end of an interval, and what caused it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bound {
     /// Velocity, `[rad/s]`.
@@ -84,8 +86,8 @@ pub(crate) enum Cause {
 }
 
 impl OpenVelocities {
-    /// Returns the bounds for joint `i`. `takes_over` is true if a plan of the joints moved it so
-    /// far, or it was at rest.
+    /// Returns the bounds for joint `i`. `takes_over` is true if the joint was at rest, or a plan
+    /// of the joints moved it until now.
     pub(crate) fn of(
         i: usize,
         limits: &JointLimits,
@@ -102,7 +104,7 @@ impl OpenVelocities {
         let most = ACCELERATION_CAP * limits.acceleration[i];
         let cap = (VELOCITY_CAP * limits.velocity[i]).min(HASTE * budget.joints[i].velocity);
         let felt = |a: f64| a.clamp(-most, most).clamp(ddq - ramp, ddq + ramp);
-        // Bounds upwards. Downwards is the mirror image.
+        // Bounds in the upward direction. The downward direction is the mirror image.
         let up = |v: f64, room: f64| {
             let stopping = (2.0 * BRAKING * room.max(0.0)).sqrt();
             let free = (fastest(cap - v, ramp), Cause::Velocity);
@@ -128,8 +130,8 @@ impl OpenVelocities {
     }
 }
 
-/// Returns how far each joint at `q` may turn down and up, `[rad]`, without a time limit: to the
-/// margin of its range, or not at all beyond the margin.
+/// Returns how far each joint at `q` may turn down and up, `[rad]`, if time does not matter. The
+/// joint may turn to the margin of its range; beyond the margin, it may not turn.
 pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, JointVector) {
     let lower = limits.lower.add_scalar(POSITION_MARGIN) - q;
     let upper = limits.upper.add_scalar(-POSITION_MARGIN) - q;
@@ -139,7 +141,7 @@ pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, Joint
     )
 }
 
-/// Returns the first joint, from 1, that is at an end of its range in `q`, margin included.
+/// Returns the first joint, from 1, that is at an end of its range, margin included, at `q`.
 pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
     let (lower, upper) = room(limits, q);
     (0..7)
@@ -147,12 +149,13 @@ pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
         .map(|i| i + 1)
 }
 
-/// Returns the greatest acceleration of the next cycle, `[rad/s^2]`, for a velocity that has `room`
-/// left, `[rad/s]`. The velocity does not exceed its bound if the acceleration then falls by `ramp`
-/// per cycle. Without room, the acceleration returns the velocity to its bound.
+/// Returns the greatest acceleration of the next cycle, `[rad/s^2]`, for a joint whose velocity is
+/// `room` below its bound, `[rad/s]`. With it, the velocity stays within its bound if the
+/// acceleration afterwards falls by `ramp` per cycle. If `room` is negative, the acceleration
+/// returns the velocity to its bound.
 ///
-/// An acceleration between `n` and `n + 1` ramps falls for `n` cycles until the last positive
-/// acceleration. The sum of all of them is `(n + 1) a - n (n + 1) / 2 ramp`.
+/// An acceleration `a` between `n` and `n + 1` ramps stays positive for `n` more cycles. The sum of
+/// all these accelerations is `(n + 1) a - n (n + 1) / 2 ramp`.
 fn fastest(room: f64, ramp: f64) -> f64 {
     let rate = room / CYCLE;
     if rate <= 0.0 {
@@ -162,8 +165,8 @@ fn fastest(room: f64, ramp: f64) -> f64 {
     (rate + ramp * n * (n + 1.0) / 2.0) / (n + 1.0)
 }
 
-/// Same as [`fastest`], below a bound that falls with the deceleration of a joint that stops. At
-/// the bound the joint need not slow down before the bound moves.
+/// Same as [`fastest`], for a bound that falls with the deceleration of a stopping joint. A joint
+/// at this bound need not slow down before the bound falls.
 fn towards_stop(room: f64, ramp: f64) -> f64 {
     (fastest(room, ramp) - BRAKING).max((room / CYCLE).min(0.0))
 }
@@ -205,7 +208,7 @@ mod tests {
         assert!(open.lower.velocity < 0.0);
     }
 
-    /// Drives joint `i` upwards as fast as the bounds allow, for a second and a half.
+    /// Drives joint `i` upward as fast as the bounds allow, for 1.5 seconds.
     fn drive(i: usize, model: &Model, mut reference: Reference, budget: &Budget) -> Vec<Reference> {
         let limits = model.joint_limits();
         let mut passed = Vec::new();

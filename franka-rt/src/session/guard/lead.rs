@@ -1,5 +1,5 @@
-//! Lead: a streamed target that is far ahead of the arm is moved closer, so that one wrong target
-//! cannot move the arm far once the stream stops.
+//! Lead: a streamed target that is far ahead of the arm is moved closer, so that a single wrong
+//! target cannot move the arm far after the stream stops.
 
 use franka_model::JointVector;
 use nalgebra::Isometry3;
@@ -7,29 +7,29 @@ use nalgebra::Isometry3;
 use crate::session::Target;
 use crate::session::guard::leash;
 
-/// Greatest distance of a target ahead of the measured arm.
+/// Greatest distance that a target may be ahead of the measured arm.
 ///
-/// A target that is further ahead is moved closer on the straight line to it. This repeats in every
-/// cycle while targets arrive: for [`Self::FRESH_MS`] after the newest target, including
-/// repetitions of the same target. Then the target stays at its last place. If targets stop
-/// arriving, the arm therefore continues by no more than this distance.
+/// A target that is further ahead is moved closer on the straight line to it. This is repeated in
+/// every cycle while targets arrive: until [`Self::FRESH_MS`] after the newest target, even if that
+/// target only repeats the previous one. After that, the target stays where it is. Therefore the
+/// arm moves at most this distance after targets stop arriving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// Translation of the end effector, for poses, `[m]`.
+    /// Translation of the end effector, for pose targets, `[m]`.
     pub translation: f64,
-    /// Rotation of the end effector, for poses, `[rad]`.
+    /// Rotation of the end effector, for pose targets, `[rad]`.
     pub rotation: f64,
-    /// Distance of each joint, for joint positions, `[rad]`.
+    /// Distance of each joint, for joint targets, `[rad]`.
     pub joints: f64,
 }
 
 impl Lead {
-    /// Time after the newest target for which the target is moved closer in every cycle, `[ms]`.
-    /// The arm follows a stream of 5 Hz without a pause.
+    /// Time after the newest target during which the target is moved closer in every cycle, `[ms]`.
+    /// Therefore the arm follows a stream of 5 Hz without a pause.
     pub const FRESH_MS: u64 = 200;
 
-    /// Returns the place to which `target` is moved for an arm at `q` and `measured`; `None` if the
-    /// target is near enough.
+    /// Returns the place to which `target` is moved, for an arm at `q` and `measured`. Returns
+    /// `None` if the target is near enough.
     pub(crate) fn drawn(
         &self,
         target: &Target,

@@ -1,5 +1,6 @@
-//! The leash: limits the distance of the reference ahead of the measured arm. A bounded spring
-//! pulls an arm that is held back, so the arm does not leap when it is released.
+//! The leash: limits how far the reference may be ahead of the measured arm. If something holds the
+//! arm back, its spring is stretched only by that distance, so the arm does not leap when it is
+//! released.
 
 use franka_model::{JointVector, rotation};
 use franka_otg::PlanError;
@@ -11,14 +12,14 @@ use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
 
-/// Greatest distance of the reference ahead of the measured arm. An obstacle that holds the arm
-/// back feels the springs stretched by that distance, and no more. A leash shorter than the normal
-/// lag of the arm slows the motion.
+/// Greatest distance that the reference may be ahead of the measured arm. An obstacle that holds
+/// the arm back meets springs that are stretched by this distance at most. If the leash is shorter
+/// than the arm's normal lag, it slows the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leash {
-    /// Translation of the end effector, if the reference follows poses, `[m]`.
+    /// Translation of the end effector while the reference follows poses, `[m]`.
     pub translation: f64,
-    /// Rotation of the end effector, if the reference follows poses, `[rad]`.
+    /// Rotation of the end effector while the reference follows poses, `[rad]`.
     pub rotation: f64,
     /// Distance of each joint, `[rad]`.
     pub joints: f64,
@@ -36,7 +37,7 @@ impl Default for Leash {
 }
 
 impl Leash {
-    /// The shortest accepted leash: arms with friction still reach their targets.
+    /// The shortest accepted leash, with which arms with friction still reach their targets.
     pub const LEAST: Self = Self {
         translation: 5e-3,
         rotation: 0.03,
@@ -51,8 +52,8 @@ impl Leash {
     };
 }
 
-/// A leash fades to its new length. An immediate change to a shorter leash would jerk a reference
-/// that is far ahead towards the arm.
+/// A leash fades to its new length. If it became shorter at once, a reference that is far ahead
+/// would jerk toward the arm.
 impl Blend for Leash {
     fn blend(&self, other: &Self, share: f64) -> Self {
         Self {
@@ -63,25 +64,26 @@ impl Blend for Leash {
     }
 }
 
-/// Longest distance from the end effector of the joint reference to the pose that it follows,
-/// `[m]`. Between half a millimetre and five the value makes little difference; this is the
-/// tolerance of a goal.
+/// Greatest distance between the end effector of the joint reference and the pose that it follows,
+/// `[m]`. It equals the tolerance of a goal. Values between half a millimetre and five make little
+/// difference.
 const TRANSLATION_TETHER: f64 = 1e-3;
 
-/// Largest angle between that end effector and that pose, `[rad]`.
+/// Greatest angle between the end effector of the joint reference and the pose that it follows,
+/// `[rad]`.
 const ROTATION_TETHER: f64 = 5e-3;
 
-/// Parts of the reference that the leash held in a cycle.
+/// Parts of the reference that the leash held back in a cycle.
 #[derive(Debug)]
 pub(crate) struct Held {
-    /// Joints of the reference, which the leash may have moved.
+    /// Joint positions of the reference, which the leash may have moved.
     q: JointVector,
-    /// Pose from which the reference continues, if it was too far ahead.
+    /// Pose from which the reference continues, if the pose was too far ahead.
     pose: Option<Isometry3<f64>>,
 }
 
-/// Holds the reference within the leash of the measured arm. Returns the held parts, from which the
-/// course must continue; `None` if the leash held nothing.
+/// Keeps the reference within the leash of the measured arm. Returns the parts that were held back,
+/// from which the course must continue. Returns `None` if the leash held nothing back.
 pub(crate) fn hold(
     leash: &Leash,
     course: &Course,
@@ -104,11 +106,11 @@ pub(crate) fn hold(
 }
 
 impl Held {
-    /// Moves the course to where the leash has held it. The course keeps its velocity and plans
-    /// from there, so the arm follows smoothly once it is free.
+    /// Moves the course to where the leash has held the reference. The course keeps its velocity
+    /// and plans from there, so the arm follows smoothly once it is free.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only; the course then continues as planned.
+    /// Returns a [`PlanError`] only because of a defect; the course then continues as planned.
     pub(crate) fn move_course(self, course: &mut Course) -> Result<(), PlanError> {
         match (course, self.pose) {
             (Course::Joints(generator), _) => generator.set_positions(self.q.into()),
@@ -122,14 +124,14 @@ impl Held {
     }
 }
 
-/// Keeps a pose from running ahead of its joints, if the joints' bounds keep them from it.
-/// `reached` is the pose of the joint reference. Returns true if the pose moved.
+/// Keeps a pose from running ahead of its joints while the joints' bounds slow them. `reached` is
+/// the pose of the joint reference. Returns true if the pose was moved.
 ///
-/// Otherwise the pose would continue to its target, and the joints would chase it off the line, all
-/// of them at their bounds.
+/// Without this, the pose would continue to its target, and the joints would follow it away from
+/// the line, all at their bounds.
 ///
 /// # Errors
-/// [`PlanError`], by a defect only; the pose then continues as planned.
+/// Returns a [`PlanError`] only because of a defect; the pose then continues as planned.
 pub(crate) fn tether(
     generator: &mut PoseGenerator,
     reached: &Isometry3<f64>,
@@ -140,14 +142,14 @@ pub(crate) fn tether(
     }
 }
 
-/// Returns the pose nearest to `pose` that does not run ahead of the joints at `reached`, if it
-/// differs from `pose`.
+/// Returns the pose nearest to `pose` that does not run ahead of the joints at `reached`. Returns
+/// `None` if `pose` itself does not.
 pub(crate) fn tethered(pose: &Isometry3<f64>, reached: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     within(pose, reached, TRANSLATION_TETHER, ROTATION_TETHER)
 }
 
-/// Returns the pose nearest to `pose` within a leash of `anchor`, metres and radians long, if it
-/// differs from `pose`.
+/// Returns the pose nearest to `pose` within a leash around `anchor`, with its length in metres and
+/// radians. Returns `None` if `pose` is within the leash.
 pub(crate) fn within(
     pose: &Isometry3<f64>,
     anchor: &Isometry3<f64>,
@@ -160,7 +162,7 @@ pub(crate) fn within(
     if distance <= translation && turn <= angle {
         return None;
     }
-    // The length of a leash may be infinite.
+    // A leash may have infinite length.
     let share = |length: f64, most: f64| if length > most { most / length } else { 1.0 };
     let ahead = ahead * share(distance, translation);
     let turned = turned * share(turn, angle);

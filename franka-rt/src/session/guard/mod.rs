@@ -1,4 +1,4 @@
-//! Guards, which hold commands back, each in its own file.
+//! Guards, which limit commands. Each guard has its own file:
 //!
 //! | guard | file |
 //! |---|---|
@@ -17,7 +17,7 @@
 //! | backstop: the limiter of setpoints | `backstop` |
 //! | response: an arm that ignores its commands | `unresponsive` |
 //!
-//! `binding` has a name for each of them, for the record of each cycle.
+//! `binding` names the guards for the record of each cycle.
 
 pub(super) mod backstop;
 mod binding;

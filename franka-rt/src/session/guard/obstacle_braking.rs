@@ -1,4 +1,4 @@
-//! A course that keeps clear of the arm itself and of keep-out regions.
+//! A course that keeps the arm clear of itself and of keep-out regions.
 
 use franka_model::{EndEffector, Model};
 
@@ -12,61 +12,61 @@ use crate::session::reference::Reference;
 use crate::session::running::Measured;
 use crate::session::{Budget, Chunk, Lapse, Target};
 
-/// Share of its velocity that a goal keeps near an obstacle.
+/// Factor that reduces a goal's velocity near an obstacle.
 const SLOW: f64 = 0.3;
 
-/// Cycles without an obstacle ahead after which a goal has its full velocity again.
+/// Number of cycles without an obstacle ahead after which a goal has its full velocity again.
 const CLEAR: u32 = 100;
 
-/// Cycles from a brake to the next attempt at the aim.
+/// Number of cycles from a brake to the next attempt to reach the aim.
 const RETRY: u32 = 100;
 
-/// Cycles for which a course counts as hindered after a brake.
+/// Number of cycles after a brake for which a course counts as hindered.
 const HINDERED: u32 = 250;
 
-/// Moves the reference along a course, and brakes it before any obstacle that is too near.
+/// Moves the reference along a course, and brakes it in time before an obstacle.
 #[derive(Debug)]
 pub(in crate::session) struct ObstacleBraking {
     pub(in crate::session) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// True if the course must be planned anew before its next step: for another target, budget or
-    /// pace.
+    /// True if the course must be planned anew before its next step, because its target, budget or
+    /// pace has changed.
     stale: bool,
-    /// Cycles for which the course still counts as hindered.
+    /// Number of cycles for which the course still counts as hindered.
     hindered: u32,
-    /// Obstacle of the last brake: the region with this index, or the arm itself.
+    /// Obstacle of the last brake: the region with this index, or the arm itself if `None`.
     obstacle: Option<usize>,
-    /// Budget with which the path to rest was last found clear.
+    /// Budget of the last check that found the path to rest clear.
     judged: Budget,
-    /// A chunk whose course has been replaced. It is returned in the next cycle, to be freed
-    /// outside the thread.
+    /// A chunk whose course has been replaced. It is returned in the next cycle, so that it is
+    /// freed outside the thread.
     pub(in crate::session) retired_chunk: Option<ChunkCourse>,
     /// Target at which the goal's last chunk has ended, if no chunk runs.
     pub(in crate::session) chunk_end: Option<Target>,
-    /// True if a brake has ended the chunk before its end. The caller did not ask for the straight
-    /// line to its end, so the course rests until another target or chunk arrives.
+    /// True if a brake has ended the chunk early. The caller did not request a straight line to the
+    /// chunk's end, so the course rests until another target or chunk arrives.
     left_chunk: bool,
-    /// True if a plan could not be made since the last answer.
+    /// True if a plan has failed since the last answer.
     failed: bool,
 }
 
 #[derive(Debug)]
 enum Pace {
-    /// The goal continues at its own pace.
+    /// The goal continues at its full pace.
     Full,
     /// The goal continues slowly. The value is the number of cycles without an obstacle ahead.
     Slow(u32),
-    /// The course was braked before an obstacle that was too near. The value is the number of
-    /// cycles since then.
+    /// The course braked before an obstacle. The value is the number of cycles since then.
     Braked(u32),
 }
 
-/// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
+/// Joint velocity below which a reference may be stopped at once, `[rad/s]`. Stopping within one
+/// cycle is then a deceleration of 0.1 rad/s^2.
 const AT_REST: f64 = 1e-4;
 
 impl ObstacleBraking {
-    /// Returns the course of an arm at rest, which begins with this budget.
+    /// Returns the course of an arm at rest. It begins with this budget.
     pub(in crate::session) fn new(clearance: Clearance, budget: Budget) -> Self {
         Self {
             course: Course::Rest,
@@ -88,7 +88,7 @@ impl ObstacleBraking {
         self.stale = true;
     }
 
-    /// Plans anew towards `aim` if that is due.
+    /// Plans anew toward `aim` if a new plan was requested.
     pub(in crate::session) fn renew(
         &mut self,
         model: &Model,
@@ -102,8 +102,8 @@ impl ObstacleBraking {
         self.stale = false;
     }
 
-    /// Plans the course towards `aim` from the reference. A chunk in force is kept, within the
-    /// budget of `aim`. The pace is kept; after a brake it is slow.
+    /// Plans the course from the reference toward `aim`. A current chunk is kept, within the budget
+    /// of `aim`. The pace does not change, except that it is slow after a brake.
     fn head_for(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         let paced = self.paced(aim);
         match &mut self.course {
@@ -115,18 +115,18 @@ impl ObstacleBraking {
         }
     }
 
-    /// Plans the course towards `aim`, or records that no plan could be made.
+    /// Plans the course toward `aim`, or records that no plan could be made.
     fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         let planned = self.course.head_for(model, ee, reference, aim);
         self.failed |= planned.is_err();
     }
 
-    /// True if a plan could not be made since the last call.
+    /// Returns true if a plan has failed since the last call.
     pub(in crate::session) fn take_failure(&mut self) -> bool {
         core::mem::take(&mut self.failed)
     }
 
-    /// Follows a chunk towards its end, `aim`, at the present pace. Returns the previous chunk.
+    /// Follows a chunk toward its end, `aim`, at the present pace. Returns the previous chunk.
     pub(in crate::session) fn follow(
         &mut self,
         model: &Model,
@@ -158,7 +158,7 @@ impl ObstacleBraking {
         }
     }
 
-    /// Returns `aim` with less velocity if an obstacle is near. Also ends a brake: the goal
+    /// Returns `aim`, with less velocity if an obstacle is near. Also ends a brake: the goal then
     /// continues slowly, and its pace may change again.
     fn paced(&mut self, aim: &Aim) -> Aim {
         self.stale = false;
@@ -172,8 +172,8 @@ impl ObstacleBraking {
         }
     }
 
-    /// Returns `aim` with its joint limits raised to the limits of the last clear check, if they
-    /// are lower. The braking distance is then no longer than the checked distance.
+    /// Returns `aim`, with joint limits at least as high as in the last check that found the path
+    /// clear. Then the braking distance is no longer than the checked distance.
     fn braking(&self, aim: &Aim) -> Aim {
         let mut budget = aim.budget;
         for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
@@ -184,8 +184,8 @@ impl ObstacleBraking {
         Aim { budget, ..*aim }
     }
 
-    /// Plans anew towards `aim` from a reference that something else has moved, unless it has
-    /// arrived and rests.
+    /// Plans anew toward `aim` from a reference that something else has moved. Does nothing if the
+    /// reference has arrived and rests.
     pub(in crate::session) fn begin_again(
         &mut self,
         model: &Model,
@@ -208,7 +208,7 @@ impl ObstacleBraking {
         }
     }
 
-    /// Ends the motion to the previous target, so that the next one is planned.
+    /// Ends the motion to the previous target, so that a motion to the next target is planned.
     pub(in crate::session) fn turn(&mut self) {
         self.retire_chunk();
         self.left_chunk = false;
@@ -238,15 +238,15 @@ impl ObstacleBraking {
         self.plan(model, ee, reference, &rest);
     }
 
-    /// Clears course and pace; the reference stays where it is.
+    /// Removes the course and resets its pace. The reference stays where it is.
     pub(in crate::session) fn rest(&mut self) {
         self.course = Course::Rest;
         self.pace = Pace::Full;
         self.stale = false;
     }
 
-    /// Advances by one nominal millisecond towards `aim`, for the answer to the state `now`, or
-    /// brakes before an obstacle that is too near.
+    /// Advances by one nominal millisecond toward `aim`, for the answer to the state `now`. Brakes
+    /// instead if an obstacle would be too near.
     #[expect(clippy::too_many_arguments, reason = "each is of another type")]
     pub(in crate::session) fn step(
         &mut self,
@@ -269,8 +269,8 @@ impl ObstacleBraking {
             self.head_for(model, ee, reference, aim);
         }
         let step = self.course.step(model, ee, posture, reference, guided, now);
-        // The path of a brake was checked before the step at which it begins. Hand guiding is not
-        // checked.
+        // The path of a brake was checked before the step at which the brake begins. Hand guiding
+        // is not checked.
         if matches!(aim.target, Target::Rest | Target::Guide(_)) {
             return step;
         }
@@ -308,7 +308,7 @@ impl ObstacleBraking {
         !matches!(self.pace, Pace::Full)
     }
 
-    /// Returns the obstacle that keeps the course from its goal, or did so a moment ago.
+    /// Returns the obstacle that keeps the course from its goal, or did so until a moment ago.
     pub(in crate::session) fn hindrance(&self) -> Option<Lapse> {
         let region = self.obstacle.map(|index| index + 1);
         (self.hindered > 0).then_some(Lapse::Blocked { region })

@@ -1,35 +1,36 @@
-//! The speed cap: limits the speed of all joints, the flange and the end effector, in every posture
-//! of the arm.
+//! The speed cap: in every posture, limits the speed with which all joints, the flange and the end
+//! effector move through space.
 //!
-//! On the way to a pose the reference stays below the cap by a reserve. If one of its points would
-//! be faster, all joints are slowed alike. The pose that they follow is slowed with them, so that
-//! the hand stays on its line and arrives later. From [`ONSET`] of that speed on, the limit sets in
-//! smoothly:
+//! On the way to a pose, the reference stays below the cap by a reserve. If one of its points would
+//! be faster, all joints are slowed by the same factor. The pose that they follow is also slowed,
+//! so that the hand stays on its line and arrives later. Above [`ONSET`] of the reference's highest
+//! speed, the limit sets in smoothly:
 //!
 //! ```text
 //! speed' = onset + (most - onset) (1 - exp(-(speed - onset) / (most - onset)))
 //! ```
 //!
-//! The arm may still exceed the cap on a path of the joints or along a chunk, or because something
-//! pushes it. It then gives up its goal and brakes.
+//! The arm may still exceed the cap on a path of the joints, along a chunk, or because something
+//! pushes it. Then its goal is given up and the arm brakes.
 
 use franka_model::{EndEffector, Jacobian, JointVector, Model};
 
-/// Share of the cap that the reference may use on the way to a pose. The rest is for the arm, which
-/// oscillates about its reference.
+/// Share of the cap that the reference may use on the way to a pose. The rest is a reserve for the
+/// arm, which oscillates about its reference.
 const SHARE: f64 = 0.94;
 
-/// Least reserve for the arm, `[m/s]`: an arm with friction breaks loose with a jolt, even at low
-/// speeds.
+/// Least reserve for the arm, `[m/s]`. It is needed because an arm with friction breaks loose with
+/// a jolt, even at low speeds.
 const RESERVE: f64 = 0.03;
 
-/// Share of the reference's highest speed from which on the reference is slowed.
+/// Share of the reference's highest speed above which the reference is slowed.
 const ONSET: f64 = 0.9;
 
-/// The lowest accepted cap, `[m/s]`: measured joint velocities have noise.
+/// The lowest accepted cap, `[m/s]`. Lower values are not useful, because measured joint velocities
+/// have noise.
 pub(crate) const LEAST: f64 = 0.1;
 
-/// The highest accepted cap, `[m/s]`: the robot's own limit of the end effector.
+/// The highest accepted cap, `[m/s]`: the robot's own limit for the end effector.
 pub(crate) const MOST: f64 = 3.0;
 
 /// The speed cap of a session.
@@ -42,9 +43,9 @@ pub(crate) struct SpeedCap<'a> {
 }
 
 impl SpeedCap<'_> {
-    /// Returns the share of the velocities `dq`, `[rad/s]`, that joints at `q` may have; `None` if
-    /// they may have all. `jacobian` belongs to the frame that follows a pose: the hand, or an
-    /// object in it. That frame keeps the cap, too.
+    /// Returns the factor by which the velocities `dq`, `[rad/s]`, must be reduced for joints at
+    /// `q`. Returns `None` if they may stay. `jacobian` belongs to the frame that follows a pose:
+    /// the hand, or an object in the hand. That frame also stays below the cap.
     pub(crate) fn share(
         self,
         model: &Model,
@@ -102,7 +103,7 @@ mod tests {
         for i in 1..1000 {
             let (slope, next) = ((at(i) - at(i - 1)) / step, (at(i + 1) - at(i)) / step);
             assert!(next <= slope + 1e-6, "{i}");
-            // Greatest curvature: one over the room.
+            // The greatest curvature is the inverse of the room.
             assert!(slope - next < 1.1 * step / (0.1 * SHARE * 0.5), "{i}");
         }
     }

@@ -2,14 +2,14 @@
 
 use franka_model::JointVector;
 
-/// Bounds each torque by `most`, `[N m]`. Returns true if any torque changed.
+/// Bounds each torque by `most`, `[N m]`. Also returns true if any torque changed.
 pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
     let clamped = tau.zip_map(most, |tau, most| tau.clamp(-most, most));
     (clamped, clamped != *tau)
 }
 
-/// A joint at rest that gets no more torque than its limit, although its springs and compensation
-/// demand more.
+/// A joint at rest whose torque is at its limit, although its springs and its compensation demand
+/// more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LimitedTorque {
@@ -17,13 +17,13 @@ pub struct LimitedTorque {
     pub joint: usize,
     /// Limit of the joint in [`Gains::torque_limits`](crate::law::Gains::torque_limits), `[N m]`.
     pub limit: f64,
-    /// Torque that the joint would get without the limit, `[N m]`.
+    /// Torque that the joint would have without the limit, `[N m]`.
     pub asked: f64,
 }
 
 impl LimitedTorque {
-    /// Returns the joint whose limit in `most` is the smallest share of its torque in `asked`, `[N
-    /// m]`; `None` if each joint gets its full torque.
+    /// Returns the joint whose limit in `most` is the smallest share of its torque in `asked`,
+    /// `[N m]`. Returns `None` if no torque is limited.
     pub(crate) fn worst(asked: &JointVector, most: &JointVector) -> Option<Self> {
         let shares = asked.abs().component_div(most);
         let (joint, share) = shares.argmax();

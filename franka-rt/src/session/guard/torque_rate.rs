@@ -1,16 +1,16 @@
-//! The torque-rate limit of target control: the commanded torque changes no faster than the robot
-//! accepts. Control functions have a separate, optional limit in `control::shaper`. The arithmetic
-//! is in `shaping::limiter`, and the check of the simulated robot in `franka_sim`, `robot::motion`.
+//! The torque-rate limit of target control: commanded torques change no faster than the robot
+//! accepts. Control functions have their own, optional limit in `control::shaper`. The arithmetic
+//! is in `shaping::limiter`. The simulated robot's check is in `franka_sim`, `robot::motion`.
 
 use franka_model::JointVector;
 use franka_model::limits::CLIENT_MARGIN;
 
 use crate::shaping::limiter;
 
-/// Limits the change from the last torques that the robot accepted. Returns true if this changed a
-/// torque.
+/// Limits the change from the last torques that the robot accepted. Also returns true if a torque
+/// was limited.
 ///
-/// Two margins are subtracted from `rate`, the robot's limit `[N m/s]`: the usual one, and the
+/// Two margins are subtracted from `rate`, the robot's limit `[N m/s]`: the usual margin, and the
 /// error that an echo rounded to `f32` may hide.
 pub(crate) fn limit_rate(
     tau: &JointVector,

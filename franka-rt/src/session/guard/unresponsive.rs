@@ -1,18 +1,19 @@
-//! An arm that ignores its commands: it stands still while the robot reports a motion and no error.
+//! Detects an arm that ignores its commands: it stands still while the robot reports a motion and
+//! no error.
 //!
-//! Closed brakes and a controller that has stopped look like that. An arm can also stand still
-//! because something holds it, which shows as an external torque, or because of friction, which
-//! yields above a few N m. Therefore an arm ignores its commands if all its joints stand still for
-//! [`HOLD`] cycles in a row and, in each of these cycles, one of these conditions is true:
+//! The cause may be closed brakes or a controller that has stopped. An arm can also stand still
+//! because something holds it, which is visible as an external torque, or because of friction,
+//! which a few N m overcome. Therefore an arm counts as unresponsive if all its joints stand still
+//! for [`HOLD`] cycles in a row and, in each of these cycles, one of these conditions is true:
 //!
 //! | backend | condition |
 //! |---|---|
 //! | the session's own law | at one joint, the torque of the law and the external torque differ by more than [`RESISTS`] |
-//! | the robot's joint controller | at one joint, the setpoint is further away than [`APART`], and the external torque below [`FELT`] |
-//! | the robot's Cartesian controller | the commanded pose is further away than [`AWAY`], and all external torques below [`FELT`] |
+//! | the robot's joint controller | at one joint, the setpoint is further away than [`APART`], and the external torque is below [`FELT`] |
+//! | the robot's Cartesian controller | the commanded pose is further away than [`AWAY`], and all external torques are below [`FELT`] |
 //! | both controllers of the robot | the robot's setpoint stands still, and the robot keeps refusing the setpoints sent to it |
 //!
-//! Friction may hold an arm against smaller commands. The guard ignores those commands.
+//! Smaller commands do not count, because friction may hold the arm against them.
 
 use franka_model::JointVector;
 use franka_proto::RobotState;
@@ -22,30 +23,30 @@ use crate::law::Gains;
 use crate::session::arrival::REST_VELOCITY;
 use crate::session::backend::Controller;
 
-/// Counts how long the arm has ignored its commands.
+/// Counts for how long the arm has ignored its commands.
 #[derive(Debug)]
 pub(crate) struct Unresponsive {
-    /// Cycles in which the arm stood still under commands that should move it.
+    /// Number of cycles in which the arm stood still under commands that should move it.
     still: u32,
-    /// Cycles in which the robot refused its setpoints.
+    /// Number of cycles in which the robot refused its setpoints.
     refusing: u32,
-    /// Cycles since the robot's setpoint last differed from the sent setpoint.
+    /// Number of cycles since the robot's setpoint last differed from the setpoint that was sent.
     since_refused: u32,
     /// The robot's setpoint in the last state, `[rad]`.
     setpoint: JointVector,
-    /// True if the last command was not the setpoint that the session requested.
+    /// True if the last command differed from the setpoint that the session requested.
     changed: bool,
 }
 
 /// The command of one cycle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Commanded<'a> {
-    /// Torques without gravity, `[N m]`, as the law demands them, before they are smoothed.
+    /// Torques without gravity, `[N m]`, as the law demands them, before smoothing.
     Torques(&'a JointVector),
     /// A setpoint for a controller of the robot.
     Setpoint {
         controller: Controller,
-        /// True if the setpoint in the state differs from the last setpoint that was sent.
+        /// True if the setpoint in the state differs from the setpoint that was last sent.
         differs: bool,
         /// True if the backstop changed the setpoint of this cycle.
         changed: bool,
@@ -65,7 +66,7 @@ impl Default for Unresponsive {
 }
 
 impl Unresponsive {
-    /// Notes one cycle. Returns true if the arm has ignored its commands for long enough.
+    /// Records one cycle. Returns true if the arm has ignored its commands for long enough.
     ///
     /// Comparisons with NaN are false, so a state with NaN never counts.
     pub(crate) fn watch(&mut self, state: &RobotState, commanded: Commanded<'_>) -> bool {
@@ -101,13 +102,14 @@ impl Unresponsive {
     }
 
     /// True if the robot accepts no setpoints. A reference that follows the robot's own setpoint
-    /// cannot stop then.
+    /// then cannot stop.
     pub(crate) fn refuses(&self) -> bool {
         self.refusing >= HOLD
     }
 
-    /// True if the robot's setpoint has not moved, and the robot refused a setpoint a short time
-    /// ago. If the backstop changed a setpoint, the robot's setpoint differs in any case.
+    /// True if the robot's setpoint has not moved, and the robot has recently refused a setpoint. A
+    /// setpoint that the backstop changed does not count as refused, because it differs from the
+    /// robot's setpoint in any case.
     fn is_refused(&mut self, setpoint: &[f64; 7], differs: bool) -> bool {
         let setpoint = JointVector::from(*setpoint);
         let stays = core::mem::replace(&mut self.setpoint, setpoint) == setpoint;
@@ -119,34 +121,35 @@ impl Unresponsive {
     }
 }
 
-/// Returns the distance of the measured end effector from its commanded pose, `[m]`.
+/// Returns the distance between the measured end effector and its commanded pose, `[m]`.
 fn distance(state: &RobotState) -> f64 {
     let at = |pose: &[f64; 16]| Vector3::new(pose[12], pose[13], pose[14]);
     (at(state.commanded_pose()) - at(&state.O_T_EE)).norm()
 }
 
-/// Cycles after which an arm that stands still counts as unresponsive.
+/// Number of cycles after which an arm that stands still counts as unresponsive.
 const HOLD: u32 = 200;
 
-/// Cycles for which a refused setpoint counts. A slow motion that repeatedly begins from rest takes
-/// tens of cycles until its setpoint differs from the robot's by more than rounding.
+/// Number of cycles for which a refused setpoint counts. If a slow motion repeatedly begins from
+/// rest, tens of cycles pass until its setpoint differs from the robot's setpoint by more than
+/// rounding.
 const REFUSED_WITHIN: u32 = 100;
 
-/// Difference between commanded and external torque that friction and bias may explain, `[N m]`:
-/// the friction of the worst simulated arms and the bias of half a kilogram.
+/// Greatest difference between commanded and external torque that friction and bias can explain,
+/// `[N m]`: the friction of the worst simulated arms, and the bias from half a kilogram.
 const RESISTS: [f64; 7] = Gains::COMPENSATION;
 
-/// Distance of a joint from the robot's setpoint that friction does not explain, `[rad]`.
-/// Exception: the user made the controller softer than about 25 N m/rad.
+/// Distance between a joint and the robot's setpoint that friction does not explain, `[rad]`,
+/// unless the user made the controller softer than about 25 N m/rad.
 const APART: f64 = 0.1;
 
-/// Distance of the hand from the commanded pose that friction does not explain, `[m]`. Exception:
+/// Distance between the hand and the commanded pose that friction does not explain, `[m]`, unless
 /// the user made the controller softer than about 200 N/m. The joints do not count, because this
 /// controller hardly holds the elbow.
 const AWAY: f64 = 0.05;
 
-/// External torque that the robot may estimate at an untouched joint, `[N m]`: friction at the
-/// link, bias of the sensor, an undeclared load.
+/// External torque that the robot may estimate at an untouched joint, `[N m]`, because of friction
+/// at the link, bias of the sensor or an undeclared load.
 const FELT: [f64; 7] = [2.0, 2.0, 2.0, 2.0, 1.0, 1.0, 1.0];
 
 #[cfg(test)]
@@ -161,8 +164,8 @@ mod tests {
         }
     }
 
-    /// Returns the first cycle, from 1, in which the guard reports an arm that receives this
-    /// command in each cycle.
+    /// Returns the first cycle, from 1, in which the guard reports an arm that gets this command in
+    /// every cycle.
     fn named(state: &RobotState, commanded: Commanded<'_>) -> Option<u32> {
         let mut this = Unresponsive::default();
         (1..=1000).find(|_| this.watch(state, commanded))
@@ -177,8 +180,8 @@ mod tests {
         };
         assert_eq!(of(8.0, 0.5, 0.0), Some(HOLD));
         assert_eq!(of(-8.0, 0.5, 1e-3), Some(HOLD));
-        // Four cases: friction may hold the arm; an obstacle holds it; another joint moves; no
-        // estimate.
+        // Four cases: friction may hold the arm; an obstacle holds the arm; another joint moves;
+        // the robot has no estimate.
         for (torque, external, dq) in [
             (1.6, 0.0, 0.0),
             (-4.9, 0.0, 0.0),
@@ -246,7 +249,7 @@ mod tests {
             !(0..1000).any(|_| this.watch(&still, held_back)),
             "the backstop"
         );
-        // One refusal, as after a lost command, and many while the setpoint moves.
+        // One refusal, as after a lost command, and many refusals while the setpoint moves.
         this = Unresponsive::default();
         this.watch(&still, setpoint(controller, true));
         let later = (0..1000).any(|_| this.watch(&still, setpoint(controller, false)));

@@ -1,5 +1,6 @@
 //! The watchdog: if the targets of a goal stop arriving, the arm holds the last target or brakes.
-//! (For late states see `stats::arrivals`, for a silent robot `driver::link_timeout`.)
+//! (For late states see `stats::arrivals`; for a robot that sends no states see
+//! `driver::link_timeout`.)
 
 use core::time::Duration;
 
@@ -8,17 +9,17 @@ use core::time::Duration;
 pub struct Watchdog {
     /// The longest accepted time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// Action of the arm after that time. The motion ends once the arm rests, unless its session
-    /// continues from goal to goal.
+    /// What the arm does after that time. The motion ends when the arm rests, unless its session
+    /// lasts from goal to goal.
     pub on_timeout: OnTimeout,
 }
 
-/// Action of the arm when its targets have stopped arriving.
+/// What the arm does when its targets have stopped arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OnTimeout {
-    /// Continues to the last target and holds it.
+    /// Moves to the last target and holds it.
     Hold,
-    /// Brakes at once, and holds where it stops.
+    /// Brakes at once, and holds the place where it stops.
     Brake,
 }

@@ -1,4 +1,4 @@
-//! Chunks of a session: their beginning, continuation and return.
+//! Chunks of a session: how they begin, continue and are returned.
 
 use franka_model::Model;
 
@@ -10,14 +10,14 @@ use crate::session::course::Course;
 use crate::session::{OnArrival, Target};
 
 impl RunningSession {
-    /// Begins a newer chunk of the goal if there is one, and continues to rest after a chunk that
-    /// has ended.
+    /// Begins a newer chunk of the goal, if there is one. After a chunk that has ended, continues
+    /// to rest.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
         }
         let gone = self.stage.lets_go();
-        // A cancelled goal, even if cancelled before the session saw it, follows no chunk.
+        // A cancelled goal follows no chunk, even if it was cancelled before the session saw it.
         let follows =
             self.goal.along_path || self.goal.on_arrival == OnArrival::Hold || self.is_given_up();
         if gone || !follows || self.is_given_up_for_good() {
@@ -41,7 +41,7 @@ impl RunningSession {
             if let Some(before) = before {
                 before.end(chunks, now);
             }
-            // Only a held goal falls silent: it is held again until a newer goal comes.
+            // Only a held goal can fall silent. It is then held again until a newer goal arrives.
             if self.is_given_up() {
                 self.standing = Standing::InForce;
                 self.goal.on_arrival = OnArrival::Hold;

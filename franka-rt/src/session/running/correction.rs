@@ -1,10 +1,10 @@
-//! Correction of poses to poses as the robot reports them.
+//! Correction of goal poses for the difference between the model and the robot's own report.
 //!
-//! Goals move the hand to a pose in the robot's own report. The robot computes its poses with its
-//! own geometry, so goals move a frame that is the hand moved by a correction. The correction is
-//! computed when a goal begins, and once more when the reference has arrived.
+//! Goals move the hand to a pose as the robot reports it. The robot computes its poses with its own
+//! geometry. Therefore goals move a frame that is shifted from the hand by a correction. The
+//! correction is computed when a goal begins, and again when the reference has arrived.
 //!
-//! Under Cartesian setpoints the robot follows the setpoint in its own geometry, so the correction
+//! Under Cartesian setpoints, the robot follows the setpoint in its own geometry, so the correction
 //! belongs to the setpoint. It is computed when the reference is taken from the robot.
 
 use nalgebra::Isometry3;
@@ -14,8 +14,8 @@ use crate::session::Target;
 use crate::session::course::Course;
 use crate::session::geometry::{self, RESIDUAL_MAX};
 
-/// Greatest error of the report when the reference has arrived, `[m]`, with rotations at 0.1 m. A
-/// greater error is corrected by another move.
+/// Greatest accepted error of the report when the reference has arrived, `[m]`; rotations count
+/// with a lever of 0.1 m. A greater error is corrected by another move.
 const REFINED: f64 = 1e-5;
 
 impl Measured {
@@ -26,12 +26,12 @@ impl Measured {
 }
 
 impl RunningSession {
-    /// Renews the correction if it does not fit the newest state.
+    /// Renews the correction if it does not match the newest state.
     pub(super) fn renew_correction(&mut self) {
         self.renew_correction_beyond(RESIDUAL_MAX);
     }
 
-    /// Renews the correction if its error exceeds `most`, `[m]`. Returns true if so.
+    /// Renews the correction if its error exceeds `most`, `[m]`. Returns true if it was renewed.
     fn renew_correction_beyond(&mut self, most: f64) -> bool {
         let commanded = match &self.drive {
             Drive::Torques(_) => false,
@@ -46,7 +46,7 @@ impl RunningSession {
         true
     }
 
-    /// Makes goals move the hand shifted by `correction`. The joint reference stays as it is, and
+    /// Makes goals move the hand shifted by `correction`. The joint reference does not change, and
     /// the goal must be planned from there.
     pub(super) fn correct(&mut self, correction: Isometry3<f64>) {
         self.correction = (correction != Isometry3::identity()).then_some(correction);
@@ -61,15 +61,15 @@ impl RunningSession {
         self.ee = geometry::corrected(&self.hand, &(correction * object));
     }
 
-    /// Ends a course whose plan belongs to the previous frame.
+    /// Ends a course that was planned for the previous frame.
     pub(super) fn leave_pose_course(&mut self) {
         if matches!(self.route.course, Course::Pose(..)) {
             self.route.course = Course::Rest;
         }
     }
 
-    /// Moves on to a pose at which the reference has arrived, if the robot's report is wrong there,
-    /// once for each target. Returns true if so.
+    /// If the robot's report is wrong at a pose where the reference has arrived, moves on to
+    /// correct it, once for each target. Returns true if so.
     pub(super) fn refine(&mut self, heading: &Target) -> bool {
         if self.is_refined || !matches!(heading, Target::Pose(_)) || self.is_given_up() {
             return false;

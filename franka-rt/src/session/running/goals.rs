@@ -1,4 +1,4 @@
-//! Goals of a session: their beginning, tuning and aim.
+//! Goals of a session: how they begin and are tuned, and the aim that follows from them.
 
 use franka_model::Model;
 
@@ -11,9 +11,9 @@ use crate::session::{Budget, Goal, OnArrival, Target};
 /// Aim of the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bearing {
-    /// This target.
+    /// The reference moves to this target.
     Followed(Target),
-    /// A moving target that got no update for too long: the reference halts on its way.
+    /// A moving target that got no update for too long. The reference halts on its way.
     Halted(Target),
 }
 
@@ -26,7 +26,7 @@ impl Bearing {
 }
 
 impl RunningSession {
-    /// Accepts a goal that was read from the slot: tunes the present goal, or replaces it and plans
+    /// Accepts a goal that was read from the slot: tunes the current goal, or replaces it and plans
     /// anew.
     pub(super) fn take_up(&mut self, goal: &Goal, now: u64) {
         if matches!(self.stage, GoalStage::Restless | GoalStage::Finished(_)) {
@@ -34,9 +34,10 @@ impl RunningSession {
         }
         let named = goal.id == self.goal.id;
         let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
-        // Tuning leaves the revision as it is.
+        // Tuning does not change the revision.
         let tuned = goal.revision == self.goal.revision;
-        // The caller has not yet seen the abort or the reaction: ignore the target of the update.
+        // The caller has not yet seen the abort or the reaction, so the target of its update is
+        // ignored.
         let aborted = !taken_back && self.is_given_up_for_good();
         if named && (tuned || aborted) {
             return self.tune(goal);
@@ -66,8 +67,8 @@ impl RunningSession {
         self.set_out();
     }
 
-    /// Keeps the target, and uses budget, gains, tolerance and guards from `goal`. Gains for
-    /// guiding are not used, because they would release an arm that is already held.
+    /// Keeps the target, but takes budget, gains, tolerance and guards from `goal`. Gains for
+    /// guiding are ignored, because they would release an arm that is already held.
     fn tune(&mut self, goal: &Goal) {
         let Goal {
             target, on_arrival, ..
@@ -114,20 +115,20 @@ impl RunningSession {
         });
     }
 
-    /// Ends the course, so that the next course is planned to `target`.
+    /// Ends the course, so that a new course is planned to `target`.
     pub(super) fn turn_to(&mut self, target: Target) {
         self.route.turn();
         self.aim = Bearing::Followed(target);
     }
 
-    /// Returns the present target of the reference, at its place at `now`.
+    /// Returns the reference's target, at its place at the time `now`.
     pub(super) fn target_at(&self, now: u64) -> Target {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
         self.aim.target().after(since)
     }
 
-    /// Returns the present aim of the reference at `now`. After a reaction, the arm does not
-    /// continue at the pace of a deliberately slow goal.
+    /// Returns the aim of the reference at `now`. After a reaction, the arm does not continue at
+    /// the pace of a deliberately slow goal.
     pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
         let mut aim = Aim {
             goal: self.goal.id,

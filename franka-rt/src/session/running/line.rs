@@ -1,4 +1,4 @@
-//! The distance of the arm from the straight line of its goal.
+//! The distance between the arm and the straight line of its goal.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -7,14 +7,14 @@ use crate::session::Target;
 use crate::session::course::Course;
 use crate::session::guard::deviation::beside;
 
-/// The line of a goal to a pose, and the greatest distance of the arm from it so far.
+/// The straight line of a goal to a pose, and the greatest distance of the arm from it so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// Start, base axes, `[m]`.
+    /// Start of the line in base axes, `[m]`.
     from: Vector3<f64>,
     /// Vector from the start to the target, `[m]`.
     way: Vector3<f64>,
-    /// Greatest distance, `[m]`.
+    /// Greatest distance of the arm from the line so far, `[m]`.
     off: f64,
 }
 
@@ -28,14 +28,14 @@ impl Line {
         }
     }
 
-    /// Greatest distance of the arm from the line so far, `[m]`.
+    /// Returns the greatest distance of the arm from the line so far, `[m]`.
     pub(super) fn deviation(&self) -> f64 {
         self.off
     }
 }
 
 impl RunningSession {
-    /// Begins the line of a goal to a pose, where the arm is. Other goals have none.
+    /// Begins the line of a goal to a pose at the place of the arm. Other goals have no line.
     pub(super) fn begin_line(&mut self) {
         self.line = match self.goal.target {
             Target::Pose(there) if !self.goal.along_path => {
@@ -45,7 +45,8 @@ impl RunningSession {
         };
     }
 
-    /// Takes the measured arm of one cycle. A chunk leads along its own points.
+    /// Updates the greatest distance with the measured arm of one cycle. A chunk follows its own
+    /// points, so it does not count.
     pub(super) fn watch_line(&mut self) {
         if matches!(self.route.course, Course::Chunk(_)) {
             self.line = None;

@@ -1,8 +1,8 @@
 //! A running session: the reference, the course that moves it, and the torques that follow it.
 //!
-//! The law, the leash and the decision about the arrival need the newest state, so they run in its
-//! answer. All other parts are prepared after the previous answer: goals, plans and the reference's
-//! next step.
+//! The law, the leash and the decision about the arrival need the newest state, so they run while
+//! that state is answered. Goals, plans and the reference's next step are prepared before, after
+//! the previous answer.
 
 mod carry;
 mod chunks;
@@ -54,20 +54,20 @@ use progress::Progress;
 use react::Reacting;
 use stages::GoalStage;
 
-/// The part of a session that exists from its first state.
+/// The part of a session that exists once the first state has arrived.
 #[derive(Debug)]
 pub(super) struct RunningSession {
     /// Hand according to the robot's state. Springs and dampers act there.
     hand: EndEffector,
     /// Frame that goals move: the hand as the robot reports it, or an object in the hand.
     ee: EndEffector,
-    /// Pose of the reported hand relative to the hand; `None` if the two agree.
+    /// Pose of the reported hand relative to the modelled hand.
     correction: Option<Isometry3<f64>>,
-    /// True once the correction was renewed after the reference has arrived.
+    /// True if the correction was renewed after the reference had arrived.
     is_refined: bool,
     grasp: Option<Isometry3<f64>>,
     load: Load,
-    /// Joint positions at the beginning, `[rad]`: the default posture of goals.
+    /// Joint positions at the session's start, `[rad]`: the default posture of goals.
     posture: JointVector,
     pub(super) goal: Goal,
     /// The arm in the newest state that was answered.
@@ -78,9 +78,9 @@ pub(super) struct RunningSession {
     leash: Fade<Leash>,
     /// Parts that the leash held in the last answer, if any.
     held: Option<Held>,
-    /// Time when the goal was first seen, `message_id` of the state.
+    /// `message_id` of the state in which the goal was first seen.
     since: u64,
-    /// Aim of the reference: the goal's target, a target moved closer by the lead, or rest.
+    /// Aim of the reference: the goal's target, a target that the lead moved closer, or rest.
     aim: Bearing,
     route: ObstacleBraking,
     reference: Reference,
@@ -89,55 +89,55 @@ pub(super) struct RunningSession {
     response: Unresponsive,
     /// True if the arm ignored its commands in the last answer.
     ignores: bool,
-    /// Action of the session after a held goal had to be given up.
+    /// What the session does after a held goal had to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
-    /// Time of the last update of the goal, `message_id` of the state.
+    /// `message_id` of the state at the goal's last update.
     heard: u64,
     standing: Standing,
-    /// The reaction of the goal, until its condition was true.
+    /// The reaction of the goal, until its condition becomes true.
     reacting: Option<Reacting>,
     /// True if the arm stops or rests at a possible contact after a reaction.
     yields: bool,
-    /// Counter that grows by 1 in a cycle in which the course is held back, and falls by 1
-    /// otherwise.
+    /// Counter that grows by 1 in each cycle in which something holds the course back, and falls by
+    /// 1 in all other cycles.
     held_back: u64,
     progress: Progress,
     /// The straight line of the goal, if it has one.
     line: Option<Line>,
-    /// Counter of the same kind for cycles in which the leash holds the course back.
+    /// The same counter for cycles in which the leash holds the course back.
     leashed: u64,
-    /// True if the goal landed short of its target because the course was held back.
+    /// True if the goal landed away from its target because something held the course back.
     obstructed: bool,
     /// True if the reference waits for the other arms that carry the same object.
     waits: bool,
-    /// True if the arm is held back from the reference of a carried object.
+    /// True if something holds the arm back from the reference of a carried object.
     lags: bool,
     /// Greatest speed of any point of the arm, `[m/s]`.
     speed_cap: Option<f64>,
 }
 
-/// State of the goal.
+/// Status of the goal.
 #[derive(Clone, Copy, Debug)]
 enum Standing {
     /// The session pursues the goal.
     InForce,
-    /// The goal was replaced by a stop. Chunks that wait for their time are discarded.
+    /// The goal was replaced by a stop. Chunks that wait for their start time are discarded.
     TakenBack,
     /// The goal was given up for `cause`. The arm holds the last target, or brakes.
     GivenUp {
         action: OnTimeout,
         cause: Lapse,
-        /// Observations at the time when the goal's condition was true; `None` if it was not by
-        /// then.
+        /// What was measured when the goal's condition became true; `None` if it had not become
+        /// true.
         reacted: Option<Reacted>,
     },
-    /// The goal's condition was true. The arm brakes, and continues to the other target if there is
-    /// one.
+    /// The goal's condition became true. The arm brakes, and then moves to the other target if
+    /// there is one.
     Reacted(Reacted),
 }
 
-/// Follower of the reference.
+/// Output that follows the reference: the law's torques, or setpoints.
 #[derive(Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -151,22 +151,22 @@ enum Drive {
 /// Prepared values for the answer to the next state.
 #[derive(Debug, Default)]
 struct Next {
-    /// Step of the course; `None` if the course follows the measured arm.
+    /// Step of the course; `None` if the reference follows the measured arm.
     step: Option<CourseStep>,
-    /// The guards that have held the command back so far.
+    /// The guards that have limited the command so far.
     bindings: Bindings,
 }
 
 /// The arm as measured.
 #[derive(Debug)]
 pub(super) struct Measured {
-    /// `message_id` of the state.
+    /// `message_id` of the measured state.
     pub(super) time: u64,
     pub(super) q: JointVector,
     pub(super) dq: JointVector,
     /// Pose of the end effector according to the model.
     pub(super) modelled: Isometry3<f64>,
-    /// `O_T_EE`, column-major, unchecked.
+    /// `O_T_EE` in column-major order, not validated.
     pub(super) reported: [f64; 16],
     /// Pose of the hand as the robot reports it, computed from the model and the correction.
     pub(super) pose: Isometry3<f64>,
@@ -206,7 +206,8 @@ impl RunningSession {
         let mut this = Self {
             drive,
             aim: Bearing::Followed(goal.target),
-            // The state shows that a tool is mounted, but not its shape: the Hand is assumed.
+            // The state shows that a tool is mounted, but not the tool's shape. Therefore the Hand
+            // is assumed.
             route: ObstacleBraking::new(
                 Clearance::new(model, state.m_ee > 0.0, keep_out),
                 goal.budget,
@@ -262,7 +263,7 @@ impl RunningSession {
         Some(this)
     }
 
-    /// `message_id` of the newest state that was answered.
+    /// Returns the `message_id` of the newest state that was answered.
     pub(super) fn newest(&self) -> u64 {
         self.arm.time
     }
@@ -272,7 +273,7 @@ impl RunningSession {
         self.next.is_some()
     }
 
-    /// Begins with the known values of the arm.
+    /// Begins with the values that earlier sessions learned about the arm.
     pub(super) fn knowing(mut self, known: Learned) -> Self {
         if let Drive::Torques(effort) = &mut self.drive {
             effort.know(known);
@@ -280,13 +281,14 @@ impl RunningSession {
         self
     }
 
-    /// Caps the speed of every point of the arm, `[m/s]`.
+    /// Sets the speed cap for every point of the arm, `[m/s]`.
     pub(super) fn no_faster_than(mut self, speed_cap: Option<f64>) -> Self {
         self.speed_cap = speed_cap;
         self
     }
 
-    /// Returns the values learned about the arm so far. `known` are the values at the beginning.
+    /// Returns the values learned about the arm so far. `known` are the values at the session's
+    /// start.
     pub(super) fn learned(&self, known: Learned) -> Learned {
         match &self.drive {
             Drive::Torques(effort) => effort.learned(),
@@ -294,11 +296,11 @@ impl RunningSession {
         }
     }
 
-    /// Prepares the answer to the state `now`, `message_id`. Begins a `newer` goal, if there is
-    /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
-    /// session is silent or dropped. `stop` is present in the cycle that sees that the session's
-    /// team has stopped. `waits` is true while the reference waits for other arms that carry the
-    /// same object.
+    /// Prepares the answer to the state with `message_id` `now`: begins a `newer` goal, if there is
+    /// one, plans, and moves the reference by one step. `alive` is false once the session's deadman
+    /// is silent or dropped. `stop` is `Some` in the cycle that sees that the session's team has
+    /// stopped. `waits` is true while the reference waits for other arms that carry the same
+    /// object.
     pub(super) fn prepare(
         &mut self,
         model: &Model,
@@ -347,7 +349,7 @@ impl RunningSession {
         self.next = Some(Next { step, bindings });
     }
 
-    /// Moves the course by one step towards `aim`, for the answer to the state `now`.
+    /// Moves the course by one step toward `aim`, for the answer to the state `now`.
     fn advance(
         &mut self,
         model: &Model,
@@ -381,7 +383,7 @@ impl RunningSession {
         step
     }
 
-    /// Returns the distance of the arm from its target at its release.
+    /// Returns how far the arm was from its target when it was released.
     pub(super) fn released(&self) -> Option<PoseError> {
         match self.stage {
             GoalStage::Finished(released) => released,
@@ -389,7 +391,7 @@ impl RunningSession {
         }
     }
 
-    /// Answers one state, after the answer was prepared.
+    /// Answers one state with the prepared values.
     pub(super) fn answer(
         &mut self,
         model: &Model,
@@ -425,7 +427,7 @@ impl RunningSession {
         let at_rest = dq.amax() < arrival::REST_VELOCITY;
         self.advance_stage(model, at_rest, state.message_id, event);
         self.observe(state);
-        // Under the robot's own controller the reference is anchored at the robot's setpoint.
+        // Under the robot's own controller, the reference starts from the robot's setpoint.
         if let Drive::Torques(_) = self.drive {
             self.held = leash::hold(
                 &self.leash.now(),
@@ -497,7 +499,7 @@ impl RunningSession {
     }
 
     /// Moves the reference to the setpoint of the robot's controller, if the two differ, and plans
-    /// the course anew from there. Returns true if so.
+    /// the course anew from there. Returns true if the reference was moved.
     fn reanchor(&mut self, model: &Model, state: &RobotState) -> bool {
         let Drive::Setpoints(stream) = &mut self.drive else {
             return false;

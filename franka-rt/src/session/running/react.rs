@@ -13,13 +13,13 @@ use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
 pub(super) struct Reacting {
     watch: Watch,
     then: Target,
-    /// The newest answered state, until the condition has been checked in it.
+    /// The newest state that was answered, until the condition has been checked in it.
     newest: Option<Observed>,
 }
 
 impl Reacting {
-    /// Returns the reaction of a goal that begins with the state `since`, `message_id`; `None` if
-    /// the goal has none.
+    /// Returns the reaction of a goal that begins with the state whose `message_id` is `since`.
+    /// Returns `None` if the goal has no reaction.
     pub(super) fn to(goal: &Goal, since: u64) -> Option<Self> {
         let Reaction { condition, then } = goal.reaction?;
         Some(Self {
@@ -31,15 +31,15 @@ impl Reacting {
 }
 
 impl RunningSession {
-    /// Records the newest state, for [`Self::react`] after the answer.
+    /// Records the newest state, so that [`Self::react`] can check it after the answer.
     pub(super) fn observe(&mut self, state: &RobotState) {
         if let Some(reacting) = &mut self.reacting {
             reacting.newest = Some(Observed::of(state));
         }
     }
 
-    /// Checks the condition in the newest state, in which `self.arm` was measured. If it is true,
-    /// brakes, and makes the goal end at rest or at the other target.
+    /// Checks the condition in the newest state, in which `self.arm` was measured. If the condition
+    /// is true, brakes, and makes the goal end at rest or at the other target.
     pub(super) fn react(&mut self) {
         let watched = self.is_watched();
         let Some(reacting) = &mut self.reacting else {
@@ -77,7 +77,7 @@ impl RunningSession {
         self.reacting = None;
     }
 
-    /// True if a condition of the goal still counts: until the goal was reported, cancelled or
+    /// True while the goal's condition still counts: until the goal is reported, cancelled or
     /// braked.
     fn is_watched(&self) -> bool {
         let pursued = match self.standing {
@@ -88,13 +88,13 @@ impl RunningSession {
         pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
     }
 
-    /// True if the arm has finished the brake of a reaction, but not yet its motion to `heading`.
+    /// True if the arm has braked for a reaction but has not yet moved to `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
         self.has_reacted() && self.aim.target() == Target::Rest && *heading != Target::Rest
     }
 
-    /// Returns the observations when the goal's condition was true, even if the goal was given up
-    /// since.
+    /// Returns what was measured when the goal's condition became true, even if the goal was given
+    /// up since.
     pub(super) fn reacted(&self) -> Option<Reacted> {
         match self.standing {
             Standing::Reacted(reacted) => Some(reacted),
@@ -103,7 +103,7 @@ impl RunningSession {
         }
     }
 
-    /// True if the goal has a different target because its condition was true.
+    /// True if the goal's target was replaced because its condition became true.
     pub(super) fn has_reacted(&self) -> bool {
         matches!(self.standing, Standing::Reacted(_))
     }

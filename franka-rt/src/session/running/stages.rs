@@ -1,4 +1,4 @@
-//! The stages of a goal, from the way to its end.
+//! The stages of a goal, from the motion to its end.
 
 use franka_model::{Frame, Model};
 
@@ -12,29 +12,29 @@ use crate::session::{
 };
 
 /// Joint velocity below which the reference may be stopped in one cycle, `[rad/s]`. Joints at their
-/// bounds may still creep after a pose has arrived.
+/// bounds may still creep after the pose has arrived.
 const REFERENCE_REST: f64 = 1e-3;
 
 /// Stage of the session's goal.
 #[derive(Debug)]
 pub(super) enum GoalStage {
-    /// The reference moves, or holds a goal that stays in force.
+    /// The reference moves, or holds a goal that is still current.
     UnderWay,
     /// The reference has arrived; the arm settles.
     Landing(Landing),
-    /// The goal has ended, and is held.
+    /// The goal has ended, and the arm is held there.
     Staying,
     /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
-    /// The arm was released but does not rest: the robot must stop it.
+    /// The arm was released but does not come to rest. The robot must stop it.
     Restless,
     /// The last command was sent. The value is the distance of the arm from its target at the
-    /// release, if it was released.
+    /// release, if the arm was released.
     Finished(Option<PoseError>),
 }
 
 impl GoalStage {
-    /// True if the arm is being released, or was.
+    /// True if the arm is being released or was released.
     pub(super) fn lets_go(&self) -> bool {
         match self {
             Self::Releasing(_) | Self::Restless | Self::Finished(_) => true,
@@ -44,8 +44,8 @@ impl GoalStage {
 }
 
 impl RunningSession {
-    /// Moves through the stages of a goal that ends. The stage advances only here. The report is
-    /// left in `event`.
+    /// Advances the stage of a goal that ends. No other function advances it. The report is written
+    /// to `event`.
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,
@@ -57,9 +57,9 @@ impl RunningSession {
             GoalStage::UnderWay => self.end_way(model),
             GoalStage::Landing(landing) => {
                 let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
-                // The robot's own report decides. Under its Cartesian controllers the correction
-                // belongs to the setpoint, from the place where the reference was last taken from
-                // the robot.
+                // The robot's own report decides. Under its Cartesian controllers, the correction
+                // belongs to the setpoint, at the place where the reference was last taken from the
+                // robot.
                 let measured = self.arm.as_reported();
                 let (mut settlement, held) = match landing.judge(&measured, at_rest, working) {
                     Verdict::Settling => return,
@@ -106,7 +106,7 @@ impl RunningSession {
                         self.route.rest();
                         GoalStage::Releasing(Release::new(target, self.arm.q, &self.reference.q))
                     }
-                    // The robot holds the arm at its setpoint as it is.
+                    // The robot holds the arm at its setpoint, so nothing must be released.
                     (OnArrival::ReportAndFinish, Drive::Setpoints(_)) => GoalStage::Finished(None),
                 };
                 *event = Some(SessionEvent::Settled {
@@ -143,7 +143,8 @@ impl RunningSession {
         }
     }
 
-    /// Begins the landing once the reference has arrived, or was held back for too long.
+    /// Begins the landing when the reference has arrived, or if something held it back for too
+    /// long.
     fn end_way(&mut self, model: &Model) {
         let stalled =
             u128::from(self.held_back) >= STALL_TIMEOUT.as_millis() || self.progress.is_stalled();
@@ -156,11 +157,11 @@ impl RunningSession {
         if self.has_braked_before(&heading) {
             return self.turn_to(heading);
         }
-        // The hand may have reached its target before the elbow has.
+        // The hand may reach its target before the elbow does.
         let turns =
             self.goal.posture.is_some() && self.reference.dq.amax() > arrival::REST_VELOCITY;
-        // A reference that halts on its way rests, too. An arm for which others wait gives up if it
-        // was held back for too long.
+        // A reference that halts on its way also rests. If other arms wait for this arm and
+        // something held it back for too long, it gives up.
         let arrived = done && !turns && !(pursued && self.waits);
         let stalled = stalled && !(pursued && self.waits && !self.lags);
         let paused = pursued && self.goal.paused;
@@ -175,15 +176,15 @@ impl RunningSession {
                 self.turn_to(Target::Rest);
             }
             let target = match heading {
-                // The goal counts as held at any place.
+                // A goal that was given up counts as held at any place.
                 _ if self.is_given_up() => None,
                 Target::Rest | Target::Guide(_) => None,
                 Target::Pose(pose) | Target::MovingPose { pose, .. } => {
-                    // Use the target of the hand: at an object, its lever would not count.
+                    // Use the target of the hand. At the object, its lever would not count.
                     Some(pose * self.grasp.unwrap_or_default().inverse())
                 }
                 Target::Joints(q) | Target::MovingJoints { q, .. } => {
-                    // The correction's change along the way must not count as an error in the
+                    // The change of the correction along the way must not count as an error of the
                     // report.
                     self.renew_correction();
                     Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))

@@ -1,5 +1,5 @@
-//! The guards that move a goal's target closer or give up the goal: lead, deviation, speed cap,
-//! response, watchdog and deadman.
+//! The guards that move a goal's target closer, or give up the goal: lead, deviation, speed cap,
+//! unresponsive arm, watchdog and deadman.
 
 use core::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::session::{Lapse, OnArrival, OnTimeout, PoseError, Target};
 use crate::team::TeamStop;
 
 impl RunningSession {
-    /// Moves a target closer that is too far ahead of the arm. Returns true if so.
+    /// If the target is too far ahead of the arm, moves it closer. Returns true if it was moved.
     pub(super) fn draw_nearer(&mut self, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
             return false;
@@ -37,8 +37,8 @@ impl RunningSession {
         self.aim.target() != self.goal.target
     }
 
-    /// Halts if the target no longer counts as moving: it got no update for too long, or was given
-    /// up.
+    /// Halts if the target no longer counts as moving, because it got no update for too long or was
+    /// given up.
     pub(super) fn halt_without_news(&mut self, now: u64) {
         let silent = now.saturating_sub(self.heard) >= Target::MOVES_ON_MS;
         if let Bearing::Followed(target) = self.aim
@@ -50,7 +50,7 @@ impl RunningSession {
         }
     }
 
-    /// Gives up the goal, and brakes.
+    /// Gives up the goal and brakes.
     pub(super) fn give_up(&mut self, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.on_arrival);
         self.fade();
@@ -58,7 +58,8 @@ impl RunningSession {
         self.lapse(OnTimeout::Brake, lapse);
     }
 
-    /// True if neither an update nor a chunk can resume a goal that was given up or has reacted.
+    /// True if the goal was given up or has reacted, and neither an update nor a chunk can resume
+    /// it.
     pub(super) fn is_given_up_for_good(&self) -> bool {
         let settled = matches!(self.stage, GoalStage::Staying) || self.stage.lets_go();
         match self.standing {
@@ -73,7 +74,7 @@ impl RunningSession {
         matches!(self.standing, Standing::GivenUp { .. })
     }
 
-    /// Ends the goal where the arm stops.
+    /// Gives up the goal for `cause`. `action` decides if the arm holds the last target or brakes.
     fn lapse(&mut self, action: OnTimeout, cause: Lapse) {
         if self.goal.on_arrival == OnArrival::Hold {
             self.goal.on_arrival = self.afterwards;
@@ -86,7 +87,7 @@ impl RunningSession {
         };
     }
 
-    /// Gives up a goal whose arm is displaced. Returns true if so.
+    /// Gives up the goal if the arm was pushed off its path. Returns true if so.
     pub(super) fn watch_deviation(&mut self, model: &Model, leashed: bool) -> bool {
         if !leashed {
             self.displacement.set_free(&self.reference.q);
@@ -117,7 +118,8 @@ impl RunningSession {
         exceeded
     }
 
-    /// Counts a cycle for which the leash or the `course` itself holds the course back, or neither.
+    /// Counts one cycle in which the leash holds the course back, the `course` is held back itself,
+    /// or nothing holds it back.
     pub(super) fn count_held(&mut self, leashed: bool, course: bool, now: u64) {
         let count = |held: bool, before: u64| match held {
             true => before + 1,
@@ -132,9 +134,9 @@ impl RunningSession {
         }
     }
 
-    /// Takes the distance of the measured arm from its target, in a cycle in which something holds
-    /// the goal back. A chunk has its remaining time instead, since its points may lead away from
-    /// its end.
+    /// Records how far the measured arm is from its target, in a cycle in which something holds the
+    /// goal back. For a chunk, records its remaining time instead, because its points may lead away
+    /// from its end.
     fn watch_progress(&mut self, now: u64) {
         let arm = &self.arm;
         let distance = match (&self.route.course, self.heading()) {
@@ -149,7 +151,7 @@ impl RunningSession {
         self.progress.hold(distance, now);
     }
 
-    /// Gives up a goal if the arm was faster than the cap. Returns true if it was.
+    /// Gives up the goal if the arm moved faster than the cap. Returns true if it did.
     pub(super) fn watch_speed(&mut self, model: &Model) -> bool {
         let arm = &self.arm;
         let fastest = || model.fastest_point(&arm.q, &arm.dq, &self.hand);
@@ -161,13 +163,13 @@ impl RunningSession {
         too_fast
     }
 
-    /// Gives up a goal whose arm ignores its commands. Returns true if so.
+    /// Gives up the goal if the arm ignores its commands. Returns true if so.
     pub(super) fn watch_response(&mut self) -> bool {
         let over = self.stage.lets_go();
         if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
             self.give_up(Lapse::Unresponsive);
-            // A robot that refuses setpoints keeps its own, and a reference that follows it does
-            // not move.
+            // A robot that refuses setpoints keeps its own setpoint, and a reference that follows
+            // that setpoint does not move.
             if !self.response.refuses() {
                 self.return_to_arm();
             }
@@ -175,8 +177,8 @@ impl RunningSession {
         self.ignores
     }
 
-    /// Moves a reference that is ahead of a still arm back to the arm. Otherwise the arm would leap
-    /// when it can move again.
+    /// Moves the reference back to the arm if it is ahead of an arm that stands still. Otherwise
+    /// the arm would leap when it can move again.
     fn return_to_arm(&mut self) {
         if (self.reference.q - self.arm.q).amax() < NEAR {
             return;
@@ -189,7 +191,7 @@ impl RunningSession {
         self.turn_to(back);
     }
 
-    /// Gives up the goal if the team has just stopped and the arm is under way to a target. A goal
+    /// Gives up the goal if the team has just stopped and the arm is on its way to a target. A goal
     /// that was given up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
         let over = self.stage.lets_go();
@@ -212,7 +214,7 @@ impl RunningSession {
         )
     }
 
-    /// True if the goal was given up and the arm brakes, or has braked, for that reason.
+    /// True if the goal was given up and the arm is braking, or has braked, for that reason.
     pub(in crate::session) fn has_braked(&self) -> bool {
         matches!(
             self.standing,
@@ -223,7 +225,7 @@ impl RunningSession {
         )
     }
 
-    /// Gives up the goal if its updates stop arriving or its deadman is silent.
+    /// Gives up the goal if its updates stop arriving or if its deadman is silent.
     pub(super) fn watch(&mut self, alive: bool, now: u64) {
         let braked = self.has_braked();
         // A goal that stops the arm needs no deadman.
@@ -242,7 +244,7 @@ impl RunningSession {
         {
             let silent = Lapse::Silent { silence };
             match (watchdog.on_timeout, self.goal.target) {
-                // Guiding has no target to hold: brake.
+                // Guiding has no target that could be held, so the arm brakes.
                 (OnTimeout::Brake, _) | (_, Target::Guide(_)) => self.give_up(silent),
                 (OnTimeout::Hold, _) => self.lapse(OnTimeout::Hold, silent),
             }
@@ -250,5 +252,5 @@ impl RunningSession {
     }
 }
 
-/// Distance from the reference at which an arm that can move again does not leap, `[rad]`.
+/// Distance from the reference within which an arm that can move again does not leap, `[rad]`.
 const NEAR: f64 = 2e-3;

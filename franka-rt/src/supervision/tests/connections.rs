@@ -1,4 +1,4 @@
-//! Connections: lost, restored, given up; and their events.
+//! Connections that are lost, restored or given up, and their events.
 
 use super::*;
 
@@ -129,7 +129,7 @@ fn robot_that_is_not_recognised_is_recovered_only_by_agreement() {
         robot.answers(asked.number, Ok(()));
         robot.recovers();
         assert_eq!(robot.condition(), Condition::Ready);
-        // From now on the robot is known.
+        // From here on, the robot is known.
         robot.reflex([COLLISION]);
         assert_eq!(robot.recoveries(), [asked.number, asked.number + 1]);
     }
@@ -150,7 +150,7 @@ fn motion_does_not_wait_for_a_robot_that_is_not_recognised() {
             panic!("{motions:?}")
         };
         assert!(matches!(why, Unready::Unrecognised(_)), "{why}");
-        // A caller that requests a motion now accepts the robot as it is.
+        // A caller that requests a motion now accepts the robot in its present condition.
         assert_eq!(robot.condition(), Condition::Ready);
         assert!(matches!(robot.submit(2), Admission::Begin));
     }

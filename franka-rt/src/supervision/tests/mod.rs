@@ -1,4 +1,4 @@
-//! Policies, mishap by mishap, with a robot whose states a test makes up.
+//! Policies under each kind of fault, with a robot whose states the test supplies.
 
 mod connections;
 mod motions;
@@ -83,7 +83,7 @@ impl Supervised {
         result
     }
 
-    /// Lets this time pass, and handles every deadline when it is due.
+    /// Lets this time pass, and handles every deadline when it is reached.
     fn pass(&mut self, milliseconds: u64) {
         let end = self.now + milliseconds;
         while let Some(due) = self.supervision.deadline().filter(|due| *due <= MS(end)) {
@@ -165,7 +165,7 @@ impl Supervised {
         self.asked.iter().filter(is).count()
     }
 
-    /// Returns the results of the motions that waited: whether they began, or why not.
+    /// Returns the results of the motions that waited: that they began, or why they did not.
     fn motions(&mut self) -> Vec<(u64, Option<MotionError>)> {
         let asked = std::mem::take(&mut self.asked);
         let of = |output| match output {
@@ -184,7 +184,7 @@ impl Supervised {
     }
 }
 
-/// A reflex as it ends a motion.
+/// Outcome of a motion that a reflex ended.
 fn collision() -> Outcome {
     let status = Status::Move(MoveStatus::ReflexAborted);
     let refusal = Refusal::new(Command::Move, status, RobotMode::Reflex).expect("a refusal");

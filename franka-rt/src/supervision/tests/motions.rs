@@ -15,7 +15,7 @@ fn a_motion_meanwhile_is_refused_unless_it_may_wait() {
         panic!("it does not wait")
     };
     assert_eq!(error, not_ready(Unready::Disconnected, 0));
-    // The robot itself refuses motions for conditions that the supervisor will not change.
+    // In conditions that the supervisor will not change, the robot itself refuses motions.
     let mut robot = Supervised::ready(without_chance().motions_wait(MS(1000)));
     for mode in [
         RobotMode::UserStopped,
@@ -253,7 +253,7 @@ fn whatever_else_happens_turns_away_a_motion_that_waits() {
     }
 }
 
-/// As after a network that was cut in the middle of a motion.
+/// The network was cut in the middle of a motion.
 #[test]
 fn a_reflex_that_is_found_with_a_connection_belongs_to_its_loss() {
     let policy = without_chance().recover(9, WINDOW).motions_wait(MS(5000));

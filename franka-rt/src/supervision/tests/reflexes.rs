@@ -1,4 +1,4 @@
-//! Reflexes: reported, recovered from, or left to a person.
+//! Reflexes that are reported, and then recovered from or left to a person.
 
 use super::*;
 
@@ -171,7 +171,7 @@ fn recovery_waits_for_agreement_to_the_same_reflex() {
     let [Output::Ask(Reflex { number: 1, .. })] = &robot.asked[..] else {
         panic!("asked once: {:?}", robot.asked)
     };
-    // Another error joins in before the answer.
+    // Another error is added before the answer.
     robot.reflex([COLLISION, RobotError::JointReflex]);
     let now = MS(robot.now);
     assert!(!robot.after(|it| it.agree(1, true, now)));

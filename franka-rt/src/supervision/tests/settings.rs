@@ -1,4 +1,4 @@
-//! Settings of a program: sent on every connection before a motion begins there.
+//! Settings of a program. They are sent on every connection before a motion begins there.
 
 use super::*;
 
@@ -138,7 +138,7 @@ fn setting_that_is_not_taken_again_refuses_motions() {
                 if *command == Command::SetJointImpedance && !text.is_empty())
         });
         assert_eq!(told.count(), 1);
-        // The setting is not sent again and again, but when the robot becomes idle again.
+        // The setting is not repeated all the time, only when the robot becomes idle again.
         robot.pass(10_000);
         robot.shows(RobotMode::Idle);
         assert_eq!(configures(&mut robot), 0);
@@ -147,7 +147,7 @@ fn setting_that_is_not_taken_again_refuses_motions() {
         assert_eq!(configures(&mut robot), 1);
         again(&mut robot, STIFF, refusal());
         assert_eq!(next(&mut robot), None);
-        // Another refused value changes nothing; an accepted value does.
+        // A refused value changes nothing; an accepted value does.
         set(&mut robot, SOFT, &refusal());
         assert_eq!(robot.condition(), Condition::Unready(NOT_SET));
         set(&mut robot, SOFT, &Answer::Taken);
@@ -211,13 +211,13 @@ fn newest_value_counts_unless_it_is_refused() {
     set(&mut robot, STIFF, &Answer::Taken);
     set(&mut robot, SOFT, &Answer::Taken);
     set(&mut robot, STIFF, &refusal());
-    // A first value that is refused does not count as set.
+    // If the first value is refused, nothing counts as set.
     set(&mut robot, FREE, &refusal());
     assert_eq!(robot.condition(), Condition::Ready);
     reconnect(&mut robot);
     again(&mut robot, SOFT, Answer::Taken);
     assert_eq!(next(&mut robot), None);
-    // A setting without an answer is sent again at once, because the robot may have it or not.
+    // A setting without an answer is sent again at once, because it is unknown if the robot has it.
     configures(&mut robot);
     set(&mut robot, STIFF, &unknown());
     assert_eq!(robot.condition(), CONFIGURING);
@@ -261,7 +261,7 @@ fn setting_of_the_program_is_awaited_before_motions_begin() {
         set(&mut robot, FREE, &Answer::Taken);
         reconnect(&mut robot);
         assert_eq!(configures(&mut robot), 1);
-        // The setting is sent while the others are sent again.
+        // The setting is sent while the other settings are sent again.
         let id = robot.supervision.declare(SOFT);
         again(&mut robot, FREE, Answer::Taken);
         assert_eq!(next(&mut robot), None);
@@ -281,7 +281,7 @@ fn setting_of_the_program_is_awaited_before_motions_begin() {
 fn setting_that_states_no_longer_show_refuses_motions() {
     let text = String::from("got 0 kg, expected 0.5 kg");
     let other = Answer::NotShown { text };
-    // A robot that rounds has never shown the setting.
+    // If a robot rounds, its states have never shown the setting.
     for (before, now) in [
         (&Answer::Taken, Condition::Unready(NOT_SET)),
         (&other, Condition::Ready),

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 
 use crate::session::{Budget, course};
 
-/// True if no obstacle is known to be near within `turns` of `q`.
+/// True if no obstacle is known to come near within `turns` of `q`.
 fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool {
     let known = clearance.known.as_ref();
     let candidates = known.map(|known| known.bound.candidates(&clearance.spacing, q, turns));
@@ -47,7 +47,7 @@ fn nearness(ahead: Ahead) -> usize {
     }
 }
 
-/// Expected rank of [`Clearance::ahead`], from all distances at all three postures.
+/// Returns the expected rank of [`Clearance::ahead`], from all distances at all three postures.
 fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> usize {
     let now = margins(keep_out, now);
     let judged = [(next + end) * 0.5, *end].map(|there| {
@@ -96,7 +96,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
             if cycle % 30 == 0 {
                 acceleration = JointVector::from_fn(|_, _| random.random_range(-3.0..3.0)) * pace;
             }
-            // Ten cycles at once: only the path matters here, not its smoothness.
+            // Ten cycles at once, because only the path matters here, not its smoothness.
             let dq = reference.dq + acceleration * 0.01;
             let next = Reference {
                 q: reference.q + dq * 0.01,
@@ -117,7 +117,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     assert!(known > 25 * ways, "{known}");
 }
 
-/// Returns the arm bent forwards at joint 2 until its distance to itself has this margin.
+/// Returns the arm bent forward at joint 2, until its distance from itself has this margin.
 fn bent(margin: f64) -> JointVector {
     let at = |angle: f64| {
         let mut q = READY;
@@ -150,7 +150,7 @@ fn clearance_is_too_near_only_if_a_stop_comes_too_late() {
     assert_eq!(ahead(0.01, 0.001), Ahead::Near);
     assert_eq!(ahead(0.01, -0.001), Ahead::TooNear(None));
     assert_eq!(ahead(0.001, 0.01), Ahead::Clear);
-    // From inside, only outward motion is free.
+    // From inside, only a motion outward is free.
     assert_eq!(ahead(-0.03, -0.02), Ahead::Clear);
     assert_eq!(ahead(-0.03, -0.031), Ahead::TooNear(None));
 }
