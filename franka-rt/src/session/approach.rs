@@ -1,30 +1,31 @@
 //! Approach of a joint to a target near the end of its range.
 //!
-//! Towards the end of a joint's range the robot allows less and less speed. The limit is the
-//! braking parabola of its velocity envelope, minus an offset. A plan that brakes evenly into a
-//! target at a distance `room` from that end keeps inside the envelope if, at every speed `v` of
-//! its braking,
+//! The nearer a joint is to the end of its range, the less speed the robot allows. The limit is the
+//! braking parabola of its velocity envelope, minus an offset. Consider a plan that brakes with
+//! constant deceleration to a target at the distance `room` from that end. It stays inside the
+//! envelope if, at every speed `v` while it brakes,
 //!
 //! ```text
 //! (v + offset)^2 / (2 envelope deceleration)  <=  v^2 / (2 plan acceleration) + room
 //! ```
 //!
-//! The left side is the distance that the envelope needs to stop, the right side the distance that
-//! the plan has. A plan that violates this condition brakes more gently: with `acceleration <=
-//! deceleration - offset^2 / (2 room)` the condition holds at every speed. Within some milliradians
-//! of the end of the range no acceleration is gentle enough.
+//! The left side is the distance that the envelope requires for a stop. The right side is the
+//! distance that the plan has. If a plan violates this condition, it must brake more gently: with
+//! `acceleration <= deceleration - offset^2 / (2 room)`, the condition holds at every speed. Within
+//! some milliradians of the end of the range, no acceleration is low enough.
 
 use franka_model::limits::JointLimits;
 use franka_otg::AxisLimits;
 
-/// Speed margin to the envelope, `[rad/s]`: the measured velocity differs slightly from the plan's.
+/// Speed margin to the envelope, `[rad/s]`. It is needed because the measured velocity differs
+/// slightly from the plan's velocity.
 const MARGIN: f64 = 0.02;
 
 /// Least acceleration of a plan, `[rad/s^2]`. A target that requires a gentler approach is refused.
 const GENTLEST: f64 = 0.3;
 
-/// Returns the limits of a plan from `q` to `target`, made gentle enough for the end of the joint's
-/// range.
+/// Returns the limits of a plan from `q` to `target`, reduced if the target is near the end of the
+/// joint's range.
 pub(super) fn limits(
     i: usize,
     robot: &JointLimits,
@@ -51,21 +52,21 @@ pub(super) fn limits(
     }
 }
 
-/// Returns the joint targets that sessions accept: least and greatest position of each joint,
-/// `[rad]`. They are the joint's own range, minus some milliradians where its velocity envelope
-/// allows no speed.
+/// Returns the joint targets that sessions accept: the lowest and the highest position of each
+/// joint, `[rad]`. They are the joint's own range, minus some milliradians in which its velocity
+/// envelope allows no speed.
 pub fn target_range(robot: &JointLimits) -> [(f64, f64); 7] {
     core::array::from_fn(|i| range(i, robot))
 }
 
-/// Same as [`target_range`], for plans that brake with these accelerations, `[rad/s^2]`, and not
-/// more gently near the end of a range.
+/// Same as [`target_range`], for plans that brake with these accelerations, `[rad/s^2]`, and do not
+/// brake more gently near the end of a range.
 pub fn target_range_of(robot: &JointLimits, acceleration: &[f64; 7]) -> [(f64, f64); 7] {
     core::array::from_fn(|i| range_of(i, robot, acceleration[i]))
 }
 
-/// Returns the range of targets that plans can approach, `[rad]`. If the range is empty, both ends
-/// are its middle.
+/// Returns the range of targets that plans can approach, `[rad]`. If the range is empty, both its
+/// ends are the middle of the joint's range.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
     range_of(i, robot, GENTLEST)
 }
@@ -73,7 +74,7 @@ pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
 fn range_of(i: usize, robot: &JointLimits, acceleration: f64) -> (f64, f64) {
     let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
         let offset = envelope.offset[i] + MARGIN;
-        // A deceleration that does not exceed the plan's leaves no range.
+        // If the envelope's deceleration does not exceed the plan's, no range is left.
         0.5 * offset * offset / (envelope.deceleration[i] - acceleration).max(f64::MIN_POSITIVE)
     });
     let lower = robot.lower[i].max(robot.hard_lower[i] + room);
@@ -85,13 +86,13 @@ fn range_of(i: usize, robot: &JointLimits, acceleration: f64) -> (f64, f64) {
     (middle, middle)
 }
 
-/// True if the braking of `plan` keeps inside the envelope at every speed up to the plan's.
+/// True if `plan`, while it brakes, stays inside the envelope at every speed up to its own.
 fn keeps(deceleration: f64, offset: f64, room: f64, plan: &AxisLimits) -> bool {
     let excess = |v: f64| {
         0.5 * (v + offset) * (v + offset) / deceleration - 0.5 * v * v / plan.acceleration - room
     };
-    // The excess is a parabola in the speed. Its maximum is at an end of the interval or, if the
-    // parabola opens downwards, here.
+    // The excess is a parabola in the speed. If the parabola opens downward, its maximum is here.
+    // Otherwise the maximum is at an end of the interval.
     let closest = offset * plan.acceleration / (deceleration - plan.acceleration);
     let inside = closest > 0.0 && closest < plan.velocity;
     excess(0.0) <= 0.0 && excess(plan.velocity) <= 0.0 && !(inside && excess(closest) > 0.0)
@@ -102,8 +103,8 @@ mod tests {
     use super::*;
     use franka_model::{Model, READY};
 
-    /// Returns the distance of the braking of a plan into `target` from the envelope, `[rad/s]`;
-    /// negative beyond the envelope.
+    /// Returns the speed margin between the envelope and a plan that brakes to `target`, `[rad/s]`.
+    /// Negative beyond the envelope.
     fn clearance(i: usize, target: f64, plan: &AxisLimits) -> f64 {
         let limits = Model::fr3().joint_limits();
         let top = plan.velocity.min(limits.velocity[i] - MARGIN);

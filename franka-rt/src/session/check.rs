@@ -1,5 +1,5 @@
-//! Checks of a goal when it is accepted, outside the thread. A goal that passes these checks cannot
-//! fail in the cycle.
+//! Checks of a goal before it is accepted, outside the thread. A goal that passes these checks
+//! cannot fail in the cycle.
 
 use core::time::Duration;
 
@@ -20,7 +20,8 @@ impl Goal {
     /// Checks the goal for a robot in `state`.
     ///
     /// # Errors
-    /// [`GoalError`] names the first problem, the value and the accepted values.
+    /// Returns a [`GoalError`] that names the first problem, the given value and the accepted
+    /// values.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         check_budget(&self.budget, model)?;
         self.gains.check()?;
@@ -42,7 +43,8 @@ impl Goal {
         if let Some(reaction) = &self.reaction {
             reaction.check(model, state)?;
         }
-        // Values that are finite with masses in single precision are finite in every version.
+        // Protocol 10 has masses in single precision. Values that are finite there are finite in
+        // every version.
         super::load_of(state, Version::V10).ok_or(GoalError::Tool)?;
         if let Some(grasp) = &self.grasp {
             let finite = grasp.to_homogeneous().iter().all(|x| x.is_finite());
@@ -177,7 +179,7 @@ pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(
     }
 }
 
-/// Checks keep-out regions, and converts them to the form of a session.
+/// Checks keep-out regions, and converts them to the session's form.
 pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError> {
     let mut checked = KeepOut::default();
     for (i, region) in regions.iter().enumerate() {
@@ -221,14 +223,14 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
     })
 }
 
-/// Checks that the joints of this robot can follow a target at this speed, `[rad/s]`.
+/// Checks that this robot's joints can follow a target with these velocities, `[rad/s]`.
 pub(super) fn joint_speeds(dq: &[f64; 7], model: &Model) -> Result<(), GoalError> {
     let most = model.joint_limits().velocity;
     let mut each = dq.iter().zip(&most);
     each.try_for_each(|(dq, &most)| speed("joint speed of the target", "rad/s", dq.abs(), most))
 }
 
-/// Checks that the end effector of this robot can follow a target at this speed, `[m/s]` and
+/// Checks that this robot's end effector can follow a target with this twist, `[m/s]` and
 /// `[rad/s]`.
 pub(super) fn speeds(twist: &Twist, model: &Model) -> Result<(), GoalError> {
     let most = model.cartesian_limits();
@@ -277,8 +279,8 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
             let what = "joint positions";
             return Err(GoalError::NotFinite { what });
         }
-        // An arm that is nearer to the end of its range than a plan could move may stay there, or
-        // leave.
+        // If the arm is nearer to the end of its range than a plan could move it, it may stay there
+        // or leave.
         let (lower, upper) = approach::range(i, limits);
         let stands = state.q[i].min(limits.upper[i]).max(limits.lower[i]);
         let (lower, upper) = (lower.min(stands), upper.max(stands));
@@ -305,7 +307,7 @@ fn check_reach(
         .map_err(|_| ())
 }
 
-/// Greatest distance of a quaternion's length from 1: products of many quaternions drift.
+/// Greatest difference between a quaternion's length and 1. Products of many quaternions drift.
 const LENGTH_ERROR: f64 = 1e-3;
 
 fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {

@@ -1,4 +1,4 @@
-//! The course of the reference: its planned motion, of the joints or of the end effector's pose.
+//! The course of the reference: its planned motion, in joint space or as poses of the end effector.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
@@ -37,18 +37,18 @@ pub(super) enum Course {
 #[derive(Debug)]
 pub(super) struct CourseStep {
     pub(super) reference: Reference,
-    /// The bounds that held joints back on the way to a pose.
+    /// The bounds that limited joints on the way to a pose.
     pub(super) bounds: BoundsReached,
-    /// True if the pose had to wait for joints that did not keep up.
+    /// True if the pose had to wait for joints that could not follow.
     pub(super) held: bool,
     /// True if the course's own leash moved the reference with the arm.
     pub(super) leashed: bool,
-    /// True if no plan could be made for a held pose.
+    /// True if no plan could be made for a pose that was held back.
     pub(super) failed: bool,
 }
 
 impl CourseStep {
-    /// Returns a step that no bound changed.
+    /// Returns a step that no bound limited.
     pub(super) fn free(reference: Reference) -> Self {
         Self {
             reference,
@@ -61,13 +61,15 @@ impl CourseStep {
 }
 
 impl Course {
-    /// Turns towards a new aim from the reference's present place and motion.
+    /// Plans a course to a new aim from the reference's present place and motion.
     ///
-    /// Courses take some kilobytes, so a course of the same kind is planned anew in place.
+    /// A course takes some kilobytes. Therefore, if the kind does not change, the course is planned
+    /// anew in place.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only, because goals are checked when they are accepted. The
-    /// course continues to its previous aim, which is safe and ends short of the new aim.
+    /// Returns a [`PlanError`] only because of a defect, since goals are checked when they are
+    /// accepted. The course then continues to its previous aim. This is safe, but the arm stops
+    /// short of the new aim.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -139,7 +141,7 @@ impl Course {
         }
     }
 
-    /// Stops on the way to its target.
+    /// Stops the course on the way to its target.
     fn halt(&mut self) -> Result<(), PlanError> {
         match self {
             Self::Joints(generator) => generator.halt(),
@@ -148,8 +150,8 @@ impl Course {
         }
     }
 
-    /// Returns the time from `now` until the target is met, or until rest without a target, `[s]`;
-    /// zero if neither is planned.
+    /// Returns the time from `now` until the target is met, `[s]`. Without a target, returns the
+    /// time until rest. Returns zero if neither is planned.
     pub(super) fn remaining(&self, now: u64) -> f64 {
         match self {
             Self::Joints(generator) => generator.remaining(),
@@ -159,8 +161,8 @@ impl Course {
         }
     }
 
-    /// Returns the moving pose, and the drift of earlier motions, from which a course of poses
-    /// starts.
+    /// Returns the moving pose from which a course of poses starts, and the drift from earlier
+    /// motions.
     pub(super) fn pose(
         &self,
         model: &Model,
@@ -175,7 +177,7 @@ impl Course {
         followed.unwrap_or_else(|| (end_effector(model, ee, reference), Drift::of(reference.dq)))
     }
 
-    /// Advances by one nominal millisecond, for the answer to the state `now`, `message_id`.
+    /// Advances by one nominal millisecond, for the answer to the state with `message_id` `now`.
     pub(super) fn step(
         &mut self,
         model: &Model,
@@ -239,7 +241,8 @@ impl Course {
     }
 }
 
-/// Returns the positions at which the joints of a moving reference stop, `[rad]`, if it brakes now.
+/// Returns the positions at which the joints of a moving reference would stop if it braked now,
+/// `[rad]`.
 pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget) -> JointVector {
     let robot = model.joint_limits();
     JointVector::from_fn(|i, _| {
@@ -253,10 +256,10 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
     })
 }
 
-/// Returns the limits of one joint's plan. They are the budget's limits, or `robot`'s if these are
-/// narrower, because a backend may allow less than the robot does. A moving joint may exceed them
-/// in three cases: it only has to stop, its motion exceeds them already, or it would stop too late
-/// for the end of its range.
+/// Returns the limits of one joint's plan. They are the limits of the budget, or of `robot` if
+/// these are narrower, because a backend may allow less than the robot. A moving joint may exceed
+/// the budget in three cases: it only has to stop, it already exceeds the budget, or it would stop
+/// too late for the end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,
@@ -280,8 +283,8 @@ pub(super) fn limits_of_joint(
     } else {
         q - robot.lower[i]
     };
-    // Twice the even deceleration to the end of the range: part of the distance passes while the
-    // deceleration is built up.
+    // Twice the constant deceleration that stops at the end of the range, because part of the
+    // distance passes while the deceleration is built up.
     let last_moment = dq * dq > limits.acceleration * room;
     if stop || last_moment || !budget::keeps(&limits, dq, ddq) {
         let deceleration = if last_moment {

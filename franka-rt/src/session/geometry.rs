@@ -1,7 +1,7 @@
-//! Comparison between the model's poses and the poses that the robot reports.
+//! Compares the model's poses with the poses that the robot reports.
 //!
-//! A robot computes its poses with its own lengths and joint frames, and users read these poses.
-//! Goals move the end effector to a pose as the robot reports it.
+//! A robot computes its poses from its own lengths and joint frames, and users read these poses.
+//! Therefore goals move the end effector to a pose as the robot reports it.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::RobotState;
@@ -9,40 +9,40 @@ use nalgebra::Isometry3;
 
 use super::tool::{end_effector_of, rigid};
 
-/// Residual up to which the robot's poses count as equal to the model's, `[m]`. The `f32` states of
-/// protocol 10 cause up to 0.5 µm. Other lengths cause 100 µm and more.
+/// Residual up to which the robot's poses count as equal to the model's poses, `[m]`. The `f32`
+/// states of protocol 10 cause up to 0.5 µm. A difference in lengths causes 100 µm or more.
 pub const RESIDUAL_MAX: f64 = 2e-6;
 
-/// Distance from the end effector at which its rotation is measured, `[m]`: it converts an angle to
+/// Distance from the end effector at which its rotation is measured, `[m]`. It converts an angle to
 /// a distance.
 pub(super) const LEVER: f64 = 0.1;
 
-/// Returns the distance between the pose that `model` computes at the joint positions of `state`,
-/// and its `O_T_EE`, `[m]`. It is the greater of two values: the distance of the positions, and the
-/// largest difference of an element of the rotation matrices times 0.1 m.
+/// Returns the distance between `O_T_EE` in `state` and the pose that `model` computes from its
+/// joint positions, `[m]`. It is the greater of two values: the distance between the positions, and
+/// the largest difference between elements of the rotation matrices, times 0.1 m.
 ///
-/// `None` if the poses cannot be compared: `O_T_EE` or a frame of the tool is not a rigid
-/// transformation, or a joint position is not finite. Also `None` if `O_T_EE` is the identity: the
-/// end effector cannot be there, so the state has no pose.
+/// Returns `None` if the poses cannot be compared, because `O_T_EE` or a frame of the tool is not a
+/// rigid transformation, or because a joint position is not finite. Also returns `None` if `O_T_EE`
+/// is the identity: the end effector cannot be there, so the state contains no pose.
 pub fn residual(model: &Model, state: &RobotState) -> Option<f64> {
     let (models, robots) = poses(model, state)?;
     Some(distance(&models, &robots))
 }
 
-/// Returns the end effector of `state` as the robot reports it: the frame of the model that has the
-/// pose `O_T_EE` at the joint positions of the state. `None` if a frame of the tool is no rigid
-/// transformation.
+/// Returns the end effector of `state` as the robot reports it: the frame of the model whose pose
+/// is `O_T_EE` at the joint positions of the state. Returns `None` if a frame of the tool is not a
+/// rigid transformation.
 pub fn reported_end_effector(model: &Model, state: &RobotState) -> Option<EndEffector> {
     let ee = end_effector_of(state)?;
     let correction = poses(model, state).map(|(models, _)| correction(&models, &state.O_T_EE));
     Some(corrected(&ee, &correction.unwrap_or_default()))
 }
 
-/// Returns the pose of the reported end effector, column-major, relative to the model's end
-/// effector. It is the identity if the two agree, or if they cannot be compared.
+/// Returns the pose of the reported end effector (`reported`, column-major) relative to the model's
+/// end effector. Returns the identity if the two agree or cannot be compared.
 ///
-/// The correction depends on the posture: with errors of the geometry of 1 mm and 3 mrad it changes
-/// by some 0.1 mm over 5 cm.
+/// The correction depends on the posture. With geometry errors of 1 mm and 3 mrad, it changes by
+/// about 0.1 mm over 5 cm.
 pub(super) fn correction(models: &Isometry3<f64>, reported: &[f64; 16]) -> Isometry3<f64> {
     match read(reported) {
         Some(robots) if distance(models, &robots) > RESIDUAL_MAX => models.inverse() * robots,
@@ -50,7 +50,7 @@ pub(super) fn correction(models: &Isometry3<f64>, reported: &[f64; 16]) -> Isome
     }
 }
 
-/// Returns the end effector `ee` moved by a correction, in its own axes.
+/// Returns the end effector `ee`, moved by a correction in its own axes.
 pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEffector {
     EndEffector {
         f_t_ee: ee.f_t_ee * transform::matrix(correction),
@@ -58,7 +58,7 @@ pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEff
     }
 }
 
-/// Returns the model's pose and the robot's.
+/// Returns the model's pose and the robot's pose.
 fn poses(model: &Model, state: &RobotState) -> Option<(Isometry3<f64>, Isometry3<f64>)> {
     let robots = read(&state.O_T_EE)?;
     let q = JointVector::from(state.q);
@@ -74,7 +74,7 @@ fn read(reported: &[f64; 16]) -> Option<Isometry3<f64>> {
     (pose != Isometry3::identity()).then_some(pose)
 }
 
-/// Returns the distance of two poses, `[m]`, as in [`residual`].
+/// Returns the distance between two poses, `[m]`, as in [`residual`].
 pub(super) fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let way = (a.translation.vector - b.translation.vector).norm();
     let [a, b] = [a, b].map(|pose| pose.rotation.to_rotation_matrix().into_inner());
@@ -90,8 +90,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns a state with the vendor's Hand, whose frame has 0.7071 for `sqrt(1/2)`, with the
-    /// pose of the model.
+    /// Returns a state with the model's pose and the vendor's Hand, whose frame contains 0.7071 for
+    /// `sqrt(1/2)`.
     #[expect(clippy::approx_constant, reason = "four digits are reported")]
     fn state(model: &Model, q: JointVector) -> RobotState {
         let mut hand = transform::array(&Isometry3::translation(0.0, 0.0, 0.1034));
@@ -125,7 +125,7 @@ mod tests {
             let right = residual(&recorded, &state).unwrap();
             assert!(right < 0.5 * RESIDUAL_MAX, "{right:e} m");
             let other = residual(&described, &state).unwrap();
-            // A folded forearm almost makes up for the upper arm, but never exactly.
+            // A folded forearm almost compensates the error of the upper arm, but never exactly.
             assert!(other > 5.0 * RESIDUAL_MAX, "{other:e} m");
             let ee = end_effector_of(&state).unwrap();
             assert_eq!(reported_end_effector(&recorded, &state).unwrap(), ee);

@@ -10,16 +10,16 @@ use crate::law::Gains;
 use crate::session::joints::JointGenerator;
 use crate::session::reference::Reference;
 
-/// Cycles over which the spring of the previous goal is released.
+/// Number of cycles over which the spring of the previous goal is released.
 const LET_GO: u32 = 300;
 
-/// Square of the damping in the inverse of the Jacobian. Near a singular posture it limits the
-/// offset of a joint to some fifty times the offset of the end effector.
+/// Square of the damping in the inverse of the Jacobian. Near a singular posture, it limits the
+/// offset of a joint to about fifty times the offset of the end effector.
 const SQUARED_DAMPING: f64 = 1e-4;
 
 impl Gains {
-    /// Returns gains for hand guiding: springs at the end effector as in [`Self::cartesian`] on the
-    /// axes that are not free, and a light damping of the joints. Nothing is compensated.
+    /// Returns gains for hand guiding. On the axes that are not free, the end effector has springs
+    /// as in [`Self::cartesian`]. The joints have light damping, and nothing is compensated.
     pub fn guiding(free: Free) -> Self {
         let preset = Self::cartesian();
         let locked =
@@ -34,7 +34,7 @@ impl Gains {
     }
 }
 
-/// Stops the reference, then lets it follow the arm.
+/// Brakes the reference, and then lets it follow the arm.
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
@@ -53,18 +53,18 @@ enum GuideStage {
 
 #[derive(Debug)]
 struct Floating {
-    /// Pose in which the fixed axes stay.
+    /// Pose at which the fixed axes are held.
     pose: Isometry3<f64>,
-    /// Positions in which the joints stay, to the extent that the end effector allows.
+    /// Positions at which the joints are held, as far as the end effector allows.
     q: JointVector,
-    /// Offset of the reference from the arm at the release, of the joints and of the end effector.
+    /// Offset between reference and arm at the release: of the joints, and of the end effector.
     offset: JointVector,
     offset_at_ee: Twist,
     cycle: u32,
 }
 
 impl Guide {
-    /// Begins by braking over `brake`.
+    /// Creates the guide, which first stops the arm with `brake`.
     pub(super) fn new(free: Free, brake: JointGenerator) -> Self {
         Self {
             free,
@@ -72,7 +72,7 @@ impl Guide {
         }
     }
 
-    /// Frees other axes. The other axes are held where the arm is now.
+    /// Frees these axes instead of the previous ones. The other axes are held where the arm is now.
     pub(super) fn free(&mut self, free: Free) {
         if free != self.free {
             self.free = free;
@@ -126,7 +126,7 @@ impl Floating {
         }
     }
 
-    /// Returns the distance of the reference from the arm, and true if the leash held it.
+    /// Returns the difference between reference and arm, and true if the leash held the reference.
     fn step(&mut self, free: Free, leash: &Leash, arm: &Measured) -> (JointVector, bool) {
         let remaining = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
@@ -139,20 +139,21 @@ impl Floating {
         } else {
             let away = self.q - arm.q;
             let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
-            // As with the leash: pushed further, the elbow stays where it was pushed to.
+            // As with the leash: if the elbow is pushed further, it stays where it was pushed to.
             self.q = arm.q + held;
             leashed |= held != away;
             held
         };
         let away = along + elbow - inverse.solve(arm, &(arm.jacobian * elbow));
         // Near a singular posture, a small displacement of the end effector corresponds to a large
-        // one of the joints.
+        // displacement of the joints.
         let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
         (held, leashed || held != away)
     }
 
-    /// Returns the leash, extended by `remaining` of the reference's initial excess ahead of the
-    /// arm. The previous goal may have had another leash, or none at the end effector.
+    /// Returns the leash, made at least as long as `remaining` times the offset between reference
+    /// and arm at the release. The previous goal may have had another leash, or no leash at the end
+    /// effector.
     fn slack(&self, leash: &Leash, remaining: f64) -> Leash {
         let at_ee = |part| remaining * self.offset_at_ee.fixed_rows::<3>(part).norm();
         Leash {
@@ -162,8 +163,8 @@ impl Floating {
         }
     }
 
-    /// Returns the distance at the end effector, and true if the leash held it. Fixed axes are held
-    /// within the leash.
+    /// Returns the difference at the end effector, and true if the leash held it. Fixed axes are
+    /// held within the leash.
     fn at_end_effector(
         &mut self,
         free: Free,
@@ -198,8 +199,8 @@ impl Floating {
     }
 }
 
-/// Damped inverse of the Jacobian: the smallest change of the joints for a change of the end
-/// effector.
+/// Damped inverse of the Jacobian. It returns the smallest change of the joints for a change of the
+/// end effector.
 struct Inverse(Option<nalgebra::Cholesky<f64, nalgebra::U6>>);
 
 impl Inverse {
@@ -208,7 +209,7 @@ impl Inverse {
         Self((square + Matrix6::identity() * SQUARED_DAMPING).cholesky())
     }
 
-    /// Returns zero for non-finite numbers, which have no inverse.
+    /// Returns zero if a number is not finite, because then there is no inverse.
     fn solve(&self, arm: &Measured, change: &Twist) -> JointVector {
         let solved = self.0.as_ref().map(|square| square.solve(change));
         solved.map_or_else(JointVector::zeros, |solved| arm.jacobian.tr_mul(&solved))

@@ -1,5 +1,5 @@
-//! From a moving pose to moving joints: one step of differential inverse kinematics, inside the
-//! joints' bounds.
+//! Converts moving poses to moving joints, with one step of differential inverse kinematics within
+//! the joints' bounds.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side};
 use franka_model::{EndEffector, Frame, Jacobian, JointVector, Model, Twist, rotation};
@@ -12,16 +12,16 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, rigid};
 use crate::shaping::CYCLE;
 
-/// Rate at which an error between the joints and the pose that they follow decays, `[1/s]`. Only
-/// rounding and active bounds cause such errors. A faster rate would turn them into jerks.
+/// Rate at which an error between the joints and their pose decays, `[1/s]`. Only rounding and
+/// active bounds cause such errors. A faster rate would turn these errors into jerks.
 const FEEDBACK: f64 = 100.0;
 
-/// Posture for the arm's free direction, which a pose does not determine.
+/// Posture for the arm's free direction, which the end effector's pose does not determine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
     q: JointVector,
-    /// True if a goal requests the posture. Otherwise it is only kept while the end effector moves:
-    /// the rate fades with the speed, so that an arm at its target rests.
+    /// True if a goal requests the posture. Otherwise the arm only keeps it while the end effector
+    /// moves: the rate fades with the speed, so that an arm at its target rests.
     asked: bool,
 }
 
@@ -29,21 +29,21 @@ impl Posture {
     /// Rate at which the free direction returns to a kept posture, `[1/s]`.
     const KEPT: f64 = 1.0;
 
-    /// Speed of the end effector above which that rate applies in full, `[m/s]`.
+    /// Speed of the end effector above which the rate [`Self::KEPT`] applies in full, `[m/s]`.
     const SPEED: f64 = 0.1;
 
-    /// Rate at which the free direction approaches a requested posture, near the end, `[1/s]`.
+    /// Rate at which the free direction approaches a requested posture once it is near, `[1/s]`.
     const ASKED: f64 = 4.0;
 
-    /// Greatest share of the joints' budget for the motion to the posture.
+    /// Greatest share of the joints' budget that the motion to the posture may use.
     const SHARE: f64 = 0.5;
 
-    /// Posture at the beginning of a session, `[rad]`.
+    /// Returns the posture that the arm had when the session began, `[rad]`.
     pub(super) fn kept(q: JointVector) -> Self {
         Self { q, asked: false }
     }
 
-    /// Posture requested by a goal, `[rad]`.
+    /// Returns a posture that a goal requests, `[rad]`.
     pub(super) fn asked(q: JointVector) -> Self {
         Self { q, asked: true }
     }
@@ -53,8 +53,8 @@ impl Posture {
         self.asked
     }
 
-    /// Returns the velocity at which joints at `q` move to the posture, `[rad/s]`, once they move
-    /// evenly, while the end effector moves at `speed`, `[m/s]`.
+    /// Returns the velocity at which joints at `q` move to the posture, `[rad/s]`, in steady
+    /// motion. The end effector moves at `speed`, `[m/s]`.
     pub(super) fn velocity(
         &self,
         q: &JointVector,
@@ -82,12 +82,13 @@ impl Posture {
         let longest = joints
             .map(|(free, limits)| free.abs() / (Self::SHARE * limits.velocity))
             .fold(0.0, f64::max);
-        // At full speed far away, at the rate near its end, with a smooth transition.
+        // Full speed far from the posture and proportional to the distance near it, with a smooth
+        // transition.
         free / longest.hypot(1.0 / Self::ASKED)
     }
 }
 
-/// Share of a posture below which it does not count as requested.
+/// Weight of a request below which the posture does not count as requested.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// Returns the part of a joint motion that does not move the end effector.
@@ -104,28 +105,28 @@ fn in_null_space(motion: &JointVector, jacobian: &Jacobian) -> JointVector {
 /// Square of the damping in the inverse of the Jacobian, for singular postures.
 const SQUARED_DAMPING: f64 = 1e-6;
 
-/// Time in which a motion of the arm's free direction fades after a pose takes over from joints,
-/// `[s]`.
+/// Time in which a motion of the arm's free direction fades after poses have taken over from
+/// joints, `[s]`.
 const FADE: f64 = 0.3;
 
 /// Share of the difference by which each stage of [`Drift::ease`] changes in a cycle. After a
-/// change of posture, the elbow begins to move within some 100 ms.
+/// change of posture, the elbow begins to move within about 100 ms.
 const EASE: f64 = 0.02;
 
 /// Motion of the arm's free direction, which the pose does not determine. It has two parts: the
-/// rest of a joint motion that a pose has taken over, which fades, and the motion to the posture.
-/// An immediate change of either would be a step.
+/// fading rest of a joint motion that a pose has taken over, and the motion to the posture. If one
+/// of them changed at once, the joints' velocity would step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     velocity: JointVector,
     cycle: u32,
-    /// Distance to the posture, `[rad]`, and weight of a request, after two low-passes.
+    /// Distance to the posture, `[rad]`, and weight of its request, each after two low-passes.
     away: [JointVector; 2],
     asked: [f64; 2],
 }
 
 impl Drift {
-    /// Returns the drift of joints that move at `velocity`, `[rad/s]`.
+    /// Returns the drift when joints that move at `velocity`, `[rad/s]`, begin to follow a pose.
     pub(super) fn of(velocity: JointVector) -> Self {
         Self {
             velocity,
@@ -135,20 +136,21 @@ impl Drift {
         }
     }
 
-    /// True before its first cycle, in which the joints begin to follow a pose.
+    /// True before the first cycle in which the joints follow a pose.
     fn begins(&self) -> bool {
         self.cycle == 0
     }
 
-    /// Returns the share that remains in the next cycle: from 1 to 0, with zero slope at both ends.
+    /// Returns the share that remains in the next cycle. It falls from 1 to 0, with zero slope at
+    /// both ends.
     fn share(&mut self) -> f64 {
         self.cycle = self.cycle.saturating_add(1);
         let gone = (f64::from(self.cycle) * CYCLE / FADE).min(1.0);
         1.0 - gone * gone * (3.0 - 2.0 * gone)
     }
 
-    /// Returns the distance from `q` to `posture`, and the weight of its request, in the next
-    /// cycle.
+    /// Returns the distance from `q` to `posture`, and the weight of the posture's request, in the
+    /// next cycle.
     fn ease(&mut self, posture: &Posture, q: &JointVector) -> (JointVector, f64) {
         let [away, smooth] = &mut self.away;
         *away += (posture.q - q - *away) * EASE;
@@ -159,8 +161,8 @@ impl Drift {
         (*smooth, *weight)
     }
 
-    /// Returns the velocity of the joints in the next cycle, `[rad/s]`, in the direction that the
-    /// pose leaves free.
+    /// Returns the velocity of the joints in the next cycle, `[rad/s]`, along the direction that
+    /// the pose leaves free.
     fn step(
         &mut self,
         posture: &Posture,
@@ -182,8 +184,8 @@ impl Drift {
     }
 }
 
-/// Moves the joints of `reference` towards `pose` for one cycle. Also returns the bounds that held
-/// them back.
+/// Moves the joints of `reference` toward `pose` for one cycle. Also returns the bounds that
+/// limited them.
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
@@ -197,8 +199,8 @@ pub(super) fn follow(
     let now = rigid(&now);
     let offset = pose.pose.translation.vector - now.translation.vector;
     let turn = rotation::error(&pose.pose.rotation, &now.rotation);
-    // The motion of the pose in this cycle is not an error. Counted as one, it would make the
-    // velocity step where following begins.
+    // The motion of the pose in this cycle must not count as an error. Otherwise the velocity would
+    // step when the joints begin to follow.
     let error =
         Twist::new(offset.x, offset.y, offset.z, turn.x, turn.y, turn.z) - pose.twist * CYCLE;
     let twist = pose.twist + error * FEEDBACK;
@@ -239,9 +241,8 @@ pub(super) fn follow(
         None => solution.velocity,
     };
     let next = Reference {
-        // Uses the same rule as a plan of the joints, which may have come before. The robot
-        // differences positions, so it would see a change of rule as half of the acceleration in
-        // one cycle.
+        // Uses the same rule as a plan of the joints, which may precede. The robot differentiates
+        // positions, so it would see another rule as half of the acceleration in one cycle.
         q: reference.q + (reference.dq + dq) * (0.5 * CYCLE),
         dq,
         ddq: (dq - reference.dq) / CYCLE,
@@ -297,8 +298,8 @@ mod tests {
         }
     }
 
-    /// The greatest jerk of a joint in units of its limit, from the differences of positions, as
-    /// the robot computes it.
+    /// Returns the greatest jerk of a joint, divided by its limit. It is computed from differences
+    /// of positions, as in the robot.
     fn worst_jerk(passed: &[JointVector], model: &Model) -> f64 {
         let jerk = |q: &[JointVector]| (q[3] - (q[2] - q[1]) * 3.0 - q[0]) / CYCLE.powi(3);
         let shares = |q: &[JointVector]| jerk(q).component_div(&model.joint_limits().jerk);
@@ -333,7 +334,7 @@ mod tests {
                 }
                 let mut drift = Drift::of(reference.dq);
                 for _ in 0..4 {
-                    // More than the joints can do, in either direction.
+                    // More than the joints can do, in both directions.
                     let hurried = Reference {
                         dq: dq * (20.0 * on),
                         ..reference

@@ -1,5 +1,5 @@
-//! The part of a session in a team: when goals may begin, when the arm must brake because of
-//! another member, and when the other members must brake because of this arm.
+//! The part of a session in its team. It decides when goals may begin, when the arm must brake
+//! because of another member, and when the other members must brake because of this arm.
 
 use core::time::Duration;
 
@@ -7,7 +7,7 @@ use super::running::RunningSession;
 use super::{Goal, GoalId, OnArrival, SessionEvent, Settlement, Target};
 use crate::team::{Carrying, Member, MemberFault, Passage, Round, TeamStop};
 
-/// Knowledge of a session about its team.
+/// The session's data about its team.
 #[derive(Debug)]
 pub(super) struct Membership {
     member: Member,
@@ -15,9 +15,9 @@ pub(super) struct Membership {
     waiting: Option<(Round, Goal)>,
     /// The goal of a joint motion that has begun.
     pursued: Option<Pursued>,
-    /// True if the session has reported a fault to the team since its newest state.
+    /// True if the session has reported a fault to the team since the newest state.
     has_failed: bool,
-    /// Progress with an object that the team carries, if any.
+    /// Progress with an object that the team carries, if there is one.
     carrying: Option<Carrying>,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Membership {
 struct Pursued {
     round: Round,
     goal: GoalId,
-    /// Target at which the arm is held after the goal ended as asked.
+    /// Target at which the arm is held after its goal ended as requested.
     held: Option<Target>,
 }
 
@@ -57,9 +57,9 @@ impl Membership {
         }
     }
 
-    /// Returns the goal to begin in the answer to the state `now`, `message_id`, and the stop of
-    /// the team. The stop is returned in the cycle that sees it, or that begins a goal of a stopped
-    /// round.
+    /// Returns the goal to begin while the state with `message_id` `now` is answered, and the
+    /// team's stop. The stop is returned in the cycle that sees it, or that begins a goal of a
+    /// stopped round.
     pub(super) fn admit(
         &mut self,
         newer: Option<Goal>,
@@ -72,8 +72,8 @@ impl Membership {
             match self.member.pass(round, now) {
                 Passage::Waiting => return (taken, stop),
                 Passage::Open => {
-                    // The stop is from an older round. A stop of the team would have stopped this
-                    // round.
+                    // The stop belongs to an older round. A stop of the team now would have stopped
+                    // this round.
                     stop = None;
                     self.pursued = Some(Pursued {
                         round,
@@ -82,7 +82,7 @@ impl Membership {
                     });
                 }
                 Passage::Stopped(reason) => {
-                    // The arm no longer pursues its goal of an older round either.
+                    // The arm also no longer pursues its goal of an older round.
                     self.pursued = None;
                     stop = Some(reason);
                 }
@@ -93,7 +93,8 @@ impl Membership {
         (taken, stop)
     }
 
-    /// Records a goal that was read. Returns true if it waits for the other members.
+    /// Records a goal that was read from the slot. Returns true if the goal waits for the other
+    /// members.
     fn keeps(&mut self, goal: &Goal) -> bool {
         // A goal of a round may also hold the arm.
         let comes_to_rest = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
@@ -108,13 +109,13 @@ impl Membership {
             if pursued.goal == goal.id && !taken_back {
                 return false;
             }
-            // The goal was tuned while it is held, by now under the session's name.
+            // The goal was tuned while it is held, and has the session's id by now.
             let stays = pursued.held == Some(goal.target) && goal.round.is_none();
             if stays && !taken_back {
                 pursued.goal = goal.id;
                 return false;
             }
-            // The member pursues the goal until all goals of the next round are there.
+            // The member pursues its goal until all goals of the next round have arrived.
             let waits = goal.round.is_some_and(|next| next != pursued.round);
             if !waits {
                 let Pursued { round, held, .. } = *pursued;
@@ -155,8 +156,8 @@ impl Membership {
         }
     }
 
-    /// Records the end of a goal at this target. A goal that ended as asked stays part of its
-    /// round, also after tuning: if it is given up later, the other members brake.
+    /// Records the end of a goal at this target. A goal that ended as requested stays part of its
+    /// round, even if it is tuned. If it is given up later, the other members brake.
     pub(super) fn settle(&mut self, event: &SessionEvent, target: Target) {
         let (SessionEvent::Settled { settlement, .. }, Some(pursued)) = (event, &mut self.pursued)
         else {
@@ -177,7 +178,7 @@ impl Membership {
         self.member.give_up(round, fault);
     }
 
-    /// Stops the team for a fault outside the goals, at most once until the next state.
+    /// Stops the team for a fault outside the goals, at most once for each state.
     pub(super) fn fail(&mut self, fault: MemberFault) {
         if !self.has_failed {
             self.has_failed = true;

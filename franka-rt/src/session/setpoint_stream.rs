@@ -1,4 +1,4 @@
-//! The stream of setpoints to the robot's own controller, and its continuation after lost commands.
+//! The stream of setpoints to the robot's own controller, and how it continues after lost commands.
 
 mod distance;
 #[cfg(test)]
@@ -19,14 +19,14 @@ use crate::session::rigid;
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY};
 use distance::{apart, differs, is_off, joint_drift, pose_drift, unchanged};
 
-/// Share of the limiter's result that is kept when joints are held back, because the limiter works
+/// Share of the limiter's result that is used when joints are held back, because the limiter works
 /// along a straight line.
 const EASE: f64 = 0.95;
 
-/// Number of times that joints are held back anew in a cycle.
+/// Maximum number of times that joints are held back further in one cycle.
 const EASINGS: usize = 3;
 
-/// Share of a drift that velocities remove per second, `[1/s]`.
+/// Rate at which velocities remove a drift, `[1/s]`.
 const RETURN: f64 = 10.0;
 
 /// Streams setpoints to the robot's controller.
@@ -35,20 +35,21 @@ pub(super) struct SetpointStream {
     controller: Controller,
     setpoints: Setpoints,
     shaper: Shaper,
-    /// The setpoint of the last reference; `None` before the first.
+    /// Setpoint of the last reference; `None` before the first setpoint.
     last: Option<MotionCommand>,
-    /// Start of the velocities: joint positions of the last reference, or the robot's own.
+    /// Joint positions from which velocities start: the last reference's, or the robot's own.
     from: JointVector,
-    /// Drift that velocities must remove.
+    /// Drift that the velocities must remove.
     drift: Drift,
 }
 
-/// Distance of the robot's integrated position from the reference, in the relevant coordinates.
+/// Distance between the position that the robot has integrated and the reference, in the
+/// coordinates of the setpoints.
 #[derive(Clone, Copy, Debug)]
 enum Drift {
     /// Drift of the joints, `[rad]`.
     Joints(JointVector),
-    /// Drift of the pose, base axes, `[m, rad]`.
+    /// Drift of the pose, in base axes, `[m, rad]`.
     Pose(Twist),
     /// No drift: the robot is at the reference, or the setpoints are not velocities.
     None,
@@ -86,12 +87,12 @@ impl SetpointStream {
     }
 
     /// Returns the robot's own commanded pose relative to the pose of `hand` at the joint positions
-    /// `q`, which came from the robot. Poses and twists continue from it with an end effector moved
-    /// by this correction. `None` for setpoints of joints, and if the pose is not a rigid
-    /// transformation.
+    /// `q`, which came from the robot. Poses and twists continue from the commanded pose, because
+    /// the end effector is moved by this correction. Returns `None` for joint setpoints, and if the
+    /// pose is not a rigid transformation.
     ///
-    /// The correction applies until the reference is taken from the robot again: a correction that
-    /// followed the robot would hide a drift.
+    /// The correction does not change until the reference is taken from the robot again. If it
+    /// followed the robot, it would hide a drift.
     pub(super) fn correction(
         &self,
         model: &Model,
@@ -103,12 +104,12 @@ impl SetpointStream {
         commanded.map(|commanded| pose_of(model, hand, q).inverse() * commanded)
     }
 
-    /// Returns the robot's setpoint, if it differs from the setpoint of `reference`, the last one
-    /// sent. Cartesian setpoints are compared as commanded, and the result has the robot's own
-    /// joints.
+    /// Returns the robot's setpoint if it differs from the last setpoint sent, which is the
+    /// setpoint of `reference`. Cartesian setpoints are compared as poses or twists, and the result
+    /// contains the robot's own joints.
     ///
-    /// The robot's integrated position may differ slightly; the next velocities remove the
-    /// difference.
+    /// The position that the robot has integrated may differ slightly; the next velocities remove
+    /// this difference.
     pub(super) fn echo(
         &mut self,
         model: &Model,
@@ -137,8 +138,8 @@ impl SetpointStream {
         if differs {
             (self.from, self.drift) = (q, Drift::None);
         }
-        // The robot's velocity is the mean of its last cycle, the reference's is the velocity at
-        // the end of the cycle.
+        // The robot's velocity is the mean over its last cycle. The reference's velocity is the
+        // velocity at the end of the cycle.
         differs.then(|| Reference {
             q,
             dq: dq + ddq * (0.5 * CYCLE),
@@ -146,10 +147,10 @@ impl SetpointStream {
         })
     }
 
-    /// Returns the command for `reference`, and true if the backstop changed it. If a command
-    /// cannot be shaped, for example from a non-finite reference, returns the command that holds
-    /// the arm. The `last` velocity of a motion is zero, because it is repeated until the robot has
-    /// ended the motion.
+    /// Returns the command for `reference`, and true if the backstop changed it. If no command can
+    /// be computed, for example because the reference is not finite, returns the command that holds
+    /// the arm. For the `last` command of a motion, velocities are zero, because the robot repeats
+    /// that command until it has ended the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,
@@ -194,7 +195,7 @@ impl SetpointStream {
         (command, changed)
     }
 
-    /// Returns the setpoint for the joint positions `q`; velocities start at the pose `from`.
+    /// Returns the setpoint for the joint positions `q`. Velocities lead from the pose `from`.
     fn setpoint(
         &self,
         model: &Model,
@@ -232,12 +233,13 @@ impl SetpointStream {
     }
 }
 
-/// Returns the setpoint of `reference` within the limits of pose and elbow, and true if that
-/// required a change.
+/// Returns the setpoint of `reference`, reduced to the limits of pose and elbow. Also returns true
+/// if it was reduced.
 ///
-/// If the limiter changed a pose, the robot would find other joints, with no limits applied. The
-/// joints are held back instead. They move towards the place that they reach from the last
-/// reference `from` without a jerk, by the share by which the limiter held back their pose.
+/// If the limiter changed a pose, the robot would find other joint positions for it, to which no
+/// limits were applied. Therefore the joints are held back instead. From the place that they reach
+/// without jerk from the last reference `from`, they move by the same share of the way that the
+/// limiter allowed to their pose.
 fn eased(
     wish: impl Fn(&JointVector) -> MotionCommand,
     shape: impl Fn(&MotionCommand) -> MotionCommand,
@@ -271,12 +273,12 @@ fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
 }
 
-/// Returns the robot's own commanded pose; `None` if it is not a rigid transformation.
+/// Returns the robot's own commanded pose, or `None` if it is not a rigid transformation.
 fn commanded_pose(state: &RobotState) -> Option<Isometry3<f64>> {
     transform::isometry_from_array(state.commanded_pose())
 }
 
-/// Returns displacement and rotation vector from one pose to another, base axes, `[m, rad]`.
+/// Returns displacement and rotation vector from one pose to another, in base axes, `[m, rad]`.
 fn twist(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     let way = to.translation.vector - from.translation.vector;
     let turn = rotation::error(&to.rotation, &from.rotation);

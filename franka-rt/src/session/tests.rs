@@ -1,4 +1,4 @@
-//! A session between a state and its answer, and before the next state.
+//! A session before the next state, and between a state and its answer.
 
 mod product;
 
@@ -9,7 +9,8 @@ use franka_model::{JointVector, READY, transform};
 use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
 
-/// Returns the size of a sample: `thorough` with `FRANKA_THOROUGH=1`, as in the nightly run.
+/// Returns the size of a sample: `thorough` with `FRANKA_THOROUGH=1`, as in the nightly run, and
+/// `otherwise` without it.
 pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
     match std::env::var("FRANKA_THOROUGH") {
         Ok(value) if value == "1" => thorough,
@@ -43,7 +44,7 @@ impl Arm {
         }
     }
 
-    /// Sets a goal that turns joint 1 from the ready posture, `[rad]`.
+    /// Sets a goal that turns joint 1 by `by` from the ready posture, `[rad]`.
     fn turn(&mut self, id: u64, by: f64) {
         let mut q: [f64; 7] = READY.into();
         q[0] += by;
@@ -62,7 +63,7 @@ impl Arm {
         step
     }
 
-    /// Returns the end of the next goal.
+    /// Returns how the next goal ends.
     fn settles(&mut self, gate: Gate) -> (GoalId, Settlement) {
         for _ in 0..10_000 {
             self.session.prepare();
@@ -105,7 +106,7 @@ fn an_answer_that_is_not_prepared_is_computed_all_the_same() {
     assert!(arm.state.dq[0] > 0.0);
 }
 
-/// A reference that lagged by a cycle would pull the hand back.
+/// A reference that lagged by one cycle would pull the hand back.
 #[test]
 fn a_guided_arm_is_answered_from_where_it_is() {
     let mut arm = Arm::new();
@@ -145,7 +146,7 @@ fn goal_at_a_broken_start_is_not_taken_for_the_waiting_one() {
     }
 }
 
-/// Returns a goal for a turn of joint 1 that reacts to 5 N along z, or after a number of
+/// Returns a goal for a turn of joint 1. It reacts to 5 N along z, or after a number of
 /// milliseconds.
 fn watched(by: f64, milliseconds: u64) -> Goal {
     let mut q: [f64; 7] = READY.into();
@@ -197,7 +198,7 @@ fn goal_does_not_react_before_its_common_start() {
         if let Some(SessionEvent::Settled { reacted, .. }) = arm.event {
             let reacted = reacted.expect("a reaction");
             assert_eq!(reacted.after, Duration::from_millis(100));
-            // The first state of the goal is the second state that finds the gate open.
+            // The second state that finds the gate open is the first state of the goal.
             assert_eq!(reacted.time - opens, 102);
             return;
         }
@@ -205,7 +206,7 @@ fn goal_does_not_react_before_its_common_start() {
     panic!("no reaction");
 }
 
-/// Uses a budget that goals may not have, in a session that does not check the budget.
+/// Uses a budget that goals may not have. The session does not check the budget.
 #[test]
 fn a_time_too_long_for_a_duration_does_not_panic() {
     let mut arm = Arm::new();

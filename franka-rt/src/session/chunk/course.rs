@@ -1,4 +1,4 @@
-//! The course of a reference that follows chunks: how the reference advances in each cycle.
+//! The course of a reference that follows chunks: how it advances in each cycle.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, Model, rotation};
@@ -20,12 +20,12 @@ use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{Budget, GoalId, Target, approach, rigid};
 
-/// Follows the chunk in force, within a budget.
+/// Follows the current chunk within a budget.
 #[derive(Debug)]
 pub(in crate::session) struct ChunkCourse {
     goal: GoalId,
     budget: Budget,
-    /// Distance of the reference behind the chunk, in units of the permitted distance.
+    /// Distance of the reference behind the chunk, divided by the permitted distance.
     lag: f64,
     play: Play,
 }
@@ -40,26 +40,26 @@ enum Play {
         player: Player<PoseState>,
         state: PoseState,
         drift: Drift,
-        /// For a path, which was checked with this posture: joint positions at the start of the
-        /// path.
+        /// Posture with which a path was checked: the joint positions at its start. `None` for
+        /// other chunks.
         posture: Option<Posture>,
         translation: AxisLimits,
         rotation: AxisLimits,
     },
 }
 
-/// Situation at the moment when the session begins to follow a chunk.
+/// Situation when the session begins to follow a chunk.
 #[derive(Debug)]
 pub(in crate::session) struct ChunkStart<'a> {
     /// Reference in the previous answer.
     pub(in crate::session) reference: &'a Reference,
-    /// Pose that the reference follows, or the pose of its end effector.
+    /// Pose that the reference follows, or otherwise the pose of its end effector.
     pub(in crate::session) pose: PoseState,
-    /// Remainder of a motion of the joints.
+    /// Rest of a previous motion of the joints.
     pub(in crate::session) drift: Drift,
     /// The previous chunk.
     pub(in crate::session) before: Option<&'a ChunkCourse>,
-    /// Time of the state to answer, `message_id`.
+    /// `message_id` of the state that is answered.
     pub(in crate::session) now: u64,
 }
 
@@ -102,7 +102,7 @@ impl ChunkCourse {
                 Play::Poses {
                     player: Player::new(curve, asked, (&pose, wanted), now),
                     state: pose,
-                    // The motion to another posture fades.
+                    // The motion to another posture fades out.
                     drift: posture.map_or(drift, |_| Drift::of(reference.dq)),
                     posture,
                     translation: limits.translation,
@@ -118,7 +118,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the wanted joints at the time `now`, if the chunk moves joints.
+    /// Returns the desired joint state at the time `now`, if the chunk moves joints.
     fn joints_at(&self, now: u64) -> Option<Reference> {
         match &self.play {
             Play::Joints { player, .. } => Some(player.at(now)),
@@ -126,7 +126,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the wanted pose at the time `now`, if the chunk moves the end effector.
+    /// Returns the desired pose at the time `now`, if the chunk moves the end effector.
     fn pose_at(&self, now: u64) -> Option<PoseState> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -134,8 +134,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Continues from `reference` within another budget. The chunk keeps its times: a lag from a
-    /// slower budget is caught up later.
+    /// Continues from `reference` within another budget. The times of the chunk do not change, so a
+    /// lag from a slower budget is later caught up.
     pub(in crate::session) fn keep_to(
         &mut self,
         model: &Model,
@@ -160,7 +160,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Stops on a path, or continues.
+    /// Pauses on a path, or resumes.
     pub(in crate::session) fn set_paused(&mut self, paused: bool) {
         match &mut self.play {
             Play::Joints { player, .. } => player.set_paused(paused),
@@ -168,8 +168,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Continues from `reference`, and the `pose` of its end effector, after something else has
-    /// moved them.
+    /// Continues from `reference`, and from the `pose` of its end effector, after something else
+    /// has moved them.
     pub(in crate::session) fn begin_again(
         &mut self,
         model: &Model,
@@ -182,7 +182,7 @@ impl ChunkCourse {
         self.keep_to(model, reference, self.budget);
     }
 
-    /// Advances by one cycle from `reference`, in the answer to the state `now`.
+    /// Advances by one cycle from `reference`, while the state `now` is answered.
     pub(in crate::session) fn step(
         &mut self,
         model: &Model,
@@ -245,8 +245,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the pose that the joint reference follows, if the chunk moves a pose, and the
-    /// remainder of a motion of the joints.
+    /// Returns the pose that the joint reference follows, and the rest of a previous motion of the
+    /// joints. Returns `None` if the chunk moves joints.
     pub(in crate::session) fn pose(&self) -> Option<(PoseState, Drift)> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -254,8 +254,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Moves that pose to `pose` and keeps its velocity. The course catches up the lag that this
-    /// causes.
+    /// Sets that pose to `pose` and keeps its velocity. The course then catches up the resulting
+    /// lag.
     pub(in crate::session) fn reanchor(&mut self, pose: Isometry3<f64>) {
         if let Play::Poses { state, .. } = &mut self.play {
             state.pose = pose;
@@ -286,7 +286,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the chunk to the writer, because the course has ended by `now`.
+    /// Returns the chunk to the writer. The course must have ended by `now`.
     pub(in crate::session) fn end(self, chunks: &mut ChunkReader, now: u64) {
         let fate = if self.is_over(now) {
             Fate::Ended
@@ -301,14 +301,14 @@ impl ChunkCourse {
     }
 }
 
-/// Returns the limits of the end effector: its budget, unless its present motion exceeds the
+/// Returns the limits of the end effector: its budget, or more if its present motion exceeds the
 /// budget.
 fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
 /// Returns the limits of each joint on a path through points of this `extent`. They are the joint's
-/// budget, unless its present motion exceeds the budget. They are gentle enough for the points
+/// budget, or more if its present motion exceeds the budget. They are low enough for the points
 /// nearest to the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
@@ -329,8 +329,8 @@ fn joint_limits(
     })
 }
 
-/// Advances each joint alone. If the motion between points leaves a joint's range, the joint waits
-/// at the end of the range.
+/// Advances each joint separately. If the motion between points leaves a joint's range, the joint
+/// waits at the end of the range.
 fn follow_joints(
     robot: &JointLimits,
     limits: &[AxisLimits; 7],
@@ -358,9 +358,9 @@ fn follow_joints(
     next
 }
 
-/// Advances translation and rotation, each limited by its norm. Angular velocity and acceleration
-/// are in base axes, so that they keep the budget there. The rotation vector of a cycle differs
-/// from them only in the third order.
+/// Advances translation and rotation; a limit applies to the norm of each. Angular velocity and
+/// acceleration are in base axes, so that they stay within the budget there. In one cycle, the
+/// rotation vector differs from them only in the third order.
 fn follow_pose(
     translation: &AxisLimits,
     turning: &AxisLimits,

@@ -1,25 +1,28 @@
 //! The motion through the points of a chunk, twice continuously differentiable.
 //!
-//! Each point gets a velocity and an acceleration from its neighbours. Two points are joined by the
-//! fifth-degree polynomial that meets all six values. Orientations are joined as rotation vectors
-//! in the chart around the earlier of the two, so that no total turn of the end effector leads to a
-//! singularity. The motion rests at its last point.
+//! Each point gets a velocity and an acceleration that are estimated from its neighbours. Between
+//! two points, the motion is the fifth-degree polynomial that meets position, velocity and
+//! acceleration at both. Orientations are interpolated as rotation vectors in the chart around the
+//! earlier point, so that no rotation in total leads to a singularity. The motion rests at its last
+//! point.
 
 use super::curve_state::CurveState;
 
-/// States at increasing times, seconds from the chunk's origin. Never empty.
+/// States at increasing times, in seconds from the chunk's origin. Never empty.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve<M: CurveState> {
     times: Vec<f64>,
     states: Vec<M>,
-    /// Range of the points. Computed when the curve is made, outside the thread, because the cycle
-    /// that begins a chunk has no time to visit all points.
+    /// Range of the points. It is computed together with the curve, outside the thread, because the
+    /// cycle that begins a chunk has no time to visit all points.
     extent: M::Extent,
 }
 
 impl<M: CurveState> Curve<M> {
+    /// Creates the curve through `states` at `times`.
+    ///
     /// # Panics
-    /// Returns `None` if there are no states, or not as many as times.
+    /// Panics if there are no states, or if the number of times differs.
     pub(super) fn new(times: Vec<f64>, mut states: Vec<M>) -> Self {
         assert!(!states.is_empty() && times.len() == states.len());
         let last = states.len() - 1;
@@ -58,8 +61,8 @@ impl<M: CurveState> Curve<M> {
         &self.states
     }
 
-    /// Returns the state at `t`, seconds from the origin. Before the first point's time it is the
-    /// first state, after the last point's time the last.
+    /// Returns the state at `t`, in seconds from the origin. Before the first point it is the first
+    /// state, and after the last point it is the last state.
     pub(super) fn at(&self, t: f64) -> M {
         match self.times.partition_point(|&time| time <= t) {
             0 => *self.first(),

@@ -1,5 +1,5 @@
-//! States along a chunk, of joints or a pose: the transition between two states, and the fading of
-//! a distance between them.
+//! States along a chunk, of joints or of a pose. This file interpolates between two states, and
+//! fades out the difference between two motions.
 
 use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, SVector, Translation3, Vector3};
@@ -10,39 +10,40 @@ use super::value::Points;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 
-/// Greatest distance of the reference behind a path, `[m]`; at that distance the path waits.
+/// Greatest distance of the reference behind a path, `[m]`. At that distance the path waits.
 const LAG_TRANSLATION: f64 = 0.005;
 
-/// Greatest lag of the end effector's rotation, and of each joint, on a path, `[rad]`.
+/// Greatest lag behind a path, `[rad]`, of the end effector's rotation and of each joint.
 const LAG_ROTATION: f64 = 0.01;
 
-/// A state with its first two derivatives, as a point of chunks.
+/// A point of a chunk: a state with its first two derivatives.
 pub(super) trait CurveState: Copy {
-    /// Distance between two states, with derivatives.
+    /// Difference between two states, with its derivatives.
     type Gap: Copy + core::fmt::Debug;
 
-    /// Range of several states.
+    /// Range that several states cover.
     type Extent: Clone + core::fmt::Debug + PartialEq;
 
-    /// Returns the state at `t` between `from` at 0 and `to` at `duration`, seconds.
+    /// Returns the state at the time `t` on the way from `from` at 0 to `to` at `duration`, in
+    /// seconds.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self;
 
-    /// Returns the distance from `base` to this state.
+    /// Returns the difference of this state from `base`.
     fn gap_from(&self, base: &Self) -> Self::Gap;
 
-    /// Returns this state, displaced by the rest of `gap` at `t`, if the gap closes within
-    /// `duration`.
+    /// Returns this state plus the part of `gap` that is left at the time `t`, if the gap closes
+    /// within `duration`.
     fn displaced(&self, gap: &Self::Gap, duration: f64, t: f64) -> Self;
 
-    /// Returns the same place, with the time slowed down to `rate`, which changes by `change`,
-    /// `[1/s]`.
+    /// Returns the same place, with the motion slowed by the factor `rate`, which changes by
+    /// `change`, `[1/s]`.
     fn paced(&self, rate: f64, change: f64) -> Self;
 
-    /// Returns the distance behind `target`, or from its path, in units of the permitted distance
-    /// on a path.
+    /// Returns the distance behind `target`, or away from its path, divided by the distance that is
+    /// permitted on a path.
     fn lag(&self, target: &Self) -> f64;
 
-    /// Returns the distance from `other`, in the same units.
+    /// Returns the distance from `other`, in the same unit.
     fn distance(&self, other: &Self) -> f64;
 
     /// Returns the same place, with the motion of `other`.
@@ -54,12 +55,13 @@ pub(super) trait CurveState: Copy {
     /// Returns the range of `states`.
     fn extent(states: &[Self]) -> Self::Extent;
 
-    /// Returns a curve of such states as the points of a chunk.
+    /// Returns a curve of these states as the points of a chunk.
     fn points(curve: Curve<Self>) -> Points;
 }
 
-/// Returns the length of `gap` to a point that moves at `velocity`, without the part ahead of that
-/// point. If a path waited for a reference ahead of it, it would drive the reference further ahead.
+/// Returns the length of `gap` to a point that moves at `velocity`, ignoring any part by which the
+/// reference is ahead of that point. If a path waited for a reference that is ahead, it would drive
+/// the reference further ahead.
 fn behind<const D: usize>(gap: &SVector<f64, D>, velocity: &SVector<f64, D>) -> f64 {
     let along = gap.dot(velocity);
     let ahead = if along < 0.0 {
@@ -70,7 +72,7 @@ fn behind<const D: usize>(gap: &SVector<f64, D>, velocity: &SVector<f64, D>) -> 
     (gap - velocity * ahead).norm()
 }
 
-/// The least and the greatest position of each joint, `[rad]`.
+/// The lowest and the highest position of each joint, `[rad]`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct JointExtent {
     pub(super) lower: JointVector,
@@ -163,8 +165,8 @@ impl From<PointState<7>> for Reference {
     }
 }
 
-/// Translation and rotation of one pose relative to another. The rotation vector turns the other
-/// pose into this one.
+/// Translation and rotation of one pose relative to another pose. The rotation vector turns the
+/// other pose into this one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseGap {
     translation: PointState<3>,
@@ -285,8 +287,8 @@ impl PoseState {
         }
     }
 
-    /// Returns angular velocity and acceleration, which equal the derivatives of the rotation
-    /// vector in the chart around this orientation.
+    /// Returns angular velocity and angular acceleration. They equal the derivatives of the
+    /// rotation vector in the chart around this orientation.
     pub(super) fn rotation(&self) -> PointState<3> {
         PointState {
             p: Vector3::zeros(),
@@ -295,7 +297,8 @@ impl PoseState {
         }
     }
 
-    /// Returns the state at `turn` in the chart around this orientation, and at `way`.
+    /// Returns the state with the rotation `turn`, in the chart around this orientation, and with
+    /// the translation `way`.
     fn turned(&self, turn: &PointState<3>, way: &PointState<3>) -> Self {
         let omega = rotation::angular_velocity(&turn.p, &turn.v);
         let alpha = rotation::angular_acceleration(&turn.p, &turn.v, &turn.a);
@@ -322,7 +325,7 @@ fn in_chart(state: &PoseState, anchor: &PoseState) -> PointState<3> {
     }
 }
 
-/// Returns the angular velocity and acceleration of `base`, turned by `phi`.
+/// Returns the angular velocity and acceleration of `base`, rotated by `phi`.
 fn carried(base: &PoseState, phi: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let (turn, turning) = (rotation::exp(phi), base.rotation());
     (turn * turning.v, turn * turning.a)
@@ -358,7 +361,7 @@ mod tests {
             && (a.acceleration - b.acceleration).norm() < tolerance
     }
 
-    /// Compares velocity and acceleration with differences of pose and velocity.
+    /// Compares velocity and acceleration with the differences of poses and velocities.
     fn check_derivatives(at: impl Fn(f64) -> PoseState, t: f64) {
         let h = 1e-5;
         let (before, now, after) = (at(t - h), at(t), at(t + h));

@@ -1,22 +1,22 @@
-//! Derivatives of sampled values at a sample, from the samples around it.
+//! Derivatives of sampled values at one sample, computed from the samples around it.
 //!
-//! Weights by B. Fornberg, *Generation of Finite Difference Formulas on Arbitrarily Spaced Grids*,
-//! Math. Comp. 51, 1988.
+//! The weights are from B. Fornberg, *Generation of Finite Difference Formulas on Arbitrarily
+//! Spaced Grids*, Math. Comp. 51, 1988.
 
 use nalgebra::SVector;
 
 /// Maximum number of samples in one derivative.
 const SAMPLES: usize = 5;
 
-/// Greatest ratio of two intervals for which five samples are used. On less even grids a
-/// fourth-degree polynomial oscillates.
+/// Greatest ratio of two intervals for which five samples are used. On less even grids, the
+/// fourth-degree polynomial would oscillate.
 const EVEN: f64 = 3.0;
 
-/// Returns first and second derivative at sample `i` of the values at `times`. `value` returns a
-/// sample in coordinates of the caller's choice.
+/// Returns the first and the second derivative, at sample `i`, of the values at `times`. `value`
+/// returns a sample in coordinates that the caller chooses.
 ///
-/// Uses five samples if there are two on each side at similar distances, otherwise three, or the
-/// slope of two. A single sample has no motion.
+/// Uses five samples if there are two on each side at similar distances. Otherwise uses three
+/// samples, or the slope between two. A single sample has no motion.
 pub(super) fn at<const D: usize>(
     times: &[f64],
     i: usize,
@@ -126,7 +126,7 @@ mod tests {
         let [v, _] = at(&times, 2, |k| {
             SVector::from([[0.0, 0.01, 0.0, 0.01, 0.0][k]])
         });
-        // Between the slopes on either side: -0.02 and 10.
+        // The slopes on the two sides are -0.02 and 10, so the result must be between them.
         assert!((-0.02..=10.0).contains(&v[0]), "{v}");
     }
 }

@@ -18,55 +18,55 @@ pub enum ChunkError {
         /// Maximum number of points, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,
     },
-    /// A number of a point is not finite, or larger than 1e6.
+    /// A number of a point is not finite, or its magnitude is above 1e6.
     #[error("point {point} has the number {got}, expected finite numbers from -1e6 to 1e6")]
     Number {
-        /// The point, from 1.
+        /// Number of the point, from 1.
         point: usize,
-        /// The number.
+        /// The given number.
         got: f64,
     },
-    /// The quaternion of a point is not of length one.
+    /// The quaternion of a point does not have length one.
     #[error("the quaternion of point {point} has the length {length}, expected 1")]
     Rotation {
-        /// The point, from 1.
+        /// Number of the point, from 1.
         point: usize,
-        /// The length.
+        /// Length of the quaternion.
         length: f64,
     },
-    /// The time of a point is earlier than the time of the previous point plus a millisecond.
+    /// A point is due less than a millisecond after the previous point.
     #[error(
         "point {point} is due at {time:?}, expected at least 1 ms after the previous point, which \
          is due at {before:?}"
     )]
     TooClose {
-        /// The point, from 1.
+        /// Number of the point, from 1.
         point: usize,
         /// Time of the point.
         time: Duration,
         /// Time of the previous point.
         before: Duration,
     },
-    /// A point lies later than [`Chunk::OFFSET_MAX`](super::Chunk::OFFSET_MAX) after the chunk's
+    /// A point is due later than [`Chunk::OFFSET_MAX`](super::Chunk::OFFSET_MAX) after the chunk's
     /// origin.
     #[error(
         "point {point} is due at {time:?}, expected at most {:?}",
         super::Chunk::OFFSET_MAX
     )]
     TooLate {
-        /// The point, from 1.
+        /// Number of the point, from 1.
         point: usize,
         /// Time of the point.
         time: Duration,
     },
-    /// Between two points the end effector turns so far that the direction of the turn is
+    /// Between two points, the end effector rotates so far that the direction of the rotation is
     /// ambiguous.
     #[error("the orientation turns by {degrees} degrees from point {} to point {point}, expected \
         less than 170 degrees", point - 1)]
     Turn {
-        /// The later point, from 1.
+        /// Number of the later point, from 1.
         point: usize,
-        /// The angle.
+        /// Angle of the rotation.
         degrees: u16,
     },
 }

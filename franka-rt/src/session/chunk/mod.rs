@@ -1,4 +1,4 @@
-//! Chunks: points with times that a policy predicts, and a reference that follows them.
+//! Chunks: points with times, as a policy predicts them, and a reference that follows these points.
 //!
 //! ```text
 //! Chunk -> ChunkWriter -> ring -> ChunkReader -> player -> servo -> reference
@@ -7,14 +7,14 @@
 //!          <- ring of what is done with, to be freed outside
 //! ```
 //!
-//! * `value`, `error`: the chunk and its valid contents; `derivatives`, `curve`, `quintic`,
+//! * `value`, `error`: the chunk, and the check of its contents; `derivatives`, `curve`, `quintic`,
 //!   `curve_state`: the motion through its points, computed outside the thread.
 //! * `ring`: transfer to the thread and back.
-//! * `player`: the wanted state at a time of the robot, and the transition to a new chunk. Lost
+//! * `player`: the desired state at a time of the robot, and the transition to a new chunk. Lost
 //!   states need no special treatment: the time jumps, and the servo closes the distance.
-//! * `path`, `pace`: places without times are timed and checked outside the thread, and then
+//! * `path`, `pace`: places without times. They are timed and checked outside the thread, and then
 //!   followed as a chunk whose time can wait.
-//! * `servo`: a reference that follows the wanted state within the limits. `course`: player and
+//! * `servo`: a reference that follows the desired state within the limits. `course`: player and
 //!   servo together, for joints and for poses.
 
 mod course;

@@ -1,16 +1,16 @@
-//! The pace of a path: a separate time, which stops while the path is paused and waits while the
-//! arm is held back.
+//! The pace of a path. A path has its own time, which stops while the path is paused, and waits
+//! while something holds the arm back.
 
 use franka_otg::{AxisLimits, Generator, Limits, State};
 
 use crate::shaping::CYCLE;
 
-/// Limits for stopping and resuming the time of a path, in parts of the robot's time.
+/// Limits with which the time of a path stops and resumes. The unit of speed is the robot's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace(AxisLimits);
 
 impl Pace {
-    /// Computes the pace for motions with these speeds at most and these limits. Stopping the time
+    /// Computes the pace for motions with these greatest speeds and these limits. Stopping the time
     /// uses half of the limits.
     pub(super) fn of(motions: impl Iterator<Item = (f64, AxisLimits)>) -> Self {
         let gentle = AxisLimits {
@@ -24,30 +24,31 @@ impl Pace {
             acceleration: pace.acceleration.min(0.5 * limits.jerk / speed),
             jerk: 0.0,
         });
-        // The change of the pace reaches its greatest value within a tenth of its permitted time.
+        // The change of the pace reaches its greatest value within a tenth of the time that it may
+        // take.
         let jerk = 10.0 * pace.acceleration * pace.velocity.max(pace.acceleration / pace.velocity);
         Self(AxisLimits { jerk, ..pace })
     }
 
-    /// Returns a generator that leads from a constant pace to others.
+    /// Returns a generator that leads from the constant pace `pace` to other paces.
     fn at(self, pace: f64) -> Option<Generator<1>> {
         let limits = Limits::per_axis([self.0]).ok()?;
         Generator::towards(State::at_rest([pace]), limits, Some(&[pace])).ok()
     }
 }
 
-/// Shortest time for stopping the time of a path, `[s]`.
+/// Shortest time in which the time of a path stops, `[s]`.
 const STOP_MIN: f64 = 0.05;
 
-/// The time of a path.
+/// The current time of a path.
 #[derive(Debug)]
 pub(super) struct PathTime {
-    /// Time, seconds of the path.
+    /// Time along the path, `[s]`.
     pub(super) time: f64,
     pace: Pace,
-    /// Speed of the path's time: 1 at full pace, 0 when paused.
+    /// Speed of the path's time: 1 at full pace, 0 in a pause.
     axis: Generator<1>,
-    /// Remaining share of the pace while the arm lags.
+    /// Factor that slows the path's time while the arm lags.
     share: f64,
 }
 
@@ -62,7 +63,7 @@ impl PathTime {
         })
     }
 
-    /// Stops or resumes the time. A path that has not begun does not begin.
+    /// Stops or resumes the time. If the path has not begun and is paused, it does not begin.
     pub(super) fn set_paused(&mut self, paused: bool) {
         if paused
             && self.time < 0.0
@@ -71,23 +72,23 @@ impl PathTime {
             (self.time, self.axis) = (0.0, axis);
         }
         let wanted = if paused { 0.0 } else { 1.0 };
-        // Both are in the range that was checked with the limits.
+        // Both values are within the range for which the limits were checked.
         let _ = self.axis.set_target(&[wanted]);
     }
 
-    /// Advances by one cycle, for an arm that is behind by `lag` in units of the permitted lag.
+    /// Advances by one cycle, for an arm whose lag is `lag` times the permitted lag.
     pub(super) fn step(&mut self, lag: f64) {
         self.share = (1.0 - (lag - 0.1) / 0.9).clamp(0.0, 1.0);
         self.axis.step();
         self.time += CYCLE * self.rate();
     }
 
-    /// Returns the seconds of the path in one second of the robot.
+    /// Returns how many seconds of the path pass in one second of the robot.
     pub(super) fn rate(&self) -> f64 {
         self.axis.state().position[0].clamp(0.0, 1.0) * self.share
     }
 
-    /// Returns the derivative of [`rate`](Self::rate), `[1/s]`, without the part from the lag.
+    /// Returns the derivative of [`rate`](Self::rate), `[1/s]`, without the influence of the lag.
     pub(super) fn change(&self) -> f64 {
         self.axis.state().velocity[0] * self.share
     }

@@ -1,4 +1,4 @@
-//! Computes the wanted state of the chunk in force at each time of the robot.
+//! Computes the desired state of the current chunk at each time of the robot.
 
 use core::time::Duration;
 
@@ -8,19 +8,19 @@ use super::pace::{Pace, PathTime};
 use super::value::{Chunk, Origin, milliseconds};
 use crate::shaping::CYCLE;
 
-/// Longest time in which the previous motion fades on the way to the first point, `[s]`. Without
-/// this limit the previous motion would continue for half of the time to a distant point.
+/// Longest time in which the previous motion fades out on the way to the first point, `[s]`.
+/// Without this limit, the previous motion would continue for half of the time to a distant point.
 const LET_GO: f64 = 1.0;
 
 /// A chunk that the session follows or followed.
 #[derive(Debug)]
 pub(super) struct Player<M: CurveState> {
     curve: Curve<M>,
-    /// Robot time of the curve's origin, `message_id`.
+    /// `message_id`, the robot's time, at the curve's origin.
     origin: u64,
-    /// Original values of the chunk, for returning it to the writer.
+    /// Original origin, blend and pace of the chunk, to return it to the writer.
     asked: (Origin, Duration, Option<Pace>),
-    /// Time of a path.
+    /// Time along the path, if the chunk is a path.
     own: Option<PathTime>,
     entry: Entry<M>,
 }
@@ -28,11 +28,11 @@ pub(super) struct Player<M: CurveState> {
 /// Transition from the previous motion to the curve, with times as in the curve.
 #[derive(Debug)]
 enum Entry<M: CurveState> {
-    /// The reference follows the curve at once.
+    /// The reference turns to the curve at once.
     Turn,
-    /// The first point is in the future. The arm has been approaching it since `since`.
+    /// The first point is in the future. The arm approaches it since the time `since`.
     Approach { from: M, since: f64 },
-    /// The distance from the curve at `since` fades out in `duration`.
+    /// The distance from the curve at the time `since` fades out within `duration`.
     Blend {
         gap: M::Gap,
         since: f64,
@@ -41,15 +41,16 @@ enum Entry<M: CurveState> {
 }
 
 impl<M: CurveState> Player<M> {
-    /// Begins to follow a chunk through `curve` in the answer to the state `now`. In the previous
-    /// answer the reference was at `reference`, and the previous chunk wanted it at `wanted`.
+    /// Begins to follow a chunk through `curve`, while the state `now` is answered. In the previous
+    /// answer, the reference was at `reference`, and the previous chunk's desired state was
+    /// `wanted`.
     ///
-    /// The motion begins at whichever of these two places is nearer to the chunk. The reference
-    /// catches up its lag behind the previous chunk within its limits, also with the new chunk.
-    /// Reaching a new chunk in time from the lagging reference would require more than the limits
-    /// allow, and each chunk would amplify the oscillation. A chunk that begins at the arm's place
-    /// continues from there. The initial velocity is the reference's, because a chunk may want any
-    /// velocity.
+    /// The motion begins at whichever of these two places is nearer to the chunk. If the reference
+    /// lagged behind the previous chunk, it still catches up that lag within its limits while it
+    /// follows the new chunk. If it had to reach the new chunk in time from the lagging place, it
+    /// would need more than the limits allow, and each chunk would amplify the oscillation. A chunk
+    /// that begins at the arm's place continues from there. The initial velocity is the velocity of
+    /// the reference, because a chunk may demand any velocity.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),
@@ -85,7 +86,7 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Returns the wanted state in the answer to the state `now`.
+    /// Returns the desired state in the answer to the state `now`.
     pub(super) fn at(&self, now: u64) -> M {
         let t = self.time(now);
         let there = match &self.entry {
@@ -108,15 +109,15 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Advances the time of a path by one cycle, for an arm that is behind by `lag`, in units of
-    /// the permitted lag.
+    /// Advances the time of a path by one cycle, for an arm whose lag is `lag` times the permitted
+    /// lag.
     pub(super) fn step(&mut self, lag: f64) {
         if let Some(own) = &mut self.own {
             own.step(lag);
         }
     }
 
-    /// Stops or resumes the time of a path. Points with fixed times do not wait.
+    /// Stops or resumes the time of a path. Chunks with fixed times do not pause.
     pub(super) fn set_paused(&mut self, paused: bool) {
         if let Some(own) = &mut self.own {
             own.set_paused(paused);
@@ -131,7 +132,7 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// True if nothing moves any more after `now`.
+    /// True if the motion has ended by `now`.
     pub(super) fn is_over(&self, now: u64) -> bool {
         let t = self.time(now);
         let entered = match self.entry {
@@ -152,7 +153,7 @@ impl<M: CurveState> Player<M> {
         &self.curve
     }
 
-    /// Returns the original chunk, without the parts that no caller needs any more.
+    /// Returns the original chunk, without the parts that are no longer needed.
     pub(super) fn into_chunk(self) -> Chunk {
         let (origin, blend, pace) = self.asked;
         Chunk {
@@ -164,7 +165,7 @@ impl<M: CurveState> Player<M> {
     }
 }
 
-/// Returns the state between two others, `t` after the beginning.
+/// Returns the state at the time `t` on the way between two other states.
 fn approach<M: CurveState>(from: &M, to: &M, duration: f64, t: f64) -> M {
     if duration <= LET_GO {
         return M::between(from, to, duration, t);
@@ -193,7 +194,7 @@ mod tests {
         }
     }
 
-    /// Returns a line of 1 rad/s with points 40 ms apart, from 40 to 400 ms.
+    /// Returns a line with a speed of 1 rad/s and points every 40 ms, from 40 to 400 ms.
     fn line() -> Chunk {
         let point = |k: u32| (Duration::from_millis(40) * k, [0.04 * f64::from(k); 7]);
         Chunk::joints((1..=10).map(point)).unwrap()
@@ -249,7 +250,7 @@ mod tests {
         };
         assert!(distance(&blended(0.119), &before) < 1e-9);
         assert!(distance(&blended(0.219), &player.curve.at(0.219)) < 1e-9);
-        // In steps of one millisecond nothing jumps: velocities and accelerations match the
+        // From one millisecond to the next nothing jumps: velocities and accelerations match the
         // positions.
         for now in 1121..1300 {
             let (a, b, c) = (player.at(now - 1), player.at(now), player.at(now + 1));

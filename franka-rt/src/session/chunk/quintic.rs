@@ -1,5 +1,5 @@
-//! Fifth-degree polynomials between two states: the lowest degree that meets position, velocity and
-//! acceleration at both ends.
+//! Fifth-degree polynomials between two states. This is the lowest degree that meets position,
+//! velocity and acceleration at both ends.
 
 use nalgebra::SVector;
 
@@ -12,7 +12,7 @@ pub(super) struct PointState<const D: usize> {
 }
 
 impl<const D: usize> PointState<D> {
-    /// Everything zero.
+    /// Returns zero for all values.
     pub(super) fn zero() -> Self {
         Self {
             p: SVector::zeros(),
@@ -31,18 +31,18 @@ impl<const D: usize> PointState<D> {
     }
 }
 
-/// Returns the state at `t` of the motion that is at `from` at 0 and at `to` at `duration`,
-/// seconds.
+/// Returns the state at the time `t` of a motion that is at `from` at 0 and at `to` at `duration`,
+/// in seconds.
 pub(super) fn between<const D: usize>(
     from: &PointState<D>,
     to: &PointState<D>,
     duration: f64,
     t: f64,
 ) -> PointState<D> {
-    // In units of the duration.
+    // The unit of time is the duration.
     let (s, d) = (t / duration, duration);
     let (v, a) = (from.v * d, from.a * (0.5 * d * d));
-    // Difference at the end if the acceleration of the start continues.
+    // Difference at the end if the initial acceleration continues.
     let p1 = to.p - from.p - v - a;
     let v1 = to.v * d - v - a * 2.0;
     let a1 = to.a * (0.5 * d * d) - a;

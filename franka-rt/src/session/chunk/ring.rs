@@ -1,37 +1,38 @@
-//! Two rings that pass chunks into the thread and back, because the thread may neither allocate nor
-//! free the heap memory of their points.
+//! Two rings that pass chunks into the thread and back. Chunks must come back because the thread
+//! may not free the heap memory of their points.
 //!
 //! ```text
 //! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
 //!             <- ring of returns <-              what is done with, and what became of it
 //! ```
 //!
-//! Every chunk that was sent comes back, so the writer knows how many are still with the thread. It
-//! sends no more than the return ring holds, so the thread's end of that ring is never full.
+//! Every chunk that was sent comes back, so the writer knows how many chunks the thread still has.
+//! The writer sends only as many as the return ring holds, so that ring is never full when the
+//! thread returns a chunk.
 
 use super::value::Chunk;
 use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 use crate::shaping::CYCLE;
 
-/// A chunk that waits for its beginning. Another chunk may have superseded it meanwhile.
+/// Start time of a chunk that waits. Another chunk may have superseded that chunk since then.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     goal: GoalId,
-    /// Time at which the chunk should begin, by the robot's clock.
+    /// Time at which the chunk should begin, by the robot's clock, `[ms]`.
     begin: u64,
-    /// Planned waiting time, `[s]`.
+    /// Time for which the chunk was to wait, `[s]`.
     wait: f64,
 }
 
-/// A chunk and the goal that it belongs to.
+/// A chunk, and the goal that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sent {
     pub(super) goal: GoalId,
     pub(super) chunk: Chunk,
 }
 
-/// Fate of a chunk.
+/// What happened to a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fate {
@@ -43,8 +44,8 @@ pub enum Fate {
     Superseded,
     /// All points of the chunk had passed before the session could begin it.
     Late,
-    /// The goal no longer follows a chunk, or a chunk of another goal arrived before the session
-    /// began this one.
+    /// Before the session began this chunk, its goal stopped following chunks, or a chunk of
+    /// another goal arrived.
     Obsolete,
 }
 
@@ -53,13 +54,14 @@ pub enum Fate {
 pub struct Returned {
     /// Goal of the chunk.
     pub goal: GoalId,
-    /// Fate of the chunk.
+    /// What happened to the chunk.
     pub fate: Fate,
     /// The chunk.
     pub chunk: Chunk,
 }
 
-/// The ring has no room for another chunk: the thread has not begun or returned the earlier chunks.
+/// The ring has no room for another chunk, because the thread has neither begun nor returned the
+/// earlier chunks.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "got more chunks at once than the control thread accepts, expected {} at most: send fewer",
@@ -70,7 +72,7 @@ pub struct Full(
     pub Chunk,
 );
 
-/// The end that sends chunks, outside the thread.
+/// The end of the channel that sends chunks, outside the thread.
 #[derive(Debug)]
 pub struct ChunkWriter {
     chunks: Sender<Sent>,
@@ -78,14 +80,15 @@ pub struct ChunkWriter {
     under_way: usize,
 }
 
-/// The end of the channel in the session.
+/// The end of the channel that receives chunks, in the session.
 #[derive(Debug)]
 pub struct ChunkReader {
     chunks: Receiver<Sent>,
     returns: Sender<Returned>,
     /// The newest chunk, until the session begins it.
     newest: Option<Sent>,
-    /// The chunk that was due first, of the chunks that waited since a chunk last began.
+    /// Among the chunks that have waited since a chunk last began, the start time of the chunk that
+    /// was due first.
     due: Option<Waiting>,
 }
 
@@ -110,11 +113,11 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
 impl ChunkWriter {
     /// Sends `chunk` for `goal`. It replaces the previous chunk.
     ///
-    /// Send the first chunk of a goal before its goal is written to the goals' slot. The chunk is
-    /// kept until that goal is in force, or another chunk arrives.
+    /// Send the first chunk of a goal before you write that goal to the slot. The session keeps the
+    /// chunk until that goal becomes the current goal, or another chunk arrives.
     ///
     /// # Errors
-    /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] chunks have not been
+    /// Returns [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] chunks have not been
     /// [collected](Self::collect).
     #[expect(
         clippy::result_large_err,
@@ -145,23 +148,24 @@ impl ChunkWriter {
         Some(returned)
     }
 
-    /// True if the session is gone, so no chunk begins any more.
+    /// True if the session no longer exists, so that no chunk can begin.
     pub fn is_abandoned(&self) -> bool {
         self.chunks.is_abandoned()
     }
 }
 
 impl ChunkReader {
-    /// Returns the newest chunk for `goal`, the goal in force at the robot's time `now`, if the
-    /// chunk is new and may begin. It may begin once its first point is due. If `idle`, it may
-    /// begin at once, because no other chunk runs.
+    /// Returns the newest chunk for `goal`, the current goal at the robot's time `now`, if the
+    /// chunk is new and may begin. It may begin when its first point is due. With `idle`, no other
+    /// chunk runs, and the chunk may begin at once.
     ///
-    /// A chunk that has superseded another one may begin early, once that chunk was due, by at most
-    /// the waiting time of that chunk. Otherwise the arm would never follow a policy whose first
-    /// point is further ahead than its next prediction.
+    /// If the chunk has superseded a waiting chunk, it may begin when that chunk was due. It is
+    /// then early by at most that chunk's waiting time. Without this rule, the arm would never
+    /// follow a policy whose first point is always further ahead than its next prediction.
     ///
-    /// Returns superfluous chunks to the writer. A chunk of another goal is kept, because that goal
-    /// may still come. Names of goals have no order: a goal may be named long before it is written.
+    /// Returns chunks that are no longer needed to the writer. A chunk of another goal is kept,
+    /// because that goal may still arrive. The ids of goals have no order: an id may be created
+    /// long before its goal is written.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
         self.receive();
         let chunk = self.take_newest(goal)?;
@@ -189,8 +193,8 @@ impl ChunkReader {
         None
     }
 
-    /// Returns the chunks that have arrived for `goal` to the writer; that goal begins no chunk any
-    /// more.
+    /// Returns the chunks that have arrived for `goal` to the writer, because that goal will begin
+    /// no more chunks.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         self.due = None;
@@ -199,7 +203,7 @@ impl ChunkReader {
         }
     }
 
-    /// Removes the chunk of `goal` that has not begun, for a session that has ended.
+    /// Removes the chunk of `goal` that has not begun. For sessions that have ended.
     pub(in crate::session) fn take(&mut self, goal: GoalId) -> Option<Chunk> {
         self.receive();
         self.take_newest(goal)
@@ -211,8 +215,8 @@ impl ChunkReader {
     }
 
     fn receive(&mut self) {
-        // There are at most as many chunks as are under way, because the writer cannot send more
-        // without collecting.
+        // At most this many chunks are under way, because the writer cannot send more without
+        // collecting returned chunks.
         for _ in 0..Chunk::UNDER_WAY_MAX {
             let Some(sent) = self.chunks.pop() else { break };
             let goal = sent.goal;
@@ -230,8 +234,8 @@ impl ChunkReader {
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {
-            // The writer sends only as many as fit. If the ring is full anyway, memory is leaked
-            // rather than freed on this thread.
+            // The writer sends only as many chunks as fit. If the ring is full in spite of that,
+            // memory is leaked, because this thread must not free it.
             core::mem::forget(returned);
         }
     }
@@ -286,7 +290,7 @@ mod tests {
     #[test]
     fn a_chunk_that_is_there_before_its_goal_is_kept_for_it() {
         let (mut writer, mut reader) = chunk_ring();
-        // The name of a future goal may be older than the name of the goal in force.
+        // The id of a future goal may be older than the id of the current goal.
         for in_force in [GoalId(4), GoalId(6)] {
             writer.send(GOAL, chunk()).unwrap();
             assert_eq!(reader.poll(in_force, 1, true), None);
@@ -320,7 +324,7 @@ mod tests {
         }
         writer.send(GOAL, chunk().observed_at(110)).unwrap();
         assert!(reader.poll(GOAL, 110, false).is_some());
-        // A chunk that begins much later arrives no earlier than by the waiting time of the first
+        // A chunk that begins much later is early by no more than the waiting time of the first
         // chunk.
         for origin in [120, 3120] {
             writer.send(GOAL, chunk().observed_at(origin)).unwrap();
@@ -329,7 +333,7 @@ mod tests {
         assert_eq!(reader.poll(GOAL, 3120, false), None);
         assert!(reader.poll(GOAL, 3121, false).is_some());
         fates(&mut writer);
-        // An earlier chunk counts. A late one counts no more.
+        // A chunk that is due earlier counts. A late chunk no longer counts.
         for origin in [9000, 3130] {
             writer.send(GOAL, chunk().observed_at(origin)).unwrap();
             assert_eq!(reader.poll(GOAL, 3130, false), None);
@@ -355,7 +359,7 @@ mod tests {
             if writer.send(GOAL, chunk()).is_err() {
                 break;
             }
-            // Superseded chunks wait for the writer: they count.
+            // Superseded chunks that wait for the writer count as under way.
             reader.poll(GoalId(0), 0, false);
         }
         let Full(refused) = writer.send(GOAL, chunk().observed_at(7)).unwrap_err();

@@ -1,4 +1,4 @@
-//! Follows a moving target, and keeps the limits for every motion of the target.
+//! Follows a moving target. Stays within the limits, however the target moves.
 //!
 //! ```text
 //! wanted velocity      = target's velocity + approach(distance)          within the velocity limit
@@ -6,21 +6,21 @@
 //! jerk                 = what makes the acceleration the wanted one      within the jerk limit, and able to stop
 //! ```
 //!
-//! On the target, a target that keeps the limits is followed exactly: all of its motion is fed
-//! forward. Off the target, the distance decays: with even deceleration from afar and exponentially
-//! at the end.
+//! When the reference is at the target and the target moves within the limits, the reference
+//! follows it exactly, because all of its motion is fed forward. Away from the target, the distance
+//! decreases: with constant deceleration at first, and exponentially at the end.
 //!
-//! A generator that plans anew in each cycle for the target of the next cycle cannot do this. When
-//! it is a micrometre off, it cannot reach the target in one millisecond. It passes through the
-//! target's place later, or all axes wait for the slowest one and start again. A plan to a later
-//! point of the chunk would arrive early where the chunk is slow.
+//! A generator that plans anew in each cycle, for the target of the next cycle, cannot do this. If
+//! it is a micrometre away, it cannot reach the target in one millisecond. It passes the target's
+//! place later, or all axes wait for the slowest axis and start again. A plan to a later point of
+//! the chunk would arrive too early where the chunk is slow.
 //!
-//! **Limits.** A state is admissible if acceleration and velocity keep their limits, and still do
-//! while the acceleration is removed as fast as the jerk allows, in whole cycles. Removing the
-//! acceleration leads from an admissible state to another, so that an admissible jerk always
-//! exists. The wanted jerk moves towards that jerk only by the necessary part.
+//! **Limits.** A state is admissible if acceleration and velocity are within their limits, and stay
+//! within them while the acceleration is removed as fast as the jerk allows, in whole cycles.
+//! Removing the acceleration leads from one admissible state to another, so an admissible jerk
+//! always exists. The desired jerk is moved toward that jerk only as far as necessary.
 //!
-//! All limits bind norms, which keeps this true for any number of axes. While the acceleration is
+//! All limits apply to norms, so this holds for any number of axes. While the acceleration is
 //! removed along its line, the velocity moves on a straight line between two admissible velocities.
 
 use franka_otg::AxisLimits;
@@ -32,23 +32,24 @@ use crate::shaping::CYCLE;
 /// Greatest rate at which a missing velocity is compensated, `[1/s]`.
 const RATE_MAX: f64 = 100.0;
 
-/// Share of the quotient of jerk and acceleration that the rate uses: the rate at which the
-/// acceleration can change.
+/// Factor between the ratio of jerk to acceleration, which is the rate at which the acceleration
+/// can change, and the rate that is used.
 const RATE_SHARE: f64 = 0.5;
 
-/// Ratio between the decay times of the distance and of the missing velocity. At 3 nothing
+/// Ratio between the decay times of the distance and of the missing velocity. With 3, nothing
 /// oscillates.
 const SLOWER: f64 = 3.0;
 
-/// Share of the acceleration with which an approach from afar brakes. The rest is for the target's
-/// own acceleration.
+/// Share of the acceleration limit with which an approach from afar brakes. The rest is left for
+/// the target's own acceleration.
 const BRAKING_SHARE: f64 = 0.35;
 
-/// Halvings of the interval between the wanted jerk and the jerk that removes the acceleration.
+/// Number of times that the interval is halved between the desired jerk and the jerk that removes
+/// the acceleration.
 const HALVINGS: usize = 12;
 
-/// Advances by one cycle from `now` towards `target`, the target's state in that cycle. `bound`
-/// maps a velocity to the nearest velocity that the place allows.
+/// Advances by one cycle from `now` toward `target`, the target's state in that cycle. `bound` maps
+/// a velocity to the nearest velocity that is allowed at this place.
 pub(super) fn follow<const D: usize>(
     now: &PointState<D>,
     target: &PointState<D>,
@@ -56,7 +57,7 @@ pub(super) fn follow<const D: usize>(
     bound: impl Fn(SVector<f64, D>) -> SVector<f64, D>,
 ) -> PointState<D> {
     let rate = (RATE_SHARE * limits.jerk / limits.acceleration).min(RATE_MAX);
-    // Compares with the motion without a jerk, so that a reference on the target stays on it.
+    // Compares with the motion without jerk, so that a reference at the target stays there.
     let ahead = now.after(&SVector::zeros(), CYCLE);
     let distance = target.p - ahead.p;
     let (approach, growth) = approach(
@@ -77,9 +78,9 @@ pub(super) fn follow<const D: usize>(
     admissible(now, jerk, limits)
 }
 
-/// Returns the velocity at which the distance to the target is closed, and its derivative while the
-/// distance changes at `change`. The velocity is `rate` times the distance. From afar it is the
-/// velocity from which `braking` can stop.
+/// Returns the velocity with which the distance to the target is closed, and the derivative of that
+/// velocity while the distance changes at `change`. The velocity is `rate` times the distance. Far
+/// from the target, it is the velocity from which `braking` can stop.
 fn approach<const D: usize>(
     distance: &SVector<f64, D>,
     change: &SVector<f64, D>,
@@ -100,14 +101,14 @@ fn approach<const D: usize>(
     )
 }
 
-/// Returns the state after one cycle of `jerk`. If that state is not admissible, the jerk is moved
-/// towards the jerk that removes the acceleration, until the state is admissible.
+/// Returns the state after one cycle of `jerk`. If that state is not admissible, moves the jerk
+/// toward the jerk that removes the acceleration until the state is admissible.
 fn admissible<const D: usize>(
     now: &PointState<D>,
     jerk: SVector<f64, D>,
     limits: &AxisLimits,
 ) -> PointState<D> {
-    // From outside the limits the motion leads back, never further out.
+    // Outside the limits, the motion leads back toward them, never further out.
     let velocity = limits
         .velocity
         .max(now.v.norm())
@@ -140,18 +141,18 @@ fn admissible<const D: usize>(
     now.after(&(back + (jerk - back) * kept), CYCLE)
 }
 
-/// Returns the velocity that remains when the acceleration has been removed.
+/// Returns the velocity that remains once the acceleration has been removed.
 fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D> {
     state.v + state.a * (0.5 * CYCLE * cycles(state, jerk))
 }
 
-/// Returns the number of whole cycles for removing the acceleration.
+/// Returns the number of whole cycles in which the acceleration can be removed.
 fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
-    // A remainder of rounding does not count as another cycle.
+    // A remainder from rounding does not count as another cycle.
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
 
-/// Returns `vector`, shortened to `length` if longer.
+/// Returns `vector`, shortened to `length` if it is longer.
 fn shortened<const D: usize>(vector: SVector<f64, D>, length: f64) -> SVector<f64, D> {
     let norm = vector.norm();
     if norm > length {

@@ -54,7 +54,7 @@ impl Arm {
         Self::new(Budget::of(Model::fr3().joint_limits()))
     }
 
-    /// Answers the state `later` milliseconds after the last one.
+    /// Answers the state that arrives `later` milliseconds after the last state.
     fn cycle(&mut self, later: u64) {
         self.now += later;
         let idle = self
@@ -109,14 +109,14 @@ fn ms(ms: u64) -> Duration {
     Duration::from_millis(ms)
 }
 
-/// A chunk that no program should send: points anywhere, at any distance.
+/// A chunk that no program should send: points anywhere, at any distance from each other.
 #[derive(Clone, Debug)]
 struct Wild {
     /// Milliseconds after the previous point, and seven numbers in -1..1.
     points: Vec<(u64, [f64; 7])>,
     latency: u64,
     blend: u64,
-    /// Cycles until the next chunk, each with the milliseconds since the previous state.
+    /// Cycles until the next chunk. Each contains the milliseconds since the previous state.
     cycles: Vec<u64>,
     size: f64,
 }
@@ -160,7 +160,7 @@ impl Wild {
 
     fn poses(&self, from: &Isometry3<f64>) -> Chunk {
         let pose = |x: &[f64; 7]| {
-            // At most 80 degrees from the start, so that any two poses are less than half a turn
+            // At most 80 degrees from the start, so that two poses are always less than half a turn
             // apart.
             let turn = Vector3::new(x[3], x[4], x[5]) * 0.8;
             Isometry3::from_parts(
@@ -172,7 +172,7 @@ impl Wild {
     }
 }
 
-/// A little more than 1, for a limit with rounding.
+/// Slightly more than 1, to compare with a limit in spite of rounding.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 fn cases(count: u32) -> ProptestConfig {
@@ -235,13 +235,14 @@ proptest! {
     }
 }
 
-/// Joint positions of a policy at the robot's time `now`: all joints on sines of 0.1 rad and 2 s.
+/// Returns the joint positions of a policy at the robot's time `now`. All joints move on sines of
+/// 0.1 rad and 2 s.
 fn sine(now: u64) -> [f64; 7] {
     let phase = core::f64::consts::PI * (now as f64 * 1e-3);
     (READY + JointVector::repeat(0.1 * phase.sin())).into()
 }
 
-/// Prediction of a policy at `observed`: 16 points, 50 ms apart.
+/// Returns the prediction of a policy at `observed`: 16 points, 50 ms apart.
 fn prediction(observed: u64) -> Vec<(Duration, [f64; 7])> {
     let point = |k: u64| (ms(50 * k), sine(observed + 50 * k));
     (0..16).map(point).collect()
@@ -272,8 +273,8 @@ fn late_chunks_at_10_hz_follow_sine_to_0_1_milliradian() {
     assert!(naive > 300.0 * worst, "{worst} against {naive}");
 }
 
-/// Returns the error of the same policy if its points are set one by one as targets, each for 50 ms
-/// from its arrival.
+/// Returns the error of the same policy if each of its points is set as the target for 50 ms,
+/// beginning when the prediction arrives.
 fn naive_error() -> f64 {
     let budget = Budget::of(Model::fr3().joint_limits());
     let limits = Limits::per_axis(budget.joints).unwrap();

@@ -15,42 +15,42 @@ use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
 
-/// Least time between two points: one cycle, minus the rounding of a conversion.
+/// Least time between two points: one cycle, minus the rounding error of a conversion.
 const SPACING_MIN: Duration = Duration::from_nanos(999_999);
 
-/// Largest number of a point, in its unit. It is far above any number of an arm, and small enough
-/// for all computations to stay finite.
+/// Greatest magnitude of a number of a point, in its unit. It is far above any number of an arm,
+/// and small enough for all computations to stay finite.
 const NUMBER_MAX: f64 = 1e6;
 
-/// Largest angle between two points, `[rad]`.
+/// Greatest angle between two points, `[rad]`.
 pub(super) const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
 
-/// Origin of a chunk's times.
+/// Origin from which the times of a chunk count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// The cycle in which the session begins to follow the chunk.
     TakeUp,
-    /// A time of the robot, `message_id`.
+    /// A time by the robot's clock, `message_id`.
     Robot(u64),
 }
 
-/// Points with times, joints or poses, that an arm moves through: the prediction of a policy from
-/// one observation.
+/// A sequence of points with times, through which the arm moves. Each point is a set of joint
+/// positions or a pose. Typically, a policy predicts a chunk from one observation.
 ///
 /// The motion through the points is twice continuously differentiable and rests at the last point.
-/// The arm follows it within the budget of the chunk's goal. Where the points ask for more than the
-/// budget, the arm lags, and catches up within the budget. If a chunk ends faster than the budget
-/// can brake, the arm overshoots by its braking distance. To avoid that, send the next chunk before
-/// the last one ends.
+/// The arm follows it within the budget of the chunk's goal. If the points demand more than the
+/// budget, the arm lags and catches up within the budget. If the arm moves too fast at the end of a
+/// chunk to brake within the budget, it overshoots by its braking distance. To avoid that, send the
+/// next chunk before the present chunk ends.
 ///
-/// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points
-///   whose time has passed when the chunk begins are skipped. The arm enters the motion at the
-///   robot's present time.
-/// - **Receding horizon.** A newer chunk replaces the current chunk as soon as the newer chunk's
-///   first point is due, or at once if none is running. If it has superseded a waiting chunk, it
-///   begins when that chunk was due. It is then early by at most that chunk's waiting time: after a
-///   wait of 40 ms, by up to 40 ms. The new chunk is blended in over [`Chunk::BLEND`]; see
-///   [`blend`](Self::blend) and [`replace`](Self::replace).
+/// - **Latency.** [`observed_at`](Self::observed_at) sets the state that the policy observed. When
+///   the chunk begins, points whose time has passed are skipped, and the arm joins the motion at
+///   the robot's present time.
+/// - **Receding horizon.** A newer chunk replaces the current chunk when the newer chunk's first
+///   point is due. If no chunk is running, it begins at once. If it has superseded a waiting chunk,
+///   it begins when that chunk was due. It is then early by at most that chunk's waiting time. The
+///   new chunk is blended with the present motion over [`Chunk::BLEND`]; see [`blend`](Self::blend)
+///   and [`replace`](Self::replace).
 ///
 /// ```
 /// use core::time::Duration;
@@ -71,14 +71,14 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
-    /// True if the caller gave the velocities of the points, which are then checked before the
-    /// chunk is sent.
+    /// True if the caller supplied the velocities of the points. These velocities are checked
+    /// before the chunk is sent.
     pub(super) with_velocities: bool,
-    /// Pace at which a path waits and pauses; `None` for points with fixed times.
+    /// Pace at which the time of a path stops and resumes; `None` for points with fixed times.
     pub(super) pace: Option<Pace>,
 }
 
-/// Kinds of points.
+/// The points, of one of two kinds.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Points {
     Joints(Curve<Reference>),
@@ -89,22 +89,22 @@ impl Chunk {
     /// Maximum number of points in a chunk: ten seconds of a policy that acts at 100 Hz.
     pub const POINTS_MAX: usize = 1024;
 
-    /// Maximum number of chunks that are in use, or in transit to or from the thread.
+    /// Maximum number of chunks that are in use, or on their way to or from the thread.
     pub const UNDER_WAY_MAX: usize = 8;
 
-    /// Latest time of a point after its chunk's origin, and of that origin after the robot's newest
-    /// state. A later time is probably a mistake of units or clocks.
+    /// Latest time of a point after the chunk's origin. Also the latest time of that origin after
+    /// the robot's newest state. A later time is probably a confusion of units or clocks.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
-    /// Default time over which a chunk is blended with the present motion: as long as one inference
-    /// of a policy at 10 Hz.
+    /// Default time over which a chunk is blended with the present motion. A policy at 10 Hz makes
+    /// one inference in that time.
     pub const BLEND: Duration = Duration::from_millis(100);
 
-    /// Creates a chunk through joint positions, `[rad]`, each at its time after the chunk's origin.
-    /// The velocities are estimated from the neighbours.
+    /// Creates a chunk through joint positions, `[rad]`, each with its time after the chunk's
+    /// origin. The velocities are estimated from the neighbouring points.
     ///
     /// # Errors
-    /// [`ChunkError`] names the first invalid point.
+    /// Returns a [`ChunkError`] that names the first invalid point.
     pub fn joints(
         points: impl IntoIterator<Item = (Duration, [f64; 7])>,
     ) -> Result<Self, ChunkError> {
@@ -123,11 +123,11 @@ impl Chunk {
         ))
     }
 
-    /// Creates a chunk through joint positions with velocities, `[rad/s]`. The arm still rests at
-    /// the last point.
+    /// Creates a chunk through joint positions with velocities, `[rad/s]`. The arm rests at the
+    /// last point, regardless of that point's velocity.
     ///
     /// # Errors
-    /// As for [`joints`](Self::joints).
+    /// Returns the errors of [`joints`](Self::joints).
     pub fn joints_with_velocities(
         points: impl IntoIterator<Item = (Duration, [f64; 7], [f64; 7])>,
     ) -> Result<Self, ChunkError> {
@@ -151,11 +151,13 @@ impl Chunk {
         })
     }
 
-    /// Creates a chunk through poses of the end effector in the base frame, `O_T_EE`, metres, each
-    /// at its time after the chunk's origin. The velocities are estimated from the neighbours.
+    /// Creates a chunk through poses of the end effector in the base frame, `O_T_EE`, in metres,
+    /// each with its time after the chunk's origin. The velocities are estimated from the
+    /// neighbouring points.
     ///
     /// # Errors
-    /// As for [`joints`](Self::joints), and [`ChunkError::Turn`].
+    /// Returns the errors of [`joints`](Self::joints), and [`ChunkError::Turn`] if the end effector
+    /// rotates too far between two points.
     pub fn poses(
         points: impl IntoIterator<Item = (Duration, Isometry3<f64>)>,
     ) -> Result<Self, ChunkError> {
@@ -180,12 +182,12 @@ impl Chunk {
         ))
     }
 
-    /// Creates a chunk through poses with twists of the end effector: velocity of the frame's
-    /// origin, `[m/s]`, and angular velocity, `[rad/s]`, both in base axes. The arm still rests at
-    /// the last point.
+    /// Creates a chunk through poses of the end effector with twists: the velocity of the frame's
+    /// origin, `[m/s]`, and the angular velocity, `[rad/s]`, both in base axes. The arm rests at
+    /// the last point, regardless of that point's twist.
     ///
     /// # Errors
-    /// As for [`poses`](Self::poses).
+    /// Returns the errors of [`poses`](Self::poses).
     pub fn poses_with_twists(
         points: impl IntoIterator<Item = (Duration, Isometry3<f64>, [f64; 6])>,
     ) -> Result<Self, ChunkError> {
@@ -212,42 +214,42 @@ impl Chunk {
         })
     }
 
-    /// Counts the points' times from the robot's state `message_id`, `[ms]`, which the policy saw.
-    /// Without this call they count from the cycle in which the chunk begins.
+    /// Makes the points' times count from the robot's state with this `message_id`, `[ms]`, which
+    /// the policy observed. Without this call, they count from the cycle in which the chunk begins.
     #[must_use]
     pub fn observed_at(mut self, message_id: u64) -> Self {
         self.origin = Origin::Robot(message_id);
         self
     }
 
-    /// Replaces [`Chunk::BLEND`], the time over which the chunk is blended with the present motion.
-    /// The arm first continues with its velocity and acceleration, and its difference to the chunk
-    /// then fades out.
+    /// Sets the time over which the chunk is blended with the present motion, [`Chunk::BLEND`] by
+    /// default. The arm at first continues with its velocity and acceleration; then its difference
+    /// from the chunk fades out.
     ///
-    /// The arm may lag behind another chunk at that instant. If that chunk's reference is nearer to
-    /// the new chunk, the blend begins at that reference. The arm then catches up its lag within
-    /// the budget, not within the blend.
+    /// When the chunk begins, the arm may lag behind the previous chunk. If the previous chunk's
+    /// desired place is nearer to the new chunk than the arm is, the blend begins at that place.
+    /// The arm then catches up its lag within the budget, not within the blend.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
         self.blend = over.min(Self::OFFSET_MAX);
         self
     }
 
-    /// Switches blending off: the arm turns to the chunk as fast as the budget allows. Use this for
-    /// chunks that correct the previous chunk.
+    /// Disables blending: the arm turns to the chunk as fast as the budget allows. Use this for a
+    /// chunk that corrects the previous chunk.
     #[must_use]
     pub fn replace(self) -> Self {
         self.blend(Duration::ZERO)
     }
 
-    /// Returns the time from the robot's state `now`, `message_id`, to the last point; zero if that
-    /// point has passed.
+    /// Returns the time from the robot's state with `message_id` `now` to the last point. Returns
+    /// zero if that point has passed.
     pub fn end_after(&self, now: u64) -> Duration {
         Duration::try_from_secs_f64(self.end() - self.since_origin(now)).unwrap_or(Duration::ZERO)
     }
 
-    /// Returns the time from the last point to the robot's state `now`; zero if the point is not
-    /// due yet.
+    /// Returns the time from the last point to the robot's state `now`. Returns zero if the last
+    /// point is not due yet.
     pub fn late_by(&self, now: u64) -> Duration {
         Duration::try_from_secs_f64(self.since_origin(now) - self.end()).unwrap_or(Duration::ZERO)
     }
@@ -260,13 +262,14 @@ impl Chunk {
         }
     }
 
-    /// Checks the chunk for a robot in `state`: every point of joints, and the last point of poses,
-    /// where the arm will rest. On the way to that point inverse kinematics always keeps the arm
-    /// inside its bounds. The robot must allow the velocities that the caller gave.
+    /// Checks the chunk for a robot in `state`. For joints, every point is checked. For poses, only
+    /// the last point is checked, where the arm will rest; before that, inverse kinematics keeps
+    /// the arm within its bounds. Velocities that the caller supplied must be within the robot's
+    /// limits.
     ///
     /// # Errors
-    /// [`GoalError`] of the first point that cannot be reached, or that the arm would pass too
-    /// fast.
+    /// Returns the [`GoalError`] of the first point that cannot be reached, or that the arm would
+    /// pass too fast.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         if self.with_velocities {
             self.check_velocities(model)?;
@@ -293,7 +296,7 @@ impl Chunk {
         }
     }
 
-    /// Returns the `message_id` of the state that the policy saw, if it is named.
+    /// Returns the `message_id` of the state that the policy observed, if it was set.
     pub(crate) fn observation(&self) -> Option<u64> {
         match self.origin {
             Origin::TakeUp => None,
@@ -301,8 +304,8 @@ impl Chunk {
         }
     }
 
-    /// Returns the seconds from the origin to the robot's time `now`. A chunk without an origin
-    /// begins at `now`.
+    /// Returns the seconds from the origin to the robot's time `now`. If the times of a chunk count
+    /// from its start, the origin is `now`.
     pub(super) fn since_origin(&self, now: u64) -> f64 {
         match self.origin {
             Origin::TakeUp => 0.0,
@@ -315,7 +318,7 @@ impl Chunk {
         self.origin == Origin::TakeUp
     }
 
-    /// Returns the due time of the first point, seconds from the origin.
+    /// Returns the time at which the first point is due, in seconds from the origin.
     pub(super) fn begin(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.begin(),
@@ -323,7 +326,7 @@ impl Chunk {
         }
     }
 
-    /// Returns the due time of the last point, seconds from the origin.
+    /// Returns the time at which the last point is due, in seconds from the origin.
     pub(super) fn end(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.end(),
@@ -350,14 +353,13 @@ impl Chunk {
     }
 }
 
-/// Returns the time from `origin` to `now`, both a `message_id`, in seconds; negative if `now` is
-/// earlier.
+/// Returns the seconds from `origin` to `now`, both a `message_id`. Negative if `now` is earlier.
 pub(super) fn milliseconds(now: u64, origin: u64) -> f64 {
     let distance = now.abs_diff(origin) as f64 * 1e-3;
     if now < origin { -distance } else { distance }
 }
 
-/// Returns the checked times and values of the points. `check` also receives the number of the
+/// Checks and returns the times and values of the points. `check` also receives the number of the
 /// point.
 fn collect<T>(
     points: impl IntoIterator<Item = (Duration, T)>,
@@ -403,7 +405,7 @@ fn check_numbers(point: usize, numbers: &[f64]) -> Result<(), ChunkError> {
 fn check_pose(point: usize, pose: &Isometry3<f64>) -> Result<(), ChunkError> {
     check_numbers(point, pose.translation.vector.as_slice())?;
     let length = pose.rotation.coords.norm();
-    // NaN fails this comparison, too.
+    // NaN also fails this comparison.
     if (length - 1.0).abs() < 1e-6 {
         Ok(())
     } else {

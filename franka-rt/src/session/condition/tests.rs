@@ -19,7 +19,7 @@ impl Arm {
     fn new() -> Self {
         let q = [0.1, 0.2, 0.3, -2.0, 0.5, 1.6, 0.7];
         let mut jacobian = Jacobian::zeros();
-        // Joint i moves the end effector along or about axis i, and nothing else.
+        // Joint i moves the end effector only along or about axis i.
         jacobian.fill_diagonal(1.0);
         Self {
             state: RobotState {
@@ -39,7 +39,7 @@ impl Arm {
         }
     }
 
-    /// True if a condition is true in the first state that it sees.
+    /// True if a condition is true in the first state that is passed to it.
     fn meets(&self, condition: Condition) -> bool {
         assert_eq!(condition.check(), Ok(()));
         Watch::new(condition, self.measured.time).is_met(&self.observed(), &self.measured)
@@ -55,8 +55,8 @@ const MS: Duration = Duration::from_millis(1);
 #[test]
 fn every_quantity_is_the_number_of_the_state_that_it_names() {
     let mut arm = Arm::new();
-    // The torque is about the stiffness frame, which is turned by half a turn about z from the
-    // base's axes here.
+    // The torque is about the stiffness frame. Here, that frame is rotated by half a turn about z
+    // against the base axes.
     arm.state.O_F_ext_hat_K = [3.0, -4.0, 12.0, 5.0, 6.0, 7.0];
     arm.state.K_F_ext_hat_K = [-3.0, 4.0, 12.0, -0.3, 0.4, 1.2];
     (arm.state.EE_T_K[0], arm.state.EE_T_K[5]) = (-1.0, -1.0);
@@ -149,8 +149,8 @@ fn flags_are_what_the_robot_reports() {
     assert_eq!(seen(&arm), [false, false, false, true]);
 }
 
-/// Returns a random condition with at most this number of nodes, and its result if operands
-/// evaluate to `values`, computed by recursion.
+/// Returns a random condition with at most this number of nodes, and its expected result. The
+/// result is computed by recursion from operands that evaluate to `values`.
 fn random_condition(
     random: &mut SmallRng,
     nodes: usize,
@@ -170,7 +170,7 @@ fn random_condition(
             let first = random.random_range(1..nodes - 1);
             let (a, a_is) = random_condition(random, first, values);
             let (b, b_is) = random_condition(random, nodes - 1 - first, values);
-            // Result of an operand that decides alone.
+            // Value with which one operand alone decides the result.
             let decisive = kind == 1;
             let joined = if decisive { a | b } else { a & b };
             let value = match (a_is, b_is) {
@@ -356,7 +356,7 @@ fn a_condition_that_outgrows_its_room_is_refused_with_its_size() {
     }
 }
 
-/// Uses an arm whose stiffness frame is turned by half a turn about x against the base.
+/// Uses an arm whose stiffness frame is rotated by half a turn about x against the base.
 #[test]
 fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
     let mut arm = Arm::new();
@@ -377,7 +377,7 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
         (force_y(0.1), false),
         (force(5.0), true),
         (force(5.1), false),
-        // The moment of the stiffness frame, not of the base.
+        // This is the moment about the stiffness frame, not about the base.
         (torque(0.2), true),
         (torque(0.25), false),
         (Quantity::Torque(Axis::Y).above(0.19), true),
@@ -392,14 +392,15 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
     let (change, tared) = (force_z(1.0).relative(), force_z(1.0).tared(&tare));
     assert_eq!(change.tared(&tare), tared.relative());
     assert!(arm.meets(tared) && !arm.meets(tared.relative()));
-    // Joined with other comparisons, which see the whole wrench.
+    // The tared comparison is joined with other comparisons, which use the whole wrench.
     let both = force_z(4.9).tared(&tare) & force_z(3.9) & !force_z(4.1);
     assert!(arm.meets(both));
     assert!(arm.meets(!force_z(5.1) & force_z(4.9).tared(&tare)));
     let other = WrenchTare::default();
     let two = force_z(1.0).tared(&tare) | force_z(1.0).tared(&other);
     assert_eq!(two.check(), Err(ConditionError::Tare));
-    // Near a singularity the robot reports zeros: neither touched nor untouched.
+    // Near a singularity the robot reports zeros, so the arm counts neither as touched nor as
+    // untouched.
     arm.state.O_F_ext_hat_K = [0.0; 6];
     arm.state.K_F_ext_hat_K = [0.0; 6];
     for condition in [force_z(0.5), !force_z(0.5), torque(0.1), !force(0.1)] {

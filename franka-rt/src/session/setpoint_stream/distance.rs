@@ -1,4 +1,4 @@
-//! Distances of setpoints, and the thresholds from which they matter.
+//! Distances between setpoints, and the thresholds above which they matter.
 
 use franka_model::{JointVector, Twist};
 use franka_proto::RobotState;
@@ -9,28 +9,29 @@ use crate::control::{
 };
 use crate::shaping::CYCLE;
 
-/// Greatest distance of the robot's setpoint from the sent setpoint at which the two count as the
-/// same. It is more than the rounding of the robot's echo, and less than any relevant cycle of a
-/// motion.
+/// Greatest differences between the robot's setpoint and the sent setpoint with which the two count
+/// as the same. They are above the rounding of the robot's echo, and below the change in any
+/// relevant cycle of a motion.
 mod echo {
-    /// Distance of joint positions, `[rad]`.
+    /// Difference of joint positions, `[rad]`.
     pub(super) const JOINTS: f64 = 2e-6;
 
-    /// Distance of joint velocities, `[rad/s]`: an overlooked difference returns as a jerk of 100
-    /// rad/s^3.
+    /// Difference of joint velocities, `[rad/s]`. If a difference is ignored, it returns as a jerk
+    /// of 100 rad/s^3.
     pub(super) const JOINT_VELOCITIES: f64 = 1e-4;
 
-    /// Distance of poses and elbows, `[m, rad]`. No backstop limits the joints behind a pose. An
-    /// overlooked difference returns in them as a jerk, at most a fifth of the gentlest joint's
-    /// limit.
+    /// Difference of poses and elbows, `[m, rad]`. No backstop limits the joints that a pose moves.
+    /// If a difference is ignored, it returns as a jerk of these joints, of at most a fifth of the
+    /// gentlest joint's limit.
     pub(super) const POSE: f64 = 3e-7;
 
-    /// Distance of twists, `[m/s, rad/s]`: the difference at the joints is some ten times as large.
+    /// Difference of twists, `[m/s, rad/s]`. The difference at the joints is about ten times as
+    /// large.
     pub(super) const TWIST: f64 = 1e-5;
 }
 
-/// Distance of the robot's integrated position at which the reference moves to the robot's place.
-/// Velocities remove smaller distances.
+/// Distances between the position that the robot has integrated and the reference, above which the
+/// reference moves to the robot's place. Velocities remove smaller distances.
 pub(super) mod is_off {
     /// Distance of joint positions, `[rad]`.
     pub(crate) const JOINTS: f64 = 2e-5;
@@ -39,11 +40,12 @@ pub(super) mod is_off {
     pub(crate) const POSE: f64 = 3e-6;
 }
 
-/// Greatest change of a pose and an elbow by the limiter, `[m, rad]`, at which they count as
-/// unchanged. The change at the joints is some ten times as large, a jerk of 100 rad/s^3.
+/// Greatest change of a pose and an elbow by the limiter with which they count as unchanged,
+/// `[m, rad]`. The change at the joints is about ten times as large, a jerk of 100 rad/s^3.
 const SAME: f64 = 1e-8;
 
-/// True if the robot's setpoint differs from `sent`. The integral of velocities is not compared.
+/// True if the robot's setpoint differs from `sent`. The position that the robot integrates from
+/// velocities is not compared.
 pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     let far = |a: &[f64], b: &[f64]| {
         a.iter()
@@ -70,7 +72,7 @@ pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     }
 }
 
-/// True if the limiter has left `asked` unchanged, except for rounding.
+/// True if the limiter has not changed `asked`, except for rounding.
 pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     let most = match asked {
         MotionCommand::JointPositions(_) => echo::JOINTS,
@@ -80,8 +82,9 @@ pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     apart(shaped, asked).amax() <= most
 }
 
-/// Returns the distance between two setpoints of the same kind. The distance has the joints,
-/// `[rad]`, or translation, elements of the rotation, and elbow, `[m, rad]`.
+/// Returns the distance between two setpoints of the same kind. For joints it contains their
+/// distance, `[rad]`. For poses it contains the distances of translation, rotation elements and
+/// elbow, `[m, rad]`.
 pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     let squares = |a: &[f64], b: &[f64]| -> f64 {
         let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
@@ -116,12 +119,13 @@ pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     }
 }
 
-/// Returns the part of a joint drift to remove, `[rad]`: zero if rounding explains the drift.
+/// Returns the part of a joint drift that must be removed, `[rad]`. Zero if rounding explains the
+/// drift.
 pub(super) fn joint_drift(drift: &JointVector) -> JointVector {
     drift.map(|x| x - x.clamp(-echo::JOINTS, echo::JOINTS))
 }
 
-/// Returns the part of a pose drift to remove, base axes, `[m, rad]`.
+/// Returns the part of a pose drift that must be removed, in base axes, `[m, rad]`.
 pub(super) fn pose_drift(drift: &Twist) -> Twist {
     drift.map(|x| x - x.clamp(-echo::POSE, echo::POSE))
 }

@@ -1,4 +1,4 @@
-//! Robots whose integrated velocities differ from the sent ones.
+//! Robots that integrate velocities to another position than the reference.
 
 use std::sync::Arc;
 
@@ -28,8 +28,8 @@ fn resting() -> RobotState {
     state
 }
 
-/// Turns joint 1 by 0.3 rad under velocities. The robot integrates them too short by the share
-/// `slip`, and steps back once by `step`. Returns the final distance from the target, `[rad]`, and
+/// Turns joint 1 by 0.3 rad with velocities. The integrated motion is too short by the share
+/// `slip`, and once steps back by `step`. Returns the final distance from the target, `[rad]`, and
 /// the robot's last command.
 fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
     let mut q: [f64; 7] = READY.into();
@@ -124,7 +124,7 @@ fn twists_make_up_for_a_small_drift_and_go_on_from_a_large_one() {
     }
 }
 
-/// After a lost command, the robot is at the reference, but moves at another velocity.
+/// After a lost command, the robot is at the place of the reference, but moves at another velocity.
 #[test]
 fn velocities_go_on_from_those_of_the_robot() {
     let model = Model::fr3();
@@ -147,8 +147,8 @@ fn velocities_go_on_from_those_of_the_robot() {
     }
 }
 
-/// The robot's poses differ from the model's. The robot fills in the commanded fields or leaves
-/// them at zero.
+/// The robot's poses differ from the model's poses. The robot fills in the commanded fields, or
+/// leaves them at zero.
 #[test]
 fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
     let model = Model::fr3();

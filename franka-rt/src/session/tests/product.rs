@@ -1,13 +1,13 @@
-//! Every input in every state of a running session: its reference never jumps, a brake ends at
-//! rest, and a stop finishes the session without another motion.
+//! Tries every input in every state of a running session. Its reference never jumps, a brake ends
+//! at rest, and a stop finishes the session without another motion.
 
 use super::*;
 use crate::law::Gains;
 use crate::session::reference::Reference;
 use crate::team::{Coordinator, team};
 
-/// Inputs of the caller, the arm, the team and time. All but the first three are for the newest
-/// goal, under its name.
+/// Inputs from the caller, the arm, the team and time. Except for the first three, they apply to
+/// the newest goal and use its id.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Begin,
@@ -23,7 +23,7 @@ enum Step {
     Pause,
     GoOn,
     Cancel,
-    /// The condition of the goal comes true.
+    /// The condition of the goal becomes true.
     Touch,
     /// The team stops.
     Team,
@@ -31,7 +31,7 @@ enum Step {
     Drop,
     /// Some cycles pass.
     Run,
-    /// Goals arrive, watchdogs time out.
+    /// Goals arrive and watchdogs time out.
     Wait,
 }
 
@@ -56,7 +56,7 @@ const STEPS: [Step; 16] = [
     Wait,
 ];
 
-/// Ways into the states: the aim, the stage and the standing of a goal.
+/// Steps that lead to each state: aim, stage and status of a goal.
 const STATES: [&[Step]; 18] = [
     &[Begin],
     &[Begin, Run],
@@ -213,14 +213,14 @@ impl Bench {
                     q[0] += 0.005;
                     (Duration::from_millis(ms), q)
                 });
-                // The first chunk names those after it.
+                // The first chunk's goal also identifies the chunks after it.
                 let streams =
                     self.current.watchdog.is_some() && self.current.target == Target::Rest;
                 if !streams {
                     self.begin(Target::Rest, OnArrival::Hold);
                 }
                 let chunk = Chunk::joints(points).expect("they follow each other");
-                // Without room it is not sent.
+                // If there is no room, the chunk is not sent.
                 let _ = self.chunks.send(self.current.id, chunk);
                 while self.chunks.collect().is_some() {}
             }
@@ -291,7 +291,7 @@ impl Bench {
         (self.state.q, self.state.dq, self.dq) = (q.into(), dq.into(), dq);
     }
 
-    /// Expects the reference to brake, and to stay at rest.
+    /// Checks that the reference brakes, and then stays at rest.
     fn brakes(&mut self) {
         self.run(BRAKE);
         let at = JointVector::from(self.state.q);
@@ -300,7 +300,7 @@ impl Bench {
         assert!(moved < REST, "{:?}: moves on by {moved} rad", self.way);
     }
 
-    /// Stops the arm as the lifecycle does, and expects the session to finish.
+    /// Stops the arm as the lifecycle does, and checks that the session finishes.
     fn stops(&mut self) {
         if self.is_finished {
             return;
@@ -325,7 +325,7 @@ impl Bench {
     }
 }
 
-/// All steps with `FRANKA_THOROUGH=1`, otherwise one in some.
+/// Returns all steps with `FRANKA_THOROUGH=1`, and only a sample without it.
 fn second_steps() -> impl Iterator<Item = Step> {
     STEPS.into_iter().step_by(sample(1, 8))
 }
@@ -379,7 +379,7 @@ fn no_input_moves_an_arm_whose_deadman_is_gone() {
 fn paused_goal_rests_until_it_continues() {
     for state in STATES {
         let mut bench = Bench::in_state(state);
-        // The points of chunks have their times, and a guided arm is led.
+        // The points of chunks have fixed times, and a guided arm follows a hand.
         if bench.way.iter().any(|step| matches!(step, Points | Guide)) {
             continue;
         }

@@ -2,10 +2,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A gradient and a Hessian of which three diagonals are not zero.
+/// A gradient and a symmetric Hessian. Apart from its diagonal, only the next two diagonals on each
+/// side are not zero.
 pub(super) struct Banded {
     gradient: Vec<f64>,
-    /// For each row, the diagonal and the two entries right of it.
+    /// For each row, the diagonal entry and the two entries to its right.
     rows: Vec<[f64; 3]>,
 }
 
@@ -34,7 +35,7 @@ impl Banded {
     /// Returns the step of Newton's method and the square of its length. Overwrites the Hessian.
     pub(super) fn step(&mut self) -> (Vec<f64>, f64) {
         let n = self.rows.len();
-        // LDL', starting at the first row.
+        // LDL' factorisation, starting at the first row.
         for i in 0..n {
             let [d, first, second] = self.rows[i];
             let d = d.max(f64::MIN_POSITIVE);

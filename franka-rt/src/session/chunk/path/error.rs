@@ -4,7 +4,7 @@ use super::Waypoint;
 use super::reach::{OFF_ROTATION, OFF_TRANSLATION};
 use crate::session::GoalError;
 
-/// Reason for refusing a path. Nothing has moved. Waypoints count from 1.
+/// Reason for refusing a path. Nothing has moved. Waypoints are numbered from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathError {
@@ -18,20 +18,20 @@ pub enum PathError {
         Waypoint::COUNT_MAX
     )]
     TooMany,
-    /// A waypoint is neither a pose nor joint positions, or its kind is not the kind of the first
+    /// A waypoint is neither a pose nor joint positions, or differs in kind from the first
     /// waypoint.
     #[error(
         "waypoint {waypoint} is of another kind than the first waypoint, expected all poses or \
          all joint positions"
     )]
     Kind {
-        /// The waypoint.
+        /// Number of the waypoint.
         waypoint: usize,
     },
-    /// The blend distance of a waypoint is not a number, or below zero.
+    /// The blend distance of a waypoint is NaN or negative.
     #[error("the blend of waypoint {waypoint} is {got}, expected 0 or more")]
     Blend {
-        /// The waypoint.
+        /// Number of the waypoint.
         waypoint: usize,
         /// The given distance.
         got: f64,
@@ -39,22 +39,22 @@ pub enum PathError {
     /// The arm cannot reach the waypoint.
     #[error("waypoint {waypoint}: {error}")]
     Waypoint {
-        /// The waypoint.
+        /// Number of the waypoint.
         waypoint: usize,
-        /// The reason.
+        /// Reason why the arm cannot reach the waypoint.
         #[source]
         error: GoalError,
     },
-    /// On the way to a waypoint the end effector turns so far that the direction of the turn is
-    /// ambiguous.
+    /// On the way to a waypoint, the end effector rotates so far that the direction of the rotation
+    /// is ambiguous.
     #[error(
         "the orientation turns by {degrees} degrees on the way to waypoint {waypoint}, expected \
          less than 170 degrees"
     )]
     Turn {
-        /// The waypoint.
+        /// Number of the waypoint.
         waypoint: usize,
-        /// Angle of the turn.
+        /// Angle of the rotation.
         degrees: u16,
     },
     /// The arm cannot follow the path between two waypoints.
@@ -69,21 +69,22 @@ pub enum PathError {
         OFF_ROTATION * 1e3
     )]
     Way {
-        /// The previous waypoint; 0 is the place of the arm when the path begins.
+        /// Number of the previous waypoint. 0 is the place of the arm when the path begins.
         from: usize,
-        /// The next waypoint.
+        /// Number of the next waypoint.
         to: usize,
-        /// Coordinate x of the place on the path, base frame, `[m]`.
+        /// Coordinate x of the place where the arm leaves the path, in the base frame, `[m]`.
         x: f64,
-        /// Coordinate y of the place.
+        /// Coordinate y of that place.
         y: f64,
-        /// Coordinate z of the place.
+        /// Coordinate z of that place.
         z: f64,
         /// Distance of the arm from the path at that place, `[m]`.
         translation: f64,
-        /// Difference in orientation from the path at that place, `[rad]`.
+        /// Angle between the end effector and the path's orientation at that place, `[rad]`.
         rotation: f64,
-        /// The joint at the end of its range, from 1; `None` if the limit is the arm's reach.
+        /// Number of the joint at the end of its range, from 1; `None` if the arm cannot reach
+        /// further.
         joint: Option<usize>,
     },
 }

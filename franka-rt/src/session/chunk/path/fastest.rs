@@ -1,5 +1,5 @@
-//! Makes a timed path as fast as its limits allow. A stretch between two stops that has corners is
-//! retimed; a single straight line is already the fastest.
+//! Makes a timed path as fast as its limits allow. A part between two stops is retimed if it has
+//! corners. A single straight line is already as fast as possible.
 
 use franka_otg::AxisLimits;
 use nalgebra::SMatrix;
@@ -9,14 +9,14 @@ use super::spline::Spline;
 use crate::session::chunk::curve::Curve;
 use crate::session::chunk::curve_state::CurveState;
 
-/// Velocity or acceleration of a state: a column for each group of axes whose norm is limited.
+/// Velocity or acceleration of a state. Each column is a group of axes whose norm is limited.
 type Columns<const W: usize, const G: usize> = SMatrix<f64, W, G>;
 
 /// Limits of a retimed path.
 pub(super) struct Limits<M, const W: usize, const G: usize> {
     /// Limits of each group of axes.
     pub(super) of_groups: [AxisLimits; G],
-    /// Returns velocity and acceleration of a state.
+    /// Function that returns velocity and acceleration of a state.
     pub(super) derivatives: fn(&M) -> [Columns<W, G>; 2],
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Limits<M, const W: usize, const G: usize> {
 pub(super) struct Timed<M> {
     pub(super) times: Vec<f64>,
     pub(super) states: Vec<M>,
-    /// The leg of each state; at a stop, the leg that begins there.
+    /// Number of the leg of each state. At a stop, the leg that begins there.
     pub(super) legs: Vec<usize>,
 }
 
@@ -35,18 +35,18 @@ const NODES: usize = 32;
 /// Maximum number of initial nodes.
 const NODES_MAX: usize = 1024;
 
-/// Number of times that parts with a changing acceleration are halved.
+/// Number of times that parts are halved in which the acceleration changes much.
 const REFINEMENTS: usize = 2;
 
-/// Permitted excess of the duration over the least duration, as shares: before the last refinement,
-/// and after it.
+/// Permitted excess over the least duration, as a share of it: before the last refinement, and
+/// after it.
 const GAPS: [f64; 2] = [0.03, 1e-3];
 
-/// Intervals of each part in which the limits are checked once more at the end.
+/// Number of intervals of each part in which the limits are checked again at the end.
 const CHECKS: usize = 4;
 
 impl<M: CurveState> Timed<M> {
-    /// Returns the same path in the least time.
+    /// Returns the same path, timed for the least duration.
     pub(super) fn hurried<const W: usize, const G: usize>(self, limits: &Limits<M, W, G>) -> Self {
         let mut hurried = self.part(0, 0);
         let mut begin = 0;
@@ -70,7 +70,7 @@ impl<M: CurveState> Timed<M> {
         Curve::new(self.times, self.states)
     }
 
-    /// Returns the states from one to another, starting at time zero.
+    /// Returns the states from `begin` to `end`, with times that start at zero.
     fn part(&self, begin: usize, end: usize) -> Self {
         let times = &self.times[begin..=end];
         Self {
@@ -93,13 +93,13 @@ impl<M: CurveState> Timed<M> {
         self.times[self.times.len() - 1]
     }
 
-    /// Returns the state at the share `u` of the time from node `k` to the next.
+    /// Returns the state at the share `u` of the time from node `k` to the next node.
     pub(super) fn between(&self, k: usize, u: f64) -> M {
         let duration = self.times[k + 1] - self.times[k];
         M::between(&self.states[k], &self.states[k + 1], duration, u * duration)
     }
 
-    /// Calls `pass` with times and states of the motion, `count` for each of its parts.
+    /// Calls `pass` with times and states of the motion, `count` times in each part.
     pub(super) fn each(&self, count: usize, mut pass: impl FnMut(f64, &M)) {
         for (k, ends) in self.times.windows(2).enumerate() {
             for i in 1..=count {
@@ -109,7 +109,8 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// Returns a stretch from rest to rest over this many legs in the least time.
+    /// Returns a part of the path from stop to stop, with this many legs, timed for the least
+    /// duration.
     pub(super) fn retimed<const W: usize, const G: usize>(
         self,
         legs: usize,
@@ -133,12 +134,12 @@ impl<M: CurveState> Timed<M> {
             }
         }
         let next = stretch.at_rates(&spline);
-        // Between the checked places the motion exceeds the limits by a few thousandths.
+        // Between the checked places, the motion may exceed the limits by a few thousandths.
         let next = next.slower(next.excess(limits));
         if next.end() < self.end() { next } else { self }
     }
 
-    /// Returns the same motion with each part divided evenly into the number in `counts`.
+    /// Returns the same motion, with each part divided evenly into the number of parts in `counts`.
     fn divided(&self, counts: &[usize]) -> Self {
         let mut fine = self.part(0, 0);
         for (k, &count) in counts.iter().enumerate() {
@@ -156,7 +157,7 @@ impl<M: CurveState> Timed<M> {
         fine
     }
 
-    /// Returns the derivatives in the parts.
+    /// Returns the derivatives in each part.
     fn parts<const W: usize, const G: usize>(&self, limits: &Limits<M, W, G>) -> Vec<Part<W, G>> {
         let part = |k: usize| {
             let duration = self.times[k + 1] - self.times[k];
@@ -174,7 +175,7 @@ impl<M: CurveState> Timed<M> {
         (0..self.times.len() - 1).map(part).collect()
     }
 
-    /// Returns the same path at the rates of `spline`.
+    /// Returns the same path with the rates of `spline`.
     fn at_rates(&self, spline: &Spline) -> Self {
         let mut time = 0.0;
         let mut next = Self {
@@ -187,7 +188,7 @@ impl<M: CurveState> Timed<M> {
             next.times.push(time);
             next.states.push(state.paced(node.rate, node.change));
         }
-        // Except for the sign of a zero, both states rest already.
+        // Both states already rest, except for the sign of a zero.
         let last = next.states.len() - 1;
         for end in [0, last] {
             next.states[end] = self.states[end].resting();
@@ -195,7 +196,7 @@ impl<M: CurveState> Timed<M> {
         next
     }
 
-    /// Returns the same motion with its times multiplied by this factor.
+    /// Returns the same motion, with all times multiplied by this factor.
     fn slower(&self, factor: f64) -> Self {
         Self {
             times: self.times.iter().map(|time| time * factor).collect(),
@@ -206,7 +207,8 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// Returns the factor by which the motion must be slower to keep the limits, at least 1.
+    /// Returns the factor, at least 1, by which the motion must be slower to stay within the
+    /// limits.
     fn excess<const W: usize, const G: usize>(&self, limits: &Limits<M, W, G>) -> f64 {
         let mut most = 1.0_f64;
         for k in 0..self.times.len() - 1 {

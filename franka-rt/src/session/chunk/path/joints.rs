@@ -12,7 +12,7 @@ use crate::session::chunk::pace::Pace;
 use crate::session::reference::Reference;
 use crate::session::{Budget, Target};
 
-/// Plans straight lines over the joints, beginning at `start`.
+/// Plans straight lines in joint space, beginning at `start`.
 pub(super) fn through_joints(
     waypoints: &[Waypoint],
     start: JointVector,
@@ -89,7 +89,7 @@ pub(super) fn pace(states: &[Reference], budget: &Budget) -> Pace {
     Pace::of((0..7).map(|i| (fastest(i), budget.joints[i])))
 }
 
-/// Keeps each joint within its limits.
+/// Limits each joint separately.
 pub(super) fn within(limits: [AxisLimits; 7]) -> Limits<Reference, 1, 7> {
     Limits {
         of_groups: limits,

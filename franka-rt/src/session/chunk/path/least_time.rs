@@ -1,8 +1,9 @@
-//! The fastest motion along a path: the same curve, as fast as its limits allow, jerk included.
+//! The fastest motion along a path: the same curve, traversed as fast as the limits of velocity,
+//! acceleration and jerk allow.
 //!
-//! A motion `q(t)` that keeps the limits is traversed at another rate. With `x = (dt/dT)^2`, `T`
-//! the new time, a dash for the derivative by `t` and `v, a, j` the derivatives of the given
-//! motion,
+//! A motion `q(t)` that is within the limits is traversed at another rate. `T` is the new time and
+//! `x = (dt/dT)^2`. A dash is the derivative with respect to `t`, and `v, a, j` are the derivatives
+//! of the given motion:
 //!
 //! ```text
 //! new velocity     = sqrt(x) v
@@ -11,16 +12,16 @@
 //! new duration     = integral of 1 / sqrt(x)
 //! ```
 //!
-//! `x` is a quadratic spline: `x''` is constant between two of its nodes. Where the motion begins
-//! or ends at rest it does so with a jerk, so that `x` is finite there, too. All limits except the
-//! jerk's are convex in `x`. The jerk's limit is `|x j + ..| <= J / sqrt(x)`, with a convex right
-//! side. The tangent of that side at the present `x` is below it, so a motion that keeps the
-//! tangent keeps the limit (the convex-concave procedure).
+//! `x` is a quadratic spline: `x''` is constant between two nodes. If the motion begins or ends at
+//! rest, it does so with a jerk, so `x` is also finite there. All limits except the limit of the
+//! jerk are convex in `x`. That limit is `|x j + ..| <= J / sqrt(x)`, with a convex right side. The
+//! tangent of the right side at the present `x` lies below the right side. Therefore a motion that
+//! stays below the tangent is within the limit (the convex-concave procedure).
 //!
-//! The minimum is found by Newton's method behind logarithmic barriers (S. Boyd and L.
-//! Vandenberghe, Convex Optimization, chapter 11), with new tangents in every step. Each step leads
-//! from a motion within the limits to a faster one. The result is the fastest motion near the given
-//! one. It is not proven that no faster motion exists far from it.
+//! Newton's method with logarithmic barriers finds the minimum (S. Boyd and L. Vandenberghe, Convex
+//! Optimization, chapter 11), with new tangents in every step. Each step leads from a motion within
+//! the limits to a faster motion within them. The result is the fastest motion near the given
+//! motion. There is no proof that no faster motion exists far from it.
 
 use franka_otg::AxisLimits;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -28,7 +29,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::banded::Banded;
 use super::spline::Spline;
 
-/// The first three derivatives of a motion at one place: a column for each group of axes whose norm
+/// The first three derivatives of a motion at one place. Each column is a group of axes whose norm
 /// is limited.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rates<const W: usize, const G: usize> {
@@ -37,20 +38,21 @@ pub(super) struct Rates<const W: usize, const G: usize> {
     pub(super) j: SMatrix<f64, W, G>,
 }
 
-/// A part of the motion between two nodes, at its [`PLACES`].
+/// A part of the motion between two nodes, given at its [`PLACES`].
 pub(super) type Part<const W: usize, const G: usize> = [Rates<W, G>; PLACES.len()];
 
-/// Places in a part where the limits are kept, in shares of the part.
+/// Places in a part at which the limits apply, as shares of the part.
 pub(super) const PLACES: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
 
-/// Values at one place. Three coefficients of the spline act there.
+/// Values at one place, where three coefficients of the spline contribute.
 #[derive(Clone, Debug)]
 struct Place<const W: usize> {
     /// Contribution of each coefficient to `x`.
     value: Vector3<f64>,
     /// Inverse of the greatest `x` that the velocity limit allows.
     velocity: f64,
-    /// Accelerations of the coefficients, and jerks without the root of `x`.
+    /// Contributions of the coefficients to the acceleration, and to the jerk without the factor
+    /// `sqrt(x)`.
     accelerations: Vec<SMatrix<f64, W, 3>>,
     jerks: Vec<SMatrix<f64, W, 3>>,
 }
@@ -59,15 +61,15 @@ struct Place<const W: usize> {
 struct Problem<const W: usize> {
     durations: Vec<f64>,
     places: Vec<[Place<W>; PLACES.len()]>,
-    /// Contribution of each coefficient to `x` at the points at which the time is integrated.
+    /// Contribution of each coefficient to `x` at the points with which the time is integrated.
     gauss: Vec<[Vector3<f64>; 2]>,
 }
 
 /// Places of the two points of Gauss's rule in a part.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
-/// Adds a row, unless an existing row is at least as strict in every case. Drops rows that the new
-/// row makes superfluous.
+/// Adds a row, unless an existing row is at least as strict in every case. Removes rows that the
+/// new row makes superfluous.
 fn keep<const W: usize>(rows: &mut Vec<SMatrix<f64, W, 3>>, row: SMatrix<f64, W, 3>) {
     let gram = row.tr_mul(&row);
     let size = gram.trace();
@@ -104,7 +106,8 @@ impl<const W: usize> Problem<W> {
                 for (g, limits) in limits.iter().enumerate() {
                     let (v, a, j) = (v.column(g), a.column(g), j.column(g));
                     velocity = velocity.max(v.norm_squared() / limits.velocity.powi(2));
-                    // At its beginning a part has the acceleration at the end of the previous part.
+                    // At its start, a part has the acceleration that the previous part has at its
+                    // end.
                     if place > 0 {
                         let row = a * b.transpose() + v * (db * 0.5).transpose();
                         keep(&mut accelerations, row / limits.acceleration);
@@ -129,8 +132,8 @@ impl<const W: usize> Problem<W> {
         }
     }
 
-    /// Sum of the barriers' parameters: for a weight of 1, an upper bound on the excess of the
-    /// duration at the barrier function's minimum over the least duration.
+    /// Returns the sum of the barriers' parameters. For a weight of 1, this is an upper bound: at
+    /// the minimum of the barrier function, the duration exceeds the least duration by no more.
     fn parameter(&self) -> f64 {
         let places = self.places.iter().flatten();
         places
@@ -149,7 +152,8 @@ impl<const W: usize> Problem<W> {
             .sum()
     }
 
-    /// Returns the greatest use of any limit, in powers of the rate's square: 1 at a limit.
+    /// Returns the greatest use of any limit, 1 at the limit. It is proportional to the squared
+    /// rate.
     fn use_of_limits(&self, c: &[f64]) -> f64 {
         let mut most = 0.0_f64;
         for (k, places) in self.places.iter().enumerate() {
@@ -171,7 +175,8 @@ impl<const W: usize> Problem<W> {
         most
     }
 
-    /// Finds the coefficients of the least duration, to a share of `gap`, starting from `c`.
+    /// Finds the coefficients of the least duration, up to a relative error of `gap`, starting from
+    /// `c`.
     fn minimise(&self, c: &mut Vec<f64>, gap: f64) {
         let used = self.use_of_limits(c);
         if used > BEGIN {
@@ -211,7 +216,7 @@ impl<const W: usize> Problem<W> {
         }
     }
 
-    /// Returns the barrier function; `None` outside the limits.
+    /// Returns the barrier function, or `None` outside the limits.
     fn value(&self, c: &[f64], weight: f64) -> Option<f64> {
         let mut product = Logs::default();
         for (k, places) in self.places.iter().enumerate() {
@@ -233,7 +238,7 @@ impl<const W: usize> Problem<W> {
         Some(weight * self.duration(c) - product.sum())
     }
 
-    /// Computes gradient and Hessian of the barrier function with the tangents at `c`.
+    /// Computes the gradient and the Hessian of the barrier function, with the tangents at `c`.
     fn derivatives(&self, c: &[f64], weight: f64, system: &mut Banded) {
         system.clear();
         for (k, (places, gauss)) in self.places.iter().zip(&self.gauss).enumerate() {
@@ -275,7 +280,7 @@ impl<const W: usize> Problem<W> {
     }
 }
 
-/// Sum of logarithms that computes only a few of them.
+/// Sum of logarithms that multiplies many numbers before it computes a logarithm.
 #[derive(Debug)]
 struct Logs {
     sum: f64,
@@ -292,7 +297,7 @@ impl Default for Logs {
 }
 
 impl Logs {
-    /// Adds the logarithm of `x`; `None` unless `x` is positive.
+    /// Adds the logarithm of `x`. Returns `None` unless `x` is positive.
     fn add(&mut self, x: f64) -> Option<()> {
         if x.is_nan() || x <= 0.0 {
             return None;
@@ -310,9 +315,9 @@ impl Logs {
     }
 }
 
-/// Makes `spline` the fastest rate for the `parts` of a motion within the `limits` of its groups,
-/// to a share of `gap` of the duration. Returns the parts in which the acceleration changes too
-/// much for their length.
+/// Sets `spline` to the fastest rate for the `parts` of a motion within the `limits` of its groups,
+/// up to a relative error of `gap` in the duration. Returns the parts in which the acceleration
+/// changes too much for their length.
 pub(super) fn minimise<const W: usize, const G: usize>(
     spline: &mut Spline,
     parts: &[Part<W, G>],
@@ -329,14 +334,14 @@ pub(super) fn minimise<const W: usize, const G: usize>(
     parts.iter().enumerate().map(is_long).collect()
 }
 
-/// Share of an acceleration limit by which the acceleration may change within a part.
+/// Share of an acceleration limit by which the acceleration may change within one part.
 const SWITCH: f64 = 0.3;
 
-/// Factor by which the weight of the duration grows from one minimum to the next.
+/// Factor by which the weight of the duration grows from one minimisation to the next.
 const GROWTH: f64 = 10.0;
 
-/// Steps of Newton's method for one weight.
+/// Maximum number of Newton steps for one weight.
 const STEPS_MAX: usize = 12;
 
-/// Share of the limits that the beginning may use.
+/// Share of the limits that the initial motion may use.
 const BEGIN: f64 = 0.95;

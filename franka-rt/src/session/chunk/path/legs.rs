@@ -5,11 +5,11 @@ use nalgebra::SVector;
 
 use super::timing::{self, Corner, Knot, Leg};
 
-/// Shares of the budget's velocity, acceleration and jerk that a path is planned with. The follower
-/// uses the rest to return to the path.
+/// Shares of the budget's velocity, acceleration and jerk with which a path is planned. The
+/// follower uses the rest to return to the path.
 const SHARES: [f64; 3] = [0.99, 0.95, 0.9];
 
-/// Returns the share of these limits for a path.
+/// Returns the share of these limits that a path may use.
 pub(super) fn share(limits: AxisLimits) -> AxisLimits {
     AxisLimits {
         velocity: SHARES[0] * limits.velocity,
@@ -18,7 +18,7 @@ pub(super) fn share(limits: AxisLimits) -> AxisLimits {
     }
 }
 
-/// Returns the limits of a leg on which each of the `ways` keeps its limits.
+/// Returns the limits of a leg on which each of the `ways` stays within its own limits.
 pub(super) fn limits_of_leg(ways: impl Iterator<Item = (f64, AxisLimits)>) -> AxisLimits {
     let free = AxisLimits {
         velocity: f64::INFINITY,
@@ -33,14 +33,14 @@ pub(super) fn limits_of_leg(ways: impl Iterator<Item = (f64, AxisLimits)>) -> Ax
         })
 }
 
-/// Returns the length of a corner's blend on either side, as shares of legs of these lengths.
+/// Returns the length of a corner's blend on each side, as shares of legs with these lengths.
 fn shares(blend: f64, lengths: (f64, f64)) -> Option<(f64, f64)> {
     let share = |length: f64| (blend / length).min(0.5);
     (blend > 0.0).then(|| (share(lengths.0), share(lengths.1)))
 }
 
-/// Times the `legs` with corners between them. `lengths` are the legs' lengths in the unit of the
-/// `blends`, with one blend for each place. `duration` is as for [`Corner::new`].
+/// Times the `legs` and the corners between them. `lengths` are the lengths of the legs in the unit
+/// of the `blends`. There is one blend for each place. For `duration`, see [`Corner::new`].
 pub(super) fn timed<const D: usize>(
     legs: &[Leg<D>],
     lengths: &[f64],

@@ -1,10 +1,11 @@
-//! Straight lines to a pose: checks that the arm can follow a line from its present place, and
-//! finds the elbow for it.
+//! Straight lines to a pose. This file checks that the arm can follow a line from its present
+//! place, and finds an elbow with which it can.
 //!
-//! A reachable pose does not guarantee a straight path to it. On a line that turns the hand far,
-//! joints may reach the ends of their ranges with the present elbow, but not with another one.
-//! Therefore the line is followed before anything moves, as for a path: first with the elbow kept,
-//! then with the elbow drawn to each of the postures that reach the pose.
+//! If the arm can reach a pose, it may still be unable to reach it on a straight line. On a line
+//! that rotates the hand far, joints may reach the ends of their ranges with the present elbow, but
+//! not with another elbow. Therefore the line is simulated before anything moves, as for a path:
+//! first with the present elbow, then with the elbow moved to each of the postures that reach the
+//! pose.
 
 use core::ops::ControlFlow;
 
@@ -25,19 +26,19 @@ use crate::session::pose::PoseState;
 use crate::session::{Budget, Goal, GoalError, Hindrance, OnArrival, Target, rigid};
 
 impl Goal {
-    /// Searches a straight line from the joint positions `q`, `[rad]`, to the pose of a goal that
-    /// ends there. If the arm cannot follow the line with its elbow near `kept`, `[rad]`, but can
-    /// with its elbow drawn to another posture, the goal gets that [posture](Self::posture).
+    /// Searches for a straight line from the joint positions `q`, `[rad]`, to the pose at which the
+    /// goal ends. If the arm cannot follow the line with its elbow near `kept`, `[rad]`, but can
+    /// with its elbow moved to another posture, sets that posture as the goal's
+    /// [posture](Self::posture).
     ///
-    /// A goal that the arm can reach, although not on the line, stays as it is. The same applies to
-    /// goals that do not end at a pose, to goals with a [reaction](Self::reaction) or with an
-    /// object in the hand, and to goals that [`check`](Self::check) refuses. Keep-out regions are
-    /// not considered.
+    /// If the arm can reach the pose, but not on the line, the goal does not change. It also does
+    /// not change if it does not end at a pose, if it has a [reaction](Self::reaction) or an object
+    /// in the hand, or if [`check`](Self::check) refuses it. Keep-out regions are not considered.
     ///
     /// This usually takes a millisecond, and at most ten. Do not call it on the control thread.
     ///
     /// # Errors
-    /// [`GoalError::NoLine`] if the arm does not reach the pose with any of these postures.
+    /// Returns [`GoalError::NoLine`] if the arm does not reach the pose with any of these postures.
     pub fn plan_line(
         &mut self,
         q: &[f64; 7],
@@ -91,16 +92,16 @@ impl Goal {
     }
 }
 
-/// Number of postures that are tried for the elbow, nearest first.
+/// Number of postures that are tried for the elbow, beginning with the nearest.
 const LED: usize = 8;
 
-/// Number of steps along a line that the first, coarse check combines.
+/// Step length of the first, coarse check of a line, as a multiple of the usual step.
 const GLANCE: f64 = 4.0;
 
-/// Greatest turn of a joint between two checks of the arm's distance to itself, `[rad]`.
+/// Greatest rotation of a joint between two checks of the arm's distance to itself, `[rad]`.
 const TURN: f64 = 0.03;
 
-/// A straight line and a turn about one axis.
+/// A straight line, combined with a rotation about one axis.
 struct Line<'a> {
     way: Timed<PoseState>,
     q: JointVector,
@@ -111,7 +112,8 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// Creates the line from the joint positions `q` to the pose `there`; `None` if it has no plan.
+    /// Creates the line from the joint positions `q` to the pose `there`. Returns `None` if no plan
+    /// can be made.
     fn new(
         there: &Isometry3<f64>,
         q: JointVector,
@@ -121,7 +123,7 @@ impl<'a> Line<'a> {
     ) -> Option<Self> {
         let start = rigid(&model.pose(Frame::EndEffector, &q, &ee));
         let turn = rotation::error(&there.rotation, &start.rotation);
-        // A path turns less between two waypoints.
+        // Between two waypoints, a path must rotate less.
         let middle = (turn.norm() >= TURN_MAX).then(|| {
             let middle = start
                 .translation
@@ -143,7 +145,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Follows the line to its end, in steps `stride` times as long as the steps of a check.
+    /// Follows the line to its end. The steps are `stride` times as long as in a full check.
     fn follow(&self, posture: &Posture, stride: f64) -> Result<(), Hindrance> {
         let mut last = self.q;
         let way = self.arm(posture, stride).along(&self.way, self.q, |step| {
@@ -160,8 +162,8 @@ impl<'a> Line<'a> {
         way.break_value().map_or(Ok(()), Err)
     }
 
-    /// True if the arm, when it may leave the line, reaches the end of the line without coming too
-    /// close to itself.
+    /// True if the arm reaches the end of the line without coming too near to itself, although it
+    /// may leave the line.
     fn ends_there(&self, posture: &Posture) -> bool {
         let (mut last, mut off) = (self.q, 0.0);
         let way = self.arm(posture, 1.0).along(&self.way, self.q, |step| {
@@ -175,7 +177,7 @@ impl<'a> Line<'a> {
         way.is_continue() && off <= 1.0
     }
 
-    /// True if the arm keeps clear of itself while its joints move to `to` together.
+    /// True if the arm keeps clear of itself while all joints move to `to` at the same time.
     fn is_clear_over_joints(&self, to: &JointVector) -> bool {
         let turns = ((to - self.q).amax() / TURN).ceil().max(1.0);
         let mut last = self.q;
@@ -185,7 +187,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// True if the arm is not too near itself at `next`, or at least no nearer than at `now`.
+    /// True if the arm is not too near to itself at `next`, or no nearer than at `now`.
     fn is_clear(&self, now: &JointVector, next: &JointVector) -> bool {
         self.clearance.too_near(now, next).is_none()
     }
@@ -201,8 +203,9 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Returns postures that reach a pose with room to the ends of the joints' ranges, the nearest to
-/// `q` first. Each branch contributes its nearest posture and the posture with the most room.
+/// Returns postures that reach a pose with room to the ends of the joints' ranges, beginning with
+/// the nearest to `q`. Each branch of solutions contributes two: its nearest posture, and its
+/// posture with the most room.
 fn postures(
     model: &Model,
     there: &Isometry3<f64>,
@@ -238,9 +241,9 @@ fn postures(
     postures
 }
 
-/// Intervals of the sweep of joint 7 through its range.
+/// Number of intervals in which joint 7 sweeps its range.
 const SWEEP: u32 = 64;
 
-/// Room of a posture to the ends of the joints' ranges, `[rad]`: a little more than the joints keep
-/// on the way to a pose.
+/// Room between a posture and the ends of the joints' ranges, `[rad]`. It is slightly more than the
+/// joints keep on the way to a pose.
 const ROOM: f64 = 0.06;

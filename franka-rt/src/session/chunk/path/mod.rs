@@ -1,4 +1,4 @@
-//! Paths: places without times. The arm moves through them as fast as its budget allows.
+//! Paths: places without times, through which the arm moves as fast as its budget allows.
 //!
 //! ```text
 //! waypoints -> joints, poses -> timing  -> fastest       -> reach        -> chunk
@@ -35,7 +35,7 @@ use crate::session::geometry::reported_end_effector;
 use crate::session::kinematics::Posture;
 use crate::session::{Goal, Target, check, rigid};
 
-/// A place on a path, and the distance at which the path may round its corner.
+/// A place on a path, and the distance from it at which the path may begin to round the corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waypoint {
     target: Target,
@@ -46,8 +46,8 @@ impl Waypoint {
     /// Maximum number of waypoints on a path.
     pub const COUNT_MAX: usize = 100;
 
-    /// Creates a waypoint at which the arm stops: a pose of the end effector in the base frame,
-    /// metres, or joint positions, `[rad]`.
+    /// Creates a waypoint at which the arm stops. The target is a pose of the end effector in the
+    /// base frame, in metres, or joint positions, `[rad]`.
     pub fn new(target: impl Into<Target>) -> Self {
         let blend = 0.0;
         Self {
@@ -56,13 +56,13 @@ impl Waypoint {
         }
     }
 
-    /// Rounds the corner. The path leaves the straight line to this waypoint at this distance
-    /// before it, and joins the next line at this distance after it. On a line shorter than twice
-    /// the distance it does so in the middle.
+    /// Rounds the corner at this waypoint. The path leaves the straight line to the waypoint at
+    /// this distance before the waypoint, and joins the next line at this distance after it. If a
+    /// line is shorter than twice the distance, the path leaves or joins it in its middle.
     ///
-    /// For poses the unit is `[m]` of the end effector, and a turn counts as the distance that the
-    /// budget allows in the time of the turn. For joint positions it is `[rad]`, the norm over the
-    /// joints. The arm still stops at the last waypoint of a path.
+    /// For poses, the distance is the end effector's, `[m]`; a rotation counts as the distance that
+    /// the budget allows in the same time. For joint positions, it is the norm over the joints,
+    /// `[rad]`. The arm always stops at the last waypoint of a path.
     #[must_use]
     pub fn blend(mut self, distance: f64) -> Self {
         self.blend = distance;
@@ -82,16 +82,16 @@ impl<T: Into<Target>> From<T> for Waypoint {
 }
 
 impl Chunk {
-    /// Creates a path through `waypoints` without times, within the budget of `goal`, from the
-    /// joint positions `q`, `[rad]`. The path begins when the session takes it up, waits while the
-    /// arm is held back, and can be paused.
+    /// Creates a path through `waypoints`, without times, within the budget of `goal`, from the
+    /// joint positions `q`, `[rad]`. The path begins when the session accepts it, waits while
+    /// something holds the arm back, and can be paused.
     ///
     /// This takes some milliseconds for each rounded waypoint. Do not call it on the control
     /// thread. The private module `fastest` defines how close the result is to the fastest motion;
     /// `reach` defines the checks.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// Returns a [`PathError`] if a waypoint is invalid or the arm cannot follow the path.
     pub fn through(
         waypoints: &[Waypoint],
         q: &[f64; 7],
@@ -102,8 +102,8 @@ impl Chunk {
         Self::planned(waypoints, q, goal, model, state, |_, _| {})
     }
 
-    /// Same as [`Self::through`]. Also calls `pass` with the time, `[s]`, and the joint positions
-    /// of closely spaced places along the whole path, in order.
+    /// Same as [`Self::through`]. Also calls `pass` for closely spaced places along the whole path,
+    /// in order, with the time, `[s]`, and the joint positions.
     fn planned(
         waypoints: &[Waypoint],
         q: &[f64; 7],
@@ -163,5 +163,5 @@ impl Chunk {
     }
 }
 
-/// Number of places passed between two states of a path over joint positions.
+/// Number of places between two states of a joint path for which `pass` is called.
 const SAMPLES: usize = 8;

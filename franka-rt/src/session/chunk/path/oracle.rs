@@ -1,29 +1,28 @@
-//! The least time for the path of a motion if only velocity and acceleration are limited. It is a
-//! lower bound for all motions that are also limited in jerk.
+//! The least duration for the path of a motion if only velocity and acceleration are limited. It is
+//! a lower bound for all motions whose jerk is also limited.
 //!
-//! Reachability analysis over the length of the path (H. Pham and Q.-C. Pham, 2018). The backward
-//! pass finds the speed at each place from which the arm can still brake. The forward pass moves as
-//! fast as that speed allows.
+//! The method is reachability analysis over the length of the path (H. Pham and Q.-C. Pham, 2018).
+//! The backward pass finds the greatest speed at each place from which the arm can still brake. The
+//! forward pass moves as fast as that speed allows.
 
 use franka_otg::AxisLimits;
 use nalgebra::SMatrix;
 
 /// A place of a path. `x` is the square of the speed along it.
 struct Place<const W: usize, const G: usize> {
-    /// Length to the next place.
+    /// Length of the path to the next place.
     step: f64,
     /// Greatest permitted `x`; 0 at a stop.
     most: f64,
-    /// Direction and curvature, in units of the acceleration limits: a column for each group of
-    /// axes.
+    /// Direction and curvature, divided by the acceleration limits. Each column is a group of axes.
     direction: SMatrix<f64, W, G>,
     curvature: SMatrix<f64, W, G>,
 }
 
-/// Speed below which a motion rests.
+/// Speed below which a motion counts as resting.
 const REST: f64 = 1e-12;
 
-/// Speed below which a motion follows a line, as near a stop.
+/// Speed below which a motion counts as following a line, as it does near a stop.
 const STRAIGHT: f64 = 1e-3;
 
 impl<const W: usize, const G: usize> Place<W, G> {
@@ -60,7 +59,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
         }
     }
 
-    /// Returns the accelerations along the path that are open at `x`.
+    /// Returns the accelerations along the path that are possible at `x`.
     fn open(&self, x: f64) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for (d, c) in self
@@ -82,7 +81,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
         (low <= high).then_some((low, high))
     }
 
-    /// Returns the greatest `x` from which the next place can be passed at `next` at most.
+    /// Returns the greatest `x` from which the arm can pass the next place with `next` at most.
     fn brakable(&self, next: f64) -> f64 {
         let holds = |x: f64| {
             let open = self.open(x);
@@ -105,7 +104,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
 }
 
 /// Returns the least duration for the path of a motion that rests only at its ends. Its `rates` are
-/// velocities and accelerations, `duration` apart.
+/// velocities and accelerations at times that are `duration` apart.
 pub(super) fn least_duration<const W: usize, const G: usize>(
     rates: &[[SMatrix<f64, W, G>; 2]],
     duration: f64,
@@ -122,7 +121,7 @@ pub(super) fn least_duration<const W: usize, const G: usize>(
     }
     let (mut x, mut time) = (0.0_f64, 0.0);
     for (k, (place, brakable)) in places.iter().zip(&brakable[1..]).enumerate() {
-        // A stop has no direction: the motion leaves it in the direction of the next place.
+        // A stop has no direction, so the motion leaves it in the direction of the next place.
         let moving = if place.most > 0.0 { k } else { k + 1 };
         let high = places[moving].open(x).map_or(0.0, |(_, high)| high);
         let next = (x + 2.0 * place.step * high).min(*brakable);

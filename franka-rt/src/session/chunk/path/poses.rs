@@ -14,8 +14,8 @@ use crate::session::chunk::value::TURN_MAX;
 use crate::session::pose::PoseState;
 use crate::session::{Budget, Target};
 
-/// Plans lines and turns about one axis, beginning at `start`. A waypoint at the place of the
-/// previous one makes no leg.
+/// Plans straight lines with rotations about one axis, beginning at `start`. A waypoint at the same
+/// place as the previous waypoint makes no leg.
 pub(super) fn through_poses(
     waypoints: &[Waypoint],
     start: Isometry3<f64>,
@@ -82,7 +82,7 @@ pub(super) fn through_poses(
     Ok(timed.hurried(&within([translation, turning])))
 }
 
-/// Keeps the norms of translation and rotation within their limits.
+/// Limits the norms of translation and rotation.
 pub(super) fn within(limits: [AxisLimits; 2]) -> Limits<PoseState, 3, 2> {
     Limits {
         of_groups: limits,

@@ -11,23 +11,23 @@ use crate::session::check::check_keep_out;
 use crate::session::guard::clearance::Clearance;
 use crate::session::{Chunk, Goal, GoalError};
 
-/// Predicted motion of an arm along a path: its joint positions at times. Between two entries no
-/// joint turns by more than a few hundredths of a radian. On a path of poses, the end effector
-/// moves by at most 5 mm between two entries.
+/// Predicted motion of an arm along a path: its joint positions at a sequence of times. Between two
+/// entries, no joint moves by more than a few hundredths of a radian. On a path of poses, the end
+/// effector moves by at most 5 mm between two entries.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Preview {
-    /// Increasing times from the beginning of the motion, and joint positions, `[rad]`. The first
-    /// entry is the beginning, the last is the end of the path.
+    /// Times from the start of the motion, in increasing order, and joint positions, `[rad]`. The
+    /// first entry is the start, and the last entry is the end of the path.
     pub postures: Vec<(Duration, [f64; 7])>,
 }
 
 impl Preview {
-    /// Predicts the motion of an arm at the joint positions `q`, `[rad]`. The call takes as long as
-    /// [`Chunk::through`], and refuses the same paths.
+    /// Predicts the motion of an arm from the joint positions `q`, `[rad]`. The call takes as long
+    /// as [`Chunk::through`], and refuses the same paths.
     ///
     /// # Errors
-    /// [`PathError`].
+    /// Returns the same [`PathError`] as [`Chunk::through`].
     pub fn of(
         waypoints: &[Waypoint],
         q: &[f64; 7],
@@ -37,7 +37,7 @@ impl Preview {
     ) -> Result<Self, PathError> {
         let mut postures = vec![(Duration::ZERO, *q)];
         Chunk::planned(waypoints, q, goal, model, state, |time, q: &JointVector| {
-            // An empty motion has one place, with the time of the beginning.
+            // An empty motion has one place, at the start time.
             let time = Duration::try_from_secs_f64(time).unwrap_or_default();
             if postures.last().is_some_and(|(before, _)| time > *before) {
                 postures.push((time, (*q).into()));
@@ -47,20 +47,20 @@ impl Preview {
     }
 
     /// Returns the time until the reference is at the end, if nothing delays it. Guards that hold
-    /// the reference back delay it, as do poses that require more than a joint's limits. The arm
-    /// settles after that.
+    /// the reference back delay it, and so do poses that demand more than a joint's limits. The arm
+    /// settles after that time.
     pub fn duration(&self) -> Duration {
         self.postures
             .last()
             .map_or(Duration::ZERO, |(time, _)| *time)
     }
 
-    /// Returns the place where the arm would come nearer than the guards allow to itself, or to a
-    /// keep-out region of a session; `None` without such a place. The guards stop the arm before
-    /// that place. `state` shows whether a hand is mounted.
+    /// Returns the first place where the arm would come nearer to itself, or to a keep-out region
+    /// of a session, than the guards allow. Returns `None` if there is no such place. The guards
+    /// stop the arm before that place. `state` shows if a hand is mounted.
     ///
     /// # Errors
-    /// [`GoalError::KeepOut`], as for the session.
+    /// Returns [`GoalError::KeepOut`] if the session would refuse the regions.
     pub fn blocked(
         &self,
         model: &Model,
@@ -81,19 +81,19 @@ impl Preview {
         }))
     }
 
-    /// Returns the joint positions at the end, `[rad]`.
+    /// Returns the joint positions at the end of the path, `[rad]`.
     pub fn end(&self) -> [f64; 7] {
         self.postures.last().map_or([0.0; 7], |(_, q)| *q)
     }
 }
 
-/// Place where an arm would come too near something.
+/// Place where an arm would come too near to itself or to a keep-out region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Blocked {
-    /// Time since the beginning of the motion.
+    /// Time from the start of the motion to this place.
     pub time: Duration,
-    /// The joint positions there, `[rad]`.
+    /// Joint positions at this place, `[rad]`.
     pub q: [f64; 7],
     /// Number of the keep-out region, from 1; `None` if a link comes near another link.
     pub region: Option<usize>,

@@ -1,13 +1,13 @@
 //! Checks that the arm can follow a path of poses along its whole length.
 //!
-//! The joints follow the whole path, rounded corners included, in small steps from their present
-//! positions. They use the inverse kinematics of the control cycle: with its damping, its rule for
-//! the arm's free direction, and the ends of the joints' ranges. The cycle's other limits do not
-//! change which poses the arm reaches. If a pose requires too much velocity or acceleration from
-//! joints, the path waits.
+//! The joints are moved along the whole path, rounded corners included, in small steps from their
+//! present positions. The check uses the inverse kinematics of the control cycle, with its damping,
+//! its rule for the arm's free direction, and the ends of the joints' ranges. The cycle's other
+//! limits do not change which poses the arm can reach. If a pose requires too much velocity or
+//! acceleration from the joints, the path waits.
 //!
-//! Joint positions need no such check: if two of them are in range, so are all positions between
-//! them.
+//! Paths of joint positions need no such check: if two positions are in range, all positions
+//! between them are also in range.
 
 use core::ops::ControlFlow;
 
@@ -24,49 +24,50 @@ use crate::session::kinematics::Posture;
 use crate::session::pose::PoseState;
 use crate::session::rigid;
 
-/// Greatest distance of the end effector from the path, `[m]`: the tolerance of a goal.
+/// Greatest permitted distance of the end effector from the path, `[m]`. It equals the tolerance of
+/// a goal.
 pub(super) const OFF_TRANSLATION: f64 = 1e-3;
 
-/// Greatest difference of the end effector's orientation from the path, `[rad]`.
+/// Greatest permitted angle between the end effector and the path's orientation, `[rad]`.
 pub(super) const OFF_ROTATION: f64 = 5e-3;
 
 /// Longest step along the path, `[m]`.
 const STEP_TRANSLATION: f64 = 5e-3;
 
-/// Largest change of orientation in a step along the path, `[rad]`.
+/// Greatest rotation in a step along the path, `[rad]`.
 const STEP_ROTATION: f64 = 0.02;
 
-/// Distance that counts as zero, in units of the permitted distance.
+/// Distance that counts as zero, as a share of the permitted distance.
 const THERE: f64 = 0.02;
 
-/// Maximum number of attempts to get nearer to one place of the path, as long as the recent
-/// attempts make enough progress.
+/// Maximum number of attempts to get nearer to one place of the path, if the recent attempts made
+/// enough progress.
 const ATTEMPTS: usize = 60;
 
-/// Maximum number of steps between two states of a path. With the largest steps above, a path has
-/// more only if its numbers are nonsensical.
+/// Maximum number of steps between two states of a path. With steps of the greatest length, a path
+/// has more only if its numbers make no sense.
 const STEPS_MAX: f64 = 1e4;
 
-/// Greatest turn of a joint in one attempt, `[rad]`.
+/// Greatest rotation of a joint in one attempt, `[rad]`.
 const TURN: f64 = 0.1;
 
 /// A step of the joints along a path.
 #[derive(Debug)]
 pub(super) struct Step {
-    /// Time since the beginning of the path, `[s]`.
+    /// Time since the start of the path, `[s]`.
     pub(super) time: f64,
-    /// The leg of the step.
+    /// Number of the leg to which the step belongs.
     pub(super) leg: usize,
-    /// Wanted pose of the end effector.
+    /// Desired pose of the end effector.
     pub(super) pose: Isometry3<f64>,
     /// Joint positions at that time, `[rad]`.
     pub(super) q: JointVector,
-    /// Remaining distance of the end effector.
+    /// Distance that remains between the end effector and the path.
     pub(super) off: Off,
 }
 
-/// Checks that the arm follows `way` from the joint positions `q`. `pass` is called with the time
-/// and the joint positions of each step.
+/// Checks that the arm can follow `way` from the joint positions `q`. `pass` is called with the
+/// time and the joint positions of each step.
 pub(super) fn check(
     way: &Timed<PoseState>,
     q: JointVector,
@@ -112,7 +113,7 @@ impl Off {
         }
     }
 
-    /// Size in units of the permitted distance.
+    /// Returns the distance, divided by the permitted distance.
     pub(super) fn size(&self) -> f64 {
         (self.translation / OFF_TRANSLATION).max(self.rotation / OFF_ROTATION)
     }
@@ -120,18 +121,18 @@ impl Off {
 
 /// The arm that follows a path.
 pub(super) struct Arm<'a> {
-    /// Posture for its free direction.
+    /// Posture that determines the arm's free direction.
     pub(super) posture: &'a Posture,
-    /// Limits for its speed.
+    /// Limits of its speed.
     pub(super) budget: &'a Budget,
     pub(super) model: &'a Model,
     pub(super) ee: &'a EndEffector,
-    /// Number of steps that are taken at once: 1 for a check, more for a first look.
+    /// Number of steps that are combined: 1 for a full check, more for a coarse check.
     pub(super) stride: f64,
 }
 
 impl Arm<'_> {
-    /// Moves the joints from `q` along `way`, until `each` breaks.
+    /// Moves the joints from `q` along `way` until `each` breaks.
     pub(super) fn along<B>(
         &self,
         way: &Timed<PoseState>,
@@ -169,8 +170,8 @@ impl Arm<'_> {
         ControlFlow::Continue(())
     }
 
-    /// Returns the joint positions that follow `q` to the state `at` within `duration`, and their
-    /// distance from it.
+    /// Returns the joint positions with which the arm follows from `q` to the state `at` within
+    /// `duration`, and their distance from that state.
     fn step(&self, q: JointVector, at: &PoseState, duration: f64) -> (JointVector, Off) {
         let speed = at.twist.fixed_rows::<3>(0).norm();
         let mut q = q;

@@ -1,8 +1,8 @@
-//! The rate along a motion: a quadratic spline over its parts.
+//! The rate of a retimed motion: a quadratic spline over the parts of the motion.
 
 use nalgebra::Vector3;
 
-/// Square of the rate, `x`. Each of its coefficients acts in three parts, and each part has three
+/// Square of the rate, `x`. Each coefficient contributes to three parts, and each part has three
 /// coefficients.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
@@ -10,7 +10,8 @@ pub(super) struct Spline {
     pub(super) c: Vec<f64>,
 }
 
-/// Rate at a node: `dt/dT`, its derivative by `T`, and the new time since the previous node.
+/// Rate at a node: `dt/dT`, its derivative with respect to `T`, and the new time since the previous
+/// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub(super) rate: f64,
@@ -19,7 +20,7 @@ pub(super) struct Node {
 }
 
 impl Spline {
-    /// Returns the rate of the given motion, with parts of these durations.
+    /// Returns the rate 1, for a motion with parts of these durations.
     pub(super) fn one(durations: Vec<f64>) -> Self {
         let c = vec![1.0; durations.len() + 2];
         Self { durations, c }
@@ -30,8 +31,8 @@ impl Spline {
         Vector3::new(c[k], c[k + 1], c[k + 2])
     }
 
-    /// Returns the contributions of part `k`'s three coefficients to the value at the share `u` of
-    /// the part, and to its first and second derivative.
+    /// Returns how part `k`'s three coefficients contribute to the value at the share `u` of the
+    /// part, and to its first and second derivative.
     pub(super) fn basis(&self, k: usize, u: f64) -> [Vector3<f64>; 3] {
         let neighbour = |k: Option<usize>| k.and_then(|k| self.durations.get(k)).unwrap_or(&0.0);
         let h = self.durations[k];
@@ -53,7 +54,7 @@ impl Spline {
         [value.dot(&c), slope.dot(&c)]
     }
 
-    /// Returns the same spline with those parts halved for which `halved` is true.
+    /// Returns the same spline, with each part halved for which `halved` is true.
     pub(super) fn refined(&self, halved: &[bool]) -> Self {
         let last = self.durations.len() - 1;
         let (mut durations, mut c) = (Vec::new(), vec![self.at(0, 0.0)[0]]);
@@ -63,7 +64,7 @@ impl Spline {
             for &begin in begins {
                 let h = h / count;
                 let [x, slope] = self.at(k, begin);
-                // The parabola's blossom at the two ends.
+                // The blossom of the parabola at both ends.
                 c.push(x + 0.5 * h * slope);
                 durations.push(h);
             }
@@ -88,7 +89,7 @@ impl Spline {
     }
 }
 
-/// Gauss's rule with four points: places and weights.
+/// Gauss's rule with four points: pairs of place and weight.
 const GAUSS: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_7, 0.173_927_422_568_726_9],
     [0.330_009_478_207_571_9, 0.326_072_577_431_273_1],

@@ -58,7 +58,7 @@ fn vector(random: &mut SmallRng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| number(random))
 }
 
-/// Returns joint positions about the ready pose, with random corners of at least `least`.
+/// Returns joint positions around the ready pose, with random corners of at least `least`.
 fn random_joints(random: &mut SmallRng, spread: f64, least: f64) -> Vec<(JointVector, f64)> {
     let count = random.random_range(2..8);
     let place = |_| {
@@ -189,7 +189,7 @@ fn path_of_one_line_takes_as_long_as_the_plan_of_a_goal() {
     );
 }
 
-/// Returns the duration of a goal's plan from the ready pose.
+/// Returns the duration of a goal's plan that starts at the ready pose.
 fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
     let limits = franka_otg::Limits::per_axis(budget.joints.map(share)).unwrap();
     let start = franka_otg::State::at_rest(READY.into());
@@ -197,7 +197,8 @@ fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
     plan.duration()
 }
 
-/// The generator of goals is the oracle with jerk limits: it finds the exact optimum of a line.
+/// The generator of goals serves as the oracle with jerk limits, because it finds the exact optimum
+/// of a line.
 #[test]
 fn slow_line_is_retimed_to_the_pace_of_a_goals_plan() {
     let model = Model::fr3();
@@ -228,7 +229,7 @@ fn slow_line_is_retimed_to_the_pace_of_a_goals_plan() {
     }
 }
 
-/// Ratios of the duration of paths to their duration without a limit of jerk: median, 95 % and
+/// Ratios between the durations of paths and their durations without a jerk limit: median, 95 % and
 /// maximum.
 #[derive(Debug)]
 struct Ratios([f64; 3]);
@@ -253,7 +254,7 @@ fn least_duration<M: CurveState, const W: usize, const G: usize>(
     oracle::least_duration(&rates, step, &limits.of_groups)
 }
 
-/// Returns the ratios of random paths, with the jerks of the budget times a factor.
+/// Returns the ratios for random paths whose budget has its jerks multiplied by `jerk`.
 fn ratios(over_the_joints: bool, jerk: f64) -> Ratios {
     let mut random = SmallRng::seed_from_u64(5);
     let model = Model::fr3();
@@ -299,12 +300,12 @@ fn random_paths_take_hardly_longer_than_a_lower_bound() {
     }
 }
 
-/// Result of a path in the control cycle.
+/// Result of moving along a path in the control cycle.
 #[derive(Debug)]
 struct Gone {
     /// True if the arm reaches the end.
     arrives: bool,
-    /// Greatest distance of the joints from the path, in units of the permitted distance.
+    /// Greatest distance of the joints from the path, divided by the permitted distance.
     off: f64,
 }
 
@@ -346,7 +347,7 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
         reference = course
             .step(model, &ee, (&posture, None), &reference, now)
             .reference;
-        // Nearest place of the path, starting at the last one.
+        // Nearest place of the path, beginning with the last nearest place.
         while near + 1 < samples.len()
             && off(&reference.q, &samples[near + 1]) <= off(&reference.q, &samples[near])
         {
@@ -465,7 +466,7 @@ fn preview_matches_the_path_in_time_and_refusals() {
     let refused = Preview::of(&far, &q, &goal, model, &state());
     let error = Chunk::through(&far, &q, &goal, model, &state()).unwrap_err();
     assert_eq!(refused, Err(error));
-    // At its present place the arm has nothing to do.
+    // At its present place, the arm need not move.
     let stays = Preview::of(&[here.into()], &q, &goal, model, &state()).expect("a path");
     assert_eq!(
         (stays.duration(), stays.end()),
@@ -502,7 +503,7 @@ fn a_preview_says_where_the_guards_stop_the_arm() {
     let sunk = here.translation.z - height;
     assert!((0.05..0.2).contains(&sunk), "{sunk}");
     assert!(found.time < preview.duration());
-    // If the arm begins too near to the block, only the way out is free.
+    // If the arm begins too near to the block, only the motion outward is free.
     assert_eq!(blocked(0.1, 0.01).0, None);
     assert!(blocked(-0.01, 0.01).0.is_some());
     let too_many = vec![Obstacle::floor(0.0); 5];

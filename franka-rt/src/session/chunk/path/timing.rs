@@ -1,29 +1,31 @@
-//! Timing of a path: as fast as its limits allow, with each corner rounded or stopped at.
+//! Timing of a path: it is traversed as fast as its limits allow. At each corner the arm rounds the
+//! corner or stops.
 //!
-//! A leg is traversed along its straight line, with a profile of constant jerks. Around a corner
-//! the velocity changes from one leg's to the next leg's along a smoothstep, evenly in time:
+//! A leg is traversed along its straight line, with a profile of constant jerks. Around a corner,
+//! the velocity changes from one leg's velocity to the next leg's velocity. The change follows a
+//! smoothstep in time:
 //!
 //! ```text
 //! v(t) = v1 + (v2 - v1) s(t / 2T)    from T before the corner to T after it, s(u) = 3 u^2 - 2 u^3
 //! ```
 //!
-//! Its integral leads exactly from one line to the other, and its acceleration is zero at both
+//! Its integral leads exactly from one line to the other line, and its acceleration is zero at both
 //! ends. `T` is the shortest time that the limits allow for a given size of the corner. It is
-//! longer where the adjacent legs are too short to reach its speed or to brake to it.
+//! longer if the adjacent legs are too short to reach that speed or to brake to it.
 
 use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
-/// One leg, seen from its beginning.
+/// A leg, as seen from its start.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leg<const D: usize> {
-    /// Vector from its beginning to its end.
+    /// Vector from the start of the leg to its end.
     pub(super) way: SVector<f64, D>,
-    /// Limits in shares of the leg: 1/s, 1/s^2, 1/s^3.
+    /// Limits, with the length of the leg as the unit: 1/s, 1/s^2, 1/s^3.
     pub(super) limits: AxisLimits,
 }
 
-/// A rounded corner: its shares of the legs before and after it, and half of its time, `[s]`.
+/// A rounded corner: its shares of the legs before and after it, and half of its duration, `[s]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) before: f64,
@@ -32,9 +34,9 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// Creates the corner between `leg` and `next` with its shortest time. `duration` returns the
-    /// time for a vector: 0.75 of the vector over the square of the time is at most the
-    /// acceleration, 1.5 of it over the cube at most the jerk.
+    /// Creates the corner between `leg` and `next` with its shortest duration. `duration` returns
+    /// the time for a vector: 0.75 of the vector divided by the squared time is at most the
+    /// acceleration, and 1.5 of it divided by the cubed time is at most the jerk.
     pub(super) fn new<const D: usize>(
         (before, after): (f64, f64),
         (leg, next): (&Leg<D>, &Leg<D>),
@@ -50,7 +52,7 @@ impl Corner {
     }
 }
 
-/// Returns half of the time for a change of velocity over `way` in a corner, `[s]`.
+/// Returns half of the duration of a corner in which the velocity changes over `way`, `[s]`.
 pub(super) fn corner_time(way: f64, limits: &AxisLimits) -> f64 {
     let by_acceleration = (0.75 * way / limits.acceleration).sqrt();
     by_acceleration.max((1.5 * way / limits.jerk).cbrt())
@@ -62,14 +64,14 @@ pub(super) struct Knot {
     /// Time, `[s]`.
     pub(super) time: f64,
     pub(super) leg: usize,
-    /// Share of the leg, with two derivatives.
+    /// Position as a share of the leg, with two derivatives.
     pub(super) s: f64,
     pub(super) v: f64,
     pub(super) a: f64,
 }
 
 impl Knot {
-    /// At rest at the beginning of a path.
+    /// Rest at the start of a path.
     pub(super) const START: Self = Self {
         time: 0.0,
         leg: 0,
@@ -79,10 +81,10 @@ impl Knot {
     };
 }
 
-/// Times the `legs`, with `corners[i]` between leg `i` and the next; the arm stops where there is
-/// no corner. Requires at least one leg, and one corner less than legs.
+/// Times the `legs`, with `corners[i]` between leg `i` and the next leg. The arm stops where there
+/// is no corner. Requires at least one leg, and one corner fewer than legs.
 pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner>]) -> Vec<Knot> {
-    // First the speed that each leg can brake to, then the speed that it can reach.
+    // First find the speed from which each leg can brake, then the speed that it can reach.
     for i in (1..legs.len()).rev() {
         let (_, end) = speeds(i, corners);
         let most = fastest(end, span(i, corners), &legs[i].limits);
@@ -110,7 +112,7 @@ pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner
                 a: 0.0,
             });
         } else if leg > 0 {
-            // The same place, seen from the next leg.
+            // The same place, as seen from the next leg.
             if let Some(stopped) = knots.last_mut() {
                 (stopped.leg, stopped.s) = (leg, 0.0);
             }
@@ -120,7 +122,8 @@ pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner
     knots
 }
 
-/// Returns the shares per second at the beginning and the end of the straight part of leg `i`.
+/// Returns the speeds, in shares per second, at the start and at the end of the straight part of
+/// leg `i`.
 fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -130,7 +133,7 @@ fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     )
 }
 
-/// Returns the share of leg `i` that is traversed along its line.
+/// Returns the share of leg `i` that is traversed along its straight line.
 fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -138,14 +141,14 @@ fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     (1.0 - cut).max(0.0)
 }
 
-/// Returns the distance of a change from one speed to another, both without acceleration.
+/// Returns the distance that a change of speed takes, with zero acceleration at both ends.
 fn way(from: f64, to: f64, limits: &AxisLimits) -> f64 {
     let (build_up, hold) = ramp(from, to, limits);
     0.5 * (from + to) * (2.0 * build_up + hold)
 }
 
-/// Returns the time for building up or removing the acceleration in a change of speed, and the time
-/// between the two.
+/// Returns two times of a change of speed: the time to build up or remove the acceleration, and the
+/// time between.
 fn ramp(from: f64, to: f64, limits: &AxisLimits) -> (f64, f64) {
     let (change, full) = ((to - from).abs(), limits.acceleration / limits.jerk);
     if change < limits.acceleration * full {
@@ -155,14 +158,14 @@ fn ramp(from: f64, to: f64, limits: &AxisLimits) -> (f64, f64) {
     }
 }
 
-/// Returns the greatest speed that can be reached from `from`, or from which the motion can brake
-/// to `from`, within `span`.
+/// Returns the greatest speed that can be reached from the speed `from` within `span`, or from
+/// which the motion can brake to `from`.
 fn fastest(from: f64, span: f64, limits: &AxisLimits) -> f64 {
     most(from, limits.velocity, |to| way(from, to, limits) <= span)
 }
 
-/// Returns the greatest number in an interval for which `holds` is true. `holds` is true from the
-/// lower end up to that number.
+/// Returns the greatest number in an interval for which `holds` is true. `holds` must be true from
+/// the lower end up to that number, and false above it.
 fn most(lower: f64, upper: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (lower, upper.max(lower));
     if holds(high) {
@@ -179,10 +182,10 @@ fn most(lower: f64, upper: f64, holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Number of halvings, more than a number has digits.
+/// Number of halvings. It exceeds the number of binary digits.
 const HALVINGS: usize = 64;
 
-/// Knots closer in time than this are one, `[s]`.
+/// Knots that are closer in time than this count as one knot, `[s]`.
 const SAME: f64 = 1e-9;
 
 /// Moves along the line for `span` of a leg, as fast as the limits allow.
@@ -197,7 +200,7 @@ fn straight(knots: &mut Vec<Knot>, (begin, end): (f64, f64), span: f64, limits: 
         glide(knots, cruise / peak, 0.0);
     }
     change(knots, (peak, end), limits);
-    // Sets the exact end, so that rounding has no effect.
+    // Sets the exact end, so that rounding errors have no effect.
     if let Some(last) = knots.last_mut() {
         (last.s, last.v, last.a) = (first.s + span, end, 0.0);
     }

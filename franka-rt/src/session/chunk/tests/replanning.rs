@@ -1,4 +1,4 @@
-//! Policies that predict anew while the arm is still behind their last prediction.
+//! Policies that make a new prediction while the arm still lags behind the last prediction.
 
 use core::f64::consts::TAU;
 
@@ -9,12 +9,12 @@ use super::{Arm, GOAL, Session, ms, start};
 use crate::session::chunk::Chunk;
 use crate::session::{OnArrival, Target};
 
-/// Times of a policy's predictions and chunks, in milliseconds.
+/// Times of a policy's observations and chunks, in milliseconds.
 #[derive(Clone, Copy, Debug)]
 struct Rhythm {
     period: u64,
     latency: u64,
-    /// Time between points, and from the observation to the first point.
+    /// Time between points, and time from the observation to the first point.
     step: u64,
     points: u64,
     blend: u64,
@@ -41,7 +41,7 @@ const fn rhythm(period: u64, latency: u64, step: u64, points: u64, blend: u64) -
 }
 
 impl Rhythm {
-    /// Returns the observation of the policy whose chunk arrives in this cycle, if any.
+    /// Returns the time of the observation whose chunk arrives in this cycle, if any.
     fn observed(&self, cycle: u64) -> Option<u64> {
         let observed = cycle.checked_sub(self.latency)?;
         observed.is_multiple_of(self.period).then_some(observed)
@@ -59,7 +59,7 @@ impl Rhythm {
 enum Axis {
     /// Translation along y, `[m]`.
     Along,
-    /// Rotation about x, by 2 rad for 1 m of translation.
+    /// Rotation about x, by 2 rad for each metre of translation.
     About,
 }
 
@@ -83,8 +83,8 @@ impl Axis {
     }
 }
 
-/// Runs a policy whose points are `predict(observation, time, s)`, each at its time, s. Returns the
-/// place of the reference in each cycle.
+/// Runs a policy. Its points are `predict(observation, time, s)`, each at its own time, in seconds.
+/// Returns the place of the reference in each cycle.
 fn run(
     axis: Axis,
     rhythm: Rhythm,
@@ -111,7 +111,7 @@ fn run(
     seen
 }
 
-/// Returns a sine of 0.4 Hz, which begins in motion: the arm is behind at first.
+/// Returns a sine of 0.4 Hz. It begins in motion, so the arm lags at first.
 fn sine(amplitude: f64, t: f64) -> f64 {
     amplitude * (TAU * 0.4 * t).sin()
 }
@@ -139,7 +139,7 @@ fn lag_does_not_grow_from_chunk_to_chunk() {
     }
 }
 
-/// Same for joints, in a session.
+/// The same for joints, in a session.
 #[test]
 fn joints_that_lag_behind_do_not_swing_in_a_session() {
     let rhythm = rhythm(50, 150, 20, 50, 50);
@@ -204,8 +204,8 @@ fn a_policy_that_predicts_from_where_the_arm_is_gets_on() {
     }
 }
 
-/// A chunk may jump, and the next chunk may arrive at any time of the jump. The arm stays between
-/// the two chunks, and stays in its place if the next chunk leads there.
+/// A chunk may jump, and the next chunk may arrive at any time during the jump. The arm stays
+/// between the two chunks. If the next chunk leads to the arm's place, the arm stays there.
 #[test]
 fn a_jump_that_another_chunk_cuts_off_is_not_carried_on() {
     let cases = [480, 510, 525, 540, 560]
