@@ -10,7 +10,6 @@ pub(crate) trait Blend: Copy + PartialEq {
     fn blend(&self, other: &Self, share: f64) -> Self;
 }
 
-/// Interpolates between two numbers.
 pub(crate) fn mix(from: f64, to: f64, share: f64) -> f64 {
     from + share * (to - from)
 }
@@ -44,13 +43,11 @@ impl<T: Blend> Fade<T> {
         }
     }
 
-    /// Advances by one cycle.
     pub(crate) fn step(&mut self) -> T {
         self.cycle = self.cycle.saturating_add(1);
         self.now()
     }
 
-    /// Returns the value of the last step.
     pub(crate) fn now(&self) -> T {
         if self.cycle >= CROSS_FADE {
             self.to

@@ -95,7 +95,6 @@ mod tests {
         dq: JointVector,
     }
 
-    /// Returns the inverse of the inertia of links and rotors.
     fn mobility(dynamics: &Dynamics) -> MassMatrix {
         let mass = dynamics.mass + MassMatrix::from_diagonal(&task_space::ROTORS.into());
         mass.try_inverse().expect("a physical arm")
@@ -206,7 +205,6 @@ mod tests {
             }
         }
 
-        /// A projected torque does not accelerate the end effector.
         #[test]
         fn projected_joint_gains_do_not_move_the_end_effector(offset in joints(0.4)) {
             let q = READY + offset;

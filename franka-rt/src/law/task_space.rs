@@ -23,7 +23,6 @@ const GREATEST_INERTIA: [f64; 6] = [100.0, 100.0, 100.0, 5.0, 5.0, 5.0];
 /// 1 to 4) and 0.074 (5 to 7), `franka_emika_panda` has 0.1. Not measured on a robot.
 pub(crate) const ROTORS: [f64; 7] = [0.15, 0.15, 0.15, 0.15, 0.09, 0.09, 0.09];
 
-/// Inertia at the end effector, in base axes.
 #[derive(Debug)]
 pub(crate) struct TaskSpace {
     /// `M = L L'`.
@@ -174,7 +173,6 @@ mod tests {
         assert!((space.rotational() - rotational).amax() < 1e-9);
     }
 
-    /// Moves through the stretched elbow, where the arm cannot reach further.
     #[test]
     fn the_damping_sets_in_without_a_jump() {
         let tau = JointVector::from([5.0, -3.0, 2.0, 7.0, 1.0, -0.5, 0.3]);

@@ -18,7 +18,6 @@ use crate::stats::MotionTimes;
 /// Fault of a robot that starts a motion but shows no state of it.
 pub(super) const NEVER_SHOWN: &str = "the robot's states never showed the motion's modes";
 
-/// One motion, with the reports of robot and thread so far.
 #[derive(Debug)]
 pub(super) struct CurrentMotion {
     pub(super) motion: MotionId,
@@ -186,7 +185,6 @@ impl CurrentMotion {
     }
 }
 
-/// Returns the outcome of a program's motion that succeeded or was stopped as requested.
 fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     match ended.ending {
         Ending::Finished => {

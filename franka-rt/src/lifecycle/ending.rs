@@ -16,7 +16,6 @@ pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
 };
 
 impl Lifecycle {
-    /// Processes the thread's report that a motion has ended.
     pub(super) fn on_ended(&mut self, ended: Ended, now: Duration) {
         if let Program::Target(session) = &ended.program {
             self.learned = session.learned();
@@ -224,7 +223,6 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the waiting motion, if any, with `error`, because it does not begin.
     pub(super) fn resolve_next(&mut self, error: MotionError) {
         if let Some(next) = self.next.take() {
             self.resolve(next.id(), Err(error));

@@ -37,7 +37,6 @@ pub struct Engagement {
 }
 
 impl Engagement {
-    /// Checks the options of a session that begins with `goal`, for a robot in `state`.
     pub(super) fn check(&self, goal: &Goal, state: &RobotState) -> Result<(), GoalError> {
         self.backend.check(goal)?;
         self.backend.check_start(&state.q_d.into())?;
@@ -287,7 +286,6 @@ impl Lifecycle {
         matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }
 
-    /// True if a session that lasts from goal to goal controls the arm.
     pub(super) fn is_engaged(&self) -> bool {
         self.goals().is_some_and(|goals| goals.owner != Owner::Goal)
     }

@@ -14,20 +14,17 @@ use crate::session::{
 };
 use crate::triple_buffer::Writer;
 
-/// The goals of a motion under target control.
 #[derive(Debug)]
 pub(super) struct Goals {
     pub(super) newest: Writer<Goal>,
     /// The newest goal.
     pub(super) current: Goal,
-    /// True if the owner of the goal has cancelled it.
     pub(super) cancelled: bool,
     /// Result of the motion, according to the reports of its session.
     pub(super) verdict: Verdict,
     pub(super) owner: Owner,
     /// Pulse of the deadman that the session is bound to.
     pub(super) pulse: Option<Arc<Pulse>>,
-    /// Backend that turns setpoints into torques.
     pub(super) backend: Backend,
     /// Writer of the chunks for the session.
     pub(super) chunks: ChunkWriter,
@@ -138,7 +135,6 @@ impl Goals {
         self.chunks.has_room()
     }
 
-    /// Sends a chunk, or the path of a goal that is about to begin.
     pub(super) fn send(&mut self, goal: GoalId, chunk: Chunk) -> Result<(), TooManyChunks> {
         if !self.has_room() {
             return Err(TooManyChunks);
@@ -240,7 +236,6 @@ impl Goals {
         }
     }
 
-    /// Returns the outcome of a session, given the outcome of its last goal.
     pub(super) fn end_of_engagement(&self, result: &Outcome) -> Option<(GoalId, Outcome)> {
         match (self.owner, result) {
             (Owner::Goal, _) => None,
@@ -302,7 +297,6 @@ impl Goals {
 }
 
 impl Settled {
-    /// Returns the outcome of the goal, in a motion whose cycles were `counted`.
     pub(super) fn result(&self, counted: &Counted, cancelled: bool) -> Outcome {
         let failed = |error: MotionError| match self.reacted {
             Some(reacted) => Err(error.after(reacted)),

@@ -124,7 +124,6 @@ impl Lifecycle {
         }
     }
 
-    /// Same as [`Self::goals`], but mutable.
     pub(super) fn goals_mut(&mut self) -> Option<&mut Goals> {
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) => match &mut current.work {

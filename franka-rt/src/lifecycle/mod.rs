@@ -123,15 +123,12 @@ pub struct Lifecycle {
     /// Stops that have not resolved yet.
     stops: Vec<Stop>,
     motions: u64,
-    /// Number of cycles that the log of a motion holds.
     log_size: usize,
     /// Time without a state after which a change that no state has shown counts as missing.
     link_timeout: Duration,
-    /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
     /// Values of the arm from an earlier identification; `None` once a session has begun with them.
     known: Option<Box<Identified>>,
-    /// Values that sessions have learned about the arm.
     learned: Learned,
     outputs: VecDeque<Output>,
 }

@@ -106,12 +106,10 @@ impl NewMotion {
         }
     }
 
-    /// True if a newer goal may supersede the motion.
     pub(crate) fn is_superseded_by_goals(&self) -> bool {
         matches!(self, Self::Goal { .. })
     }
 
-    /// True if the motion supersedes older goals.
     pub(crate) fn supersedes_goals(&self) -> bool {
         matches!(self, Self::Goal { ticket: None, .. })
     }
@@ -188,7 +186,6 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Checks that a path can be passed to the current motion.
     fn check_room(&mut self) -> Result<(), GoalError> {
         match self.goals_mut().map(Goals::has_room) {
             Some(false) => Err(TooManyChunks.into()),

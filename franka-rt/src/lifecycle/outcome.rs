@@ -378,7 +378,6 @@ impl MotionError {
     }
 }
 
-/// Returns the advice for a robot that refused a motion because it is in the mode "Reflex".
 fn recover_first(refusal: &Refusal) -> &'static str {
     let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
     match (refusal.status() == not_possible, refusal.mode()) {

@@ -9,7 +9,6 @@ use super::current_motion::Work;
 use super::{Lifecycle, LifecyclePhase};
 use crate::session::GoalId;
 
-/// A motion under a program of the user.
 #[derive(Debug)]
 pub(super) struct UserProgram {
     /// Id under which a caller awaits the program's end.

@@ -119,7 +119,6 @@ impl Lifecycle {
         self.stops.push(Stop { id, stage });
     }
 
-    /// Returns the newest goal if it brakes for a stop.
     fn brake_of_a_stop(&self) -> Option<GoalId> {
         let (newest, _) = self.heading()?;
         let brakes = |stop: &Stop| stop.stage.is_braking_by(newest);
@@ -198,7 +197,6 @@ impl Lifecycle {
         }
     }
 
-    /// Resolves the stops that wait for a state with `error`.
     pub(super) fn fail_stops(&mut self, error: &MotionError) {
         for stop in mem::take(&mut self.stops) {
             match stop.stage {
@@ -208,13 +206,11 @@ impl Lifecycle {
         }
     }
 
-    /// Returns the earliest deadline of all stops.
     pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
         let until = self.stops.iter().map(|stop| stop.stage.until());
         until.flatten().min()
     }
 
-    /// Postpones the deadlines of stops that have passed by `now`.
     pub(super) fn postpone_stops(&mut self, now: Duration, later: Duration) {
         for stop in &mut self.stops {
             if let StopStage::Braking {

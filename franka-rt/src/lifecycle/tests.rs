@@ -16,7 +16,6 @@ use crate::shaping::InvalidCommand;
 
 const NOW: Duration = Duration::ZERO;
 
-/// A lifecycle with its driver, and the requests and outcomes of the lifecycle.
 struct LifecycleAndDriver {
     lifecycle: Lifecycle,
     driver: Driver,
@@ -91,7 +90,6 @@ impl LifecycleAndDriver {
         (pair, motion, id)
     }
 
-    /// The robot starts the newest motion, and runs it for some cycles.
     fn run_started(&mut self, motion: MotionId) {
         let Some(Request::Move(request)) = self.sent.last() else {
             panic!("{:?}", self.sent)

@@ -8,7 +8,6 @@ use super::{Budget, GoalId, Leash, Target};
 /// in each cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
-    /// Goal of the aim.
     pub(super) goal: GoalId,
     pub(super) target: Target,
     pub(super) budget: Budget,

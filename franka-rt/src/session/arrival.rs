@@ -247,19 +247,16 @@ impl Release {
         }
     }
 
-    /// Returns the reference in this cycle.
     pub(super) fn reference(&mut self) -> JointVector {
         self.cycle += 1;
         let remaining = RELEASE.saturating_sub(self.cycle);
         self.arm + self.length * (f64::from(remaining) / f64::from(RELEASE))
     }
 
-    /// Returns the distance between `pose` and the target, if there is a target.
     pub(super) fn error(&self, pose: &Isometry3<f64>) -> Option<PoseError> {
         self.target.map(|target| PoseError::between(pose, &target))
     }
 
-    /// True if the spring is released and the arm is at rest.
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
         self.cycle >= RELEASE && at_rest
     }

@@ -39,8 +39,8 @@ pub enum Backend {
     /// cap is refused.
     ///
     /// Setpoints continue from the robot's own setpoint. If commands were lost and the robot
-    /// continued alone, the reference moves to the robot's setpoint. The last guard (backstop) is
-    /// the limiter that the robot applies to setpoints.
+    /// continued alone, the reference moves to the robot's setpoint. The last guard is the
+    /// backstop, a limiter of setpoints.
     RobotController {
         /// Controller that follows the setpoints.
         controller: Controller,
@@ -347,7 +347,6 @@ impl fmt::Display for Setpoints {
     }
 }
 
-/// Returns the elbow at these joint positions in the form of a command.
 pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }

@@ -58,7 +58,6 @@ impl Goal {
         target(&self.hand_target(), model, state)
     }
 
-    /// Checks tolerance, lead, leash, deviation, settling and force cap.
     fn check_numbers(&self) -> Result<(), GoalError> {
         const POSITIVE: [f64; 2] = [1e-6, f64::INFINITY];
         let (least, most) = (Leash::LEAST, Leash::MOST);
@@ -143,7 +142,6 @@ impl Goal {
     }
 }
 
-/// Checks that a robot in `state` can reach a target.
 pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
     let ee = reported_end_effector(model, state).ok_or(GoalError::Tool)?;
     match to {
@@ -179,7 +177,6 @@ pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(
     }
 }
 
-/// Checks keep-out regions, and converts them to the session's form.
 pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError> {
     let mut checked = KeepOut::default();
     for (i, region) in regions.iter().enumerate() {
@@ -223,7 +220,6 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
     })
 }
 
-/// Checks that this robot's joints can follow a target with these velocities, `[rad/s]`.
 pub(super) fn joint_speeds(dq: &[f64; 7], model: &Model) -> Result<(), GoalError> {
     let most = model.joint_limits().velocity;
     let mut each = dq.iter().zip(&most);
@@ -264,7 +260,6 @@ fn speed(what: &'static str, unit: &'static str, got: f64, most: f64) -> Result<
     })
 }
 
-/// Checks the timeout of a watchdog or a deadman.
 pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {
     if got < Goal::SILENCE_MIN {
         return Err(GoalError::Silence { got });

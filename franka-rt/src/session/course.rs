@@ -22,7 +22,6 @@ const _: () = assert!(
     "generators advance by the control cycle"
 );
 
-/// Motion of the reference.
 #[derive(Debug)]
 pub(super) enum Course {
     /// The reference stays at rest.
@@ -33,7 +32,6 @@ pub(super) enum Course {
     Chunk(ChunkCourse),
 }
 
-/// Result of a course in one cycle.
 #[derive(Debug)]
 pub(super) struct CourseStep {
     pub(super) reference: Reference,
@@ -141,7 +139,6 @@ impl Course {
         }
     }
 
-    /// Stops the course on the way to its target.
     fn halt(&mut self) -> Result<(), PlanError> {
         match self {
             Self::Joints(generator) => generator.halt(),
@@ -230,7 +227,6 @@ impl Course {
         }
     }
 
-    /// True if the course has ended.
     pub(super) fn is_done(&self) -> bool {
         match self {
             Self::Rest => true,
@@ -298,7 +294,6 @@ pub(super) fn limits_of_joint(
     }
 }
 
-/// Returns the state of a moving reference's end effector.
 pub(super) fn end_effector(model: &Model, ee: &EndEffector, reference: &Reference) -> PoseState {
     let dynamics = model.dynamics(&reference.q, &reference.dq, ee, &Load::NONE, &GRAVITY_EARTH);
     PoseState {

@@ -115,23 +115,18 @@ impl Effort {
         }
     }
 
-    /// Sets the values that earlier sessions learned about the arm.
     pub(super) fn know(&mut self, learned: Learned) {
         self.compensation = Compensation::new(learned);
     }
 
-    /// Returns the values learned about the arm.
     pub(super) fn learned(&self) -> Learned {
         self.compensation.learned()
     }
 
-    /// Returns the torques that compensated friction and bias in the last cycle, `[N m]`.
     pub(super) fn compensated(&self) -> JointVector {
         self.compensated
     }
 
-    /// Returns the torques that the law demanded in the last cycle, before they were smoothed, `[N
-    /// m]`.
     pub(super) fn demanded(&self) -> &JointVector {
         &self.demanded
     }
@@ -157,7 +152,6 @@ impl Effort {
         self.compensation.is_working()
     }
 
-    /// Starts the fade to the gains and the force cap of another goal.
     pub(super) fn take_up(&mut self, goal: &Goal) {
         self.fade
             .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));

@@ -50,7 +50,6 @@ pub(super) fn correction(models: &Isometry3<f64>, reported: &[f64; 16]) -> Isome
     }
 }
 
-/// Returns the end effector `ee`, moved by a correction in its own axes.
 pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEffector {
     EndEffector {
         f_t_ee: ee.f_t_ee * transform::matrix(correction),
@@ -58,7 +57,6 @@ pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEff
     }
 }
 
-/// Returns the model's pose and the robot's pose.
 fn poses(model: &Model, state: &RobotState) -> Option<(Isometry3<f64>, Isometry3<f64>)> {
     let robots = read(&state.O_T_EE)?;
     let q = JointVector::from(state.q);

@@ -102,7 +102,6 @@ impl Target {
         }
     }
 
-    /// Returns the target extrapolated by `ms` milliseconds.
     #[must_use]
     pub(crate) fn after(self, ms: u64) -> Self {
         let t = ms as f64 * 1e-3;

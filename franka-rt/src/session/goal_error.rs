@@ -226,7 +226,6 @@ impl GoalError {
     }
 }
 
-/// Formats a position for an error's text.
 fn place(position: [f64; 3]) -> String {
     let [x, y, z] = position;
     if position.iter().any(|x| x.abs() > 10.0) {
@@ -268,7 +267,6 @@ impl core::fmt::Display for Hindrance {
     }
 }
 
-/// Returns advice about alternatives to a straight line.
 fn way_on(posture: Option<&[f64; 7]>) -> String {
     match posture {
         Some(q) => format!("use `move_joints` to {q:.4?} rad, which reaches the pose"),
@@ -284,7 +282,6 @@ fn way_on(posture: Option<&[f64; 7]>) -> String {
 )]
 pub struct TooManyChunks;
 
-/// Describes the accepted range in words.
 fn between(least: f64, most: f64) -> String {
     if most.is_infinite() {
         format!("at least {least}")

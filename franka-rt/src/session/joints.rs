@@ -60,7 +60,7 @@ impl JointGenerator {
     /// continues as before, the plan stays as it is.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(super) fn head_for(
         &mut self,
         robot: &JointLimits,
@@ -101,7 +101,7 @@ impl JointGenerator {
     /// Stops within the limits of the plan. If the joints move on a line, they stop on that line.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(super) fn halt(&mut self) -> Result<(), PlanError> {
         self.planned = None;
         if self.drift == [0.0; 7] {
@@ -124,7 +124,7 @@ impl JointGenerator {
     /// Sets the joint positions to `q`, `[rad]`, keeps their velocities, and plans anew from there.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(super) fn set_positions(&mut self, q: [f64; 7]) -> Result<(), PlanError> {
         let t = self.time();
         self.axes.set_state(State {
@@ -159,7 +159,6 @@ impl JointGenerator {
         f64::from(self.cycles) * CYCLE
     }
 
-    /// True if the joints rest at the end of the plan.
     pub(super) fn is_done(&self) -> bool {
         self.axes.is_done()
     }

@@ -43,12 +43,10 @@ impl Posture {
         Self { q, asked: false }
     }
 
-    /// Returns a posture that a goal requests, `[rad]`.
     pub(super) fn asked(q: JointVector) -> Self {
         Self { q, asked: true }
     }
 
-    /// True if a goal requests the posture.
     pub(super) fn is_asked(&self) -> bool {
         self.asked
     }

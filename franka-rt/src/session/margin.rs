@@ -114,7 +114,6 @@ impl Lateness {
         }
     }
 
-    /// Returns the sum of delay and lags, `[s]`.
     fn sum(&self) -> f64 {
         self.lags.iter().fold(Self::DELAY, |sum, lag| sum + lag)
     }

@@ -108,13 +108,10 @@ pub struct TargetSession {
     held: Option<Goal>,
     /// A goal whose common start failed, and why it failed.
     unstarted: Option<(GoalId, StartFault)>,
-    /// Deadman of the session.
     deadman: Option<DeadmanMonitor>,
-    /// Membership in a team.
     team: Option<Membership>,
     backend: Backend,
     version: Version,
-    /// Source of chunks.
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     speed_cap: Option<f64>,
@@ -228,7 +225,6 @@ impl TargetSession {
         }
     }
 
-    /// Leaves the team, if the session is in one.
     pub(crate) fn leave_team(&mut self) {
         if let Some(team) = &mut self.team {
             team.leave();

@@ -43,7 +43,6 @@ pub(crate) struct MovingPose {
 }
 
 impl From<Isometry3<f64>> for MovingPose {
-    /// Returns the pose at rest.
     fn from(pose: Isometry3<f64>) -> Self {
         let twist = Twist::zeros();
         Self { pose, twist }
@@ -100,7 +99,6 @@ pub(crate) struct PoseGenerator {
     /// Target of the plan; `None` if the plan only brakes to rest.
     target: Option<MovingPose>,
     budget: Budget,
-    /// Limits of the robot.
     most: &'static CartesianLimits,
 }
 
@@ -135,7 +133,7 @@ impl PoseGenerator {
     /// the plan stays as it is.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(crate) fn retarget(&mut self, target: MovingPose, budget: Budget) -> Result<(), PlanError> {
         let before = self.target.map(|before| before.after(self.time()));
         let same = before.is_some_and(|before| before.is(&target));
@@ -149,7 +147,7 @@ impl PoseGenerator {
     /// Sets the present pose to `pose`, keeps its velocity, and plans anew from there.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(crate) fn reanchor(&mut self, pose: Isometry3<f64>) -> Result<(), PlanError> {
         let start = PoseState {
             pose,
@@ -165,7 +163,7 @@ impl PoseGenerator {
     /// line.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(crate) fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             return self.axes.slow_down(share);
@@ -184,7 +182,7 @@ impl PoseGenerator {
     /// Stops within the budget. If the pose moves on a line, it stops on that line.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::new`]; the motion in progress then continues.
+    /// As for [`Self::new`]; the motion in progress continues.
     pub(crate) fn halt(&mut self) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             self.axes.brake();
@@ -252,7 +250,6 @@ impl PoseGenerator {
         f64::from(self.cycles) * CYCLE
     }
 
-    /// Returns the present pose.
     pub(crate) fn pose(&self) -> Isometry3<f64> {
         let position = &self.axes.state().position;
         let in_frame = Isometry3::from_parts(
@@ -281,7 +278,6 @@ impl PoseGenerator {
         self.axes.is_done()
     }
 
-    /// Returns the present state of the pose.
     pub(crate) fn state(&self) -> PoseState {
         let State {
             position,
@@ -312,7 +308,6 @@ struct Plan {
     state: State<6>,
     limits: Limits<6>,
     to: [f64; 6],
-    /// Twist of the frame.
     twist: Twist,
 }
 

@@ -64,7 +64,6 @@ impl Condition {
 }
 
 impl Reaction {
-    /// Checks the reaction for a robot in `state`.
     pub(super) fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         self.condition.check()?;
         if let Target::Guide(_) = self.then {

@@ -15,7 +15,6 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// Returns the reference at rest at `q`.
     pub(crate) fn at_rest(q: JointVector) -> Self {
         Self {
             q,

@@ -29,7 +29,6 @@ const EASINGS: usize = 3;
 /// Rate at which velocities remove a drift, `[1/s]`.
 const RETURN: f64 = 10.0;
 
-/// Streams setpoints to the robot's controller.
 #[derive(Debug)]
 pub(super) struct SetpointStream {
     controller: Controller,
@@ -78,7 +77,6 @@ impl SetpointStream {
         self.controller
     }
 
-    /// True if poses or twists are sent.
     pub(super) fn is_cartesian(&self) -> bool {
         matches!(
             self.setpoints,
@@ -268,7 +266,6 @@ fn eased(
     (shaped, true)
 }
 
-/// Returns the model's pose at these joint positions.
 fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
 }

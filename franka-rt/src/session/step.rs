@@ -8,7 +8,6 @@ use super::reference::Reference;
 use super::{Bindings, GoalId, Target};
 use crate::control::{MotionCommand, Torques};
 
-/// Answer of a session to a state.
 #[derive(Debug)]
 pub(crate) struct SessionStep {
     pub(crate) answer: SessionCommand,

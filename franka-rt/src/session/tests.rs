@@ -53,7 +53,6 @@ impl Arm {
         self.goals.write(goal);
     }
 
-    /// Answers the next state.
     fn answer(&mut self, gate: Gate) -> SessionStep {
         self.state.message_id += 1;
         self.event = None;

@@ -48,7 +48,6 @@ impl Pauses {
     }
 }
 
-/// Times of the attempts, the oldest one first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Attempts(VecDeque<Duration>);
 
@@ -64,7 +63,6 @@ impl Attempts {
         may
     }
 
-    /// True if another attempt may be made at `now`.
     pub(super) fn may(&mut self, most: u32, window: Duration, now: Duration) -> bool {
         self.forget(window, now);
         self.0.len() < most as usize

@@ -8,7 +8,6 @@ use super::policy::Policy;
 use super::reflex::ReflexCase;
 use crate::lifecycle::{CloseReason, Differences, Unready};
 
-/// State of the connection.
 #[derive(Debug)]
 pub(super) enum Connection {
     /// The program is connecting for the first time.
@@ -25,7 +24,6 @@ pub(super) enum Connection {
     Closed,
 }
 
-/// A connection that exists.
 #[derive(Debug)]
 pub(super) struct Up {
     /// Time at which the connection was made.
@@ -39,12 +37,10 @@ pub(super) struct Up {
     pub(super) seen: Option<Seen>,
     /// The mode that was reported last. Before the first report, it is the mode of an idle robot.
     pub(super) told: RobotMode,
-    /// The reflex that the robot is in, if any.
     pub(super) reflex: Option<ReflexCase>,
     /// Differences from the robot of the previous connection. `None` once the user has agreed to a
     /// recovery, or a motion was requested.
     pub(super) differences: Option<Differences>,
-    /// How far this program's settings have been sent again.
     pub(super) configuration: Configuration,
 }
 
@@ -95,7 +91,6 @@ pub(super) struct Silent {
     pub(super) is_given_up: bool,
 }
 
-/// A connection that was lost.
 #[derive(Clone, Debug)]
 pub(super) struct Loss {
     pub(super) since: Duration,
@@ -203,7 +198,6 @@ impl Connection {
         }
     }
 
-    /// Returns the robot's present reflex.
     pub(super) fn reflex(&self) -> Option<&ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_ref(),
@@ -211,7 +205,6 @@ impl Connection {
         }
     }
 
-    /// Returns the robot's present reflex, mutable.
     pub(super) fn reflex_mut(&mut self) -> Option<&mut ReflexCase> {
         match self {
             Self::Up(up) => up.reflex.as_mut(),

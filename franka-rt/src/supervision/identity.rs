@@ -22,7 +22,6 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    /// Returns the data of a robot that has just shown this state.
     pub(super) fn of(description: Option<u64>, state: &RobotState, now: Duration) -> Self {
         let [x, y, z] = state.F_x_Cee;
         Self {
@@ -36,7 +35,6 @@ impl Identity {
         }
     }
 
-    /// Updates the data with a newer state.
     pub(super) fn update(&mut self, state: &RobotState, now: Duration) {
         *self = Self::of(self.description, state, now);
     }

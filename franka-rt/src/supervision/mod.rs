@@ -109,18 +109,14 @@ pub struct Supervision {
     load: Option<Load>,
     /// Data of the robot when its last state arrived, to recognise it later.
     identity: Option<Identity>,
-    /// Number of reflexes so far.
     reflexes: u64,
     recoveries: Attempts,
     pauses: Pauses,
     /// Error of the last motion, if a reflex ended it and no state has shown that reflex yet.
     unshown: Option<Box<ControlError>>,
-    /// Motions that have begun and have not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
-    /// Settings that this program has made at the robot.
     settings: Settings,
-    /// Number of connections made so far.
     connections: u64,
     /// True if a stop is latched. The latch remains when the connection changes.
     stop_latched: bool,
@@ -248,7 +244,6 @@ impl Supervision {
         }
     }
 
-    /// Sets the latch. Returns true if a stop was latched before.
     fn set_latch(&mut self, latched: bool, now: Duration) -> bool {
         let before = core::mem::replace(&mut self.stop_latched, latched);
         if before != latched {
@@ -416,7 +411,6 @@ impl Supervision {
         }));
     }
 
-    /// Refuses the waiting motion, if there is one.
     fn refuse(&mut self, error: impl FnOnce(&Waiting) -> MotionError) {
         if let Some(waiting) = self.waiting.take() {
             let (goal, error) = (waiting.goal, error(&waiting));
@@ -494,7 +488,6 @@ impl Supervision {
         }
     }
 
-    /// Ends the reflex once the robot accepts motions again.
     fn end_reflex(&mut self, now: Duration) {
         let Connection::Up(up) = &mut self.connection else {
             return;

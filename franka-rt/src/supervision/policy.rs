@@ -27,7 +27,6 @@ pub struct Policy {
     pub(super) seed: Option<u64>,
 }
 
-/// Rules for the recovery from a reflex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Recovery {
     pub(super) times: u32,

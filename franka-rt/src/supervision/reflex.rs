@@ -36,7 +36,6 @@ pub(super) struct ReflexCase {
     stage_told: bool,
 }
 
-/// Stage of the recovery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
     /// A person or the program must recover the robot.
@@ -51,7 +50,6 @@ enum Stage {
     Answered { until: Duration, failed: u32 },
 }
 
-/// Next step of a reflex.
 #[derive(Debug, PartialEq)]
 pub(super) enum Step {
     Tell(Reflex),
@@ -83,12 +81,10 @@ impl ReflexCase {
         }
     }
 
-    /// Adds the error of the motion that the reflex ended.
     pub(super) fn explain(&mut self, error: ControlError) {
         self.error.get_or_insert_with(|| Arc::new(error));
     }
 
-    /// True if the reflex has been reported.
     pub(super) fn is_told(&self) -> bool {
         self.told
     }

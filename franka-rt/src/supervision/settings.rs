@@ -32,7 +32,6 @@ pub struct SettingId(u64);
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     newest: Vec<Setting>,
-    /// Number of settings so far.
     count: u64,
 }
 
@@ -69,13 +68,11 @@ impl Settings {
         self.newest.is_empty()
     }
 
-    /// True if the robot has all settings on the newest connection.
     pub(super) fn all_hold(&self) -> bool {
         let holds = |setting: &Setting| matches!(setting.standing, Standing::Holds);
         self.newest.iter().all(holds)
     }
 
-    /// True if any setting must be sent again.
     pub(super) fn any_open(&self) -> bool {
         self.next().is_some()
     }
@@ -145,14 +142,12 @@ impl Settings {
         };
     }
 
-    /// Returns the next setting to send on the newest connection.
     pub(super) fn next(&self) -> Option<(SettingId, Request)> {
         let is_open = |setting: &&Setting| matches!(setting.standing, Standing::Open);
         let open = self.newest.iter().find(is_open)?;
         Some((open.id, open.request))
     }
 
-    /// Returns the settings that could not be restored, and the reasons.
     pub(super) fn failures(&self) -> impl Iterator<Item = (Command, &String)> {
         self.newest
             .iter()

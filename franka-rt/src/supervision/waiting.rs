@@ -17,7 +17,6 @@ pub enum Admission {
     Refuse(MotionError),
 }
 
-/// A motion that waits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) goal: GoalId,

@@ -13,7 +13,6 @@ use crate::shaping::CYCLE;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Learned([Joint; 7]);
 
-/// Friction and bias of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Joint {
     /// Friction, `[N m]`, at least zero.

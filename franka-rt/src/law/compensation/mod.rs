@@ -43,7 +43,6 @@ use learned::UNBIASED;
 
 pub(crate) use learned::Learned;
 
-/// Compensation of each joint.
 #[derive(Debug)]
 pub(crate) struct Compensation {
     learned: Learned,
@@ -87,7 +86,6 @@ impl Approach {
     }
 }
 
-/// Arm and reference in one cycle.
 #[derive(Debug)]
 pub(crate) struct Demand<'a> {
     /// Velocity of the reference, `[rad/s]`.

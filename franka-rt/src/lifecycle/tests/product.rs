@@ -92,10 +92,8 @@ const STATES: [&[Step]; 24] = [
     &[Begin, Run, Stalls],
 ];
 
-/// A goal that was accepted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Accepted {
-    /// The goal follows a path.
     path: bool,
     /// The goal got another target, or its motion was asked to end.
     redirected: bool,
@@ -116,7 +114,6 @@ struct Bench {
     stops: Vec<GoalId>,
     seen: usize,
     way: Vec<Step>,
-    /// Violations so far.
     faults: Vec<String>,
 }
 
@@ -265,7 +262,6 @@ impl Bench {
             Close => lifecycle.close(newest),
             Pause => lifecycle.pause(newest, true),
             GoOn => lifecycle.pause(newest, false),
-            // Callers cannot cancel a stop.
             Cancel if self.stops.contains(&newest) => {}
             Cancel => {
                 lifecycle.cancel(newest, NOW);
@@ -318,7 +314,6 @@ impl Bench {
         self.settle();
     }
 
-    /// Passes on all outputs and events, and checks the results.
     fn settle(&mut self) {
         self.pair.settle();
         for request in std::mem::take(&mut self.pair.sent) {
@@ -334,7 +329,6 @@ impl Bench {
         self.look();
     }
 
-    /// The robot reports how its motion has ended, if it has one.
     fn ends(&mut self, status: MoveStatus) {
         let (motion, shows) = match self.robot {
             Robot::Asked(motion, _) | Robot::Left(motion) => (motion, false),
@@ -442,7 +436,6 @@ impl Bench {
         self.check(kept, || format!("{id:?} has lost its path"));
     }
 
-    /// Runs until everything has ended.
     fn end(&mut self) {
         self.take(Revives);
         self.run(400);
@@ -458,7 +451,6 @@ impl Bench {
     }
 }
 
-/// Fails with the first few faults.
 fn conclude(faults: &[String]) {
     let first = faults[..faults.len().min(20)].join("\n");
     assert!(faults.is_empty(), "{} faults:\n{first}", faults.len());

@@ -57,14 +57,12 @@ pub(in crate::session) struct ChunkStart<'a> {
     pub(in crate::session) pose: PoseState,
     /// Rest of a previous motion of the joints.
     pub(in crate::session) drift: Drift,
-    /// The previous chunk.
     pub(in crate::session) before: Option<&'a ChunkCourse>,
     /// `message_id` of the state that is answered.
     pub(in crate::session) now: u64,
 }
 
 impl ChunkCourse {
-    /// Begins to follow `chunk`.
     pub(in crate::session) fn new(
         model: &Model,
         goal: GoalId,
@@ -262,7 +260,6 @@ impl ChunkCourse {
         }
     }
 
-    /// True if the chunk has ended by `now`.
     pub(in crate::session) fn is_over(&self, now: u64) -> bool {
         match &self.play {
             Play::Joints { player, .. } => player.is_over(now),
@@ -270,7 +267,6 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the time from `now` to the last point, `[s]`.
     pub(in crate::session) fn remaining(&self, now: u64) -> f64 {
         match &self.play {
             Play::Joints { player, .. } => player.remaining(now),
@@ -278,7 +274,6 @@ impl ChunkCourse {
         }
     }
 
-    /// Returns the target at which the chunk ends at rest.
     pub(in crate::session) fn target(&self) -> Target {
         match &self.play {
             Play::Joints { player, .. } => Target::Joints(player.curve().last().q.into()),

@@ -52,7 +52,6 @@ impl<M: CurveState> Curve<M> {
         &self.states[self.states.len() - 1]
     }
 
-    /// Returns the range of the points.
     pub(super) fn extent(&self) -> &M::Extent {
         &self.extent
     }

@@ -21,7 +21,6 @@ pub(super) trait CurveState: Copy {
     /// Difference between two states, with its derivatives.
     type Gap: Copy + core::fmt::Debug;
 
-    /// Range that several states cover.
     type Extent: Clone + core::fmt::Debug + PartialEq;
 
     /// Returns the state at the time `t` on the way from `from` at 0 to `to` at `duration`, in
@@ -52,7 +51,6 @@ pub(super) trait CurveState: Copy {
     /// Returns the same place, at rest.
     fn resting(&self) -> Self;
 
-    /// Returns the range of `states`.
     fn extent(states: &[Self]) -> Self::Extent;
 
     /// Returns a curve of these states as the points of a chunk.
@@ -278,7 +276,6 @@ impl CurveState for PoseState {
 }
 
 impl PoseState {
-    /// Returns position, velocity and acceleration of the frame's origin.
     pub(super) fn translation(&self) -> PointState<3> {
         PointState {
             p: self.pose.translation.vector,

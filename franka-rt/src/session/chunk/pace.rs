@@ -40,7 +40,6 @@ impl Pace {
 /// Shortest time in which the time of a path stops, `[s]`.
 const STOP_MIN: f64 = 0.05;
 
-/// The current time of a path.
 #[derive(Debug)]
 pub(super) struct PathTime {
     /// Time along the path, `[s]`.
@@ -53,7 +52,6 @@ pub(super) struct PathTime {
 }
 
 impl PathTime {
-    /// Starts at the beginning of a path.
     pub(super) fn new(pace: Pace) -> Option<Self> {
         Some(Self {
             time: -CYCLE,

@@ -132,7 +132,6 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// True if the motion has ended by `now`.
     pub(super) fn is_over(&self, now: u64) -> bool {
         let t = self.time(now);
         let entered = match self.entry {
@@ -144,7 +143,6 @@ impl<M: CurveState> Player<M> {
         entered && t >= self.curve.end()
     }
 
-    /// Returns the time from `now` to the last point, `[s]`.
     pub(super) fn remaining(&self, now: u64) -> f64 {
         (self.curve.end() - self.time(now)).max(0.0)
     }

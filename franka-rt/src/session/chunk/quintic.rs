@@ -12,7 +12,6 @@ pub(super) struct PointState<const D: usize> {
 }
 
 impl<const D: usize> PointState<D> {
-    /// Returns zero for all values.
     pub(super) fn zero() -> Self {
         Self {
             p: SVector::zeros(),

@@ -25,7 +25,6 @@ struct Waiting {
     wait: f64,
 }
 
-/// A chunk, and the goal that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sent {
     pub(super) goal: GoalId,
@@ -230,7 +229,6 @@ impl ChunkReader {
         }
     }
 
-    /// Returns a chunk that is no longer needed to the writer.
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {

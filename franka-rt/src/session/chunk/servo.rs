@@ -152,7 +152,6 @@ fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
 
-/// Returns `vector`, shortened to `length` if it is longer.
 fn shortened<const D: usize>(vector: SVector<f64, D>, length: f64) -> SVector<f64, D> {
     let norm = vector.norm();
     if norm > length {

@@ -296,7 +296,6 @@ impl Chunk {
         }
     }
 
-    /// Returns the `message_id` of the state that the policy observed, if it was set.
     pub(crate) fn observation(&self) -> Option<u64> {
         match self.origin {
             Origin::TakeUp => None,

@@ -74,7 +74,6 @@ enum Since {
     Tare,
 }
 
-/// An operand or operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Node {
     Compare {
@@ -406,7 +405,6 @@ impl Node {
     }
 }
 
-/// Returns the whole milliseconds of `time`.
 fn milliseconds(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

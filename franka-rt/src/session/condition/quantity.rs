@@ -91,7 +91,6 @@ impl Quantity {
         )
     }
 
-    /// Returns the joint of the quantity, or `None` if the quantity belongs to no joint.
     pub(super) fn joint(self) -> Option<u8> {
         match self {
             Self::JointTorque(joint) | Self::JointPosition(joint) | Self::JointVelocity(joint) => {
@@ -181,7 +180,6 @@ impl Sample {
         sample
     }
 
-    /// Returns the change since `before`.
     pub(super) fn since(&self, before: &Self) -> Self {
         Self(core::array::from_fn(|i| self.0[i] - before.0[i]))
     }

@@ -9,7 +9,6 @@ use rand::{Rng, SeedableRng};
 use super::*;
 use crate::session::running::Measured;
 
-/// Passes states to conditions.
 struct Arm {
     state: RobotState,
     measured: Measured,

@@ -9,7 +9,6 @@ use crate::shaping::Bounds;
 /// rounding changes the acceleration computed from two positions by up to 0.25 rad/s^2.
 pub(crate) const BACKSTOP: f64 = 0.95;
 
-/// Returns the bounds of the limiter for setpoints.
 pub(crate) fn bounds(version: Version) -> Bounds {
     let bounds = match version {
         Version::V5 => Bounds::fer(),

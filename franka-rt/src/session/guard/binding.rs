@@ -116,7 +116,6 @@ impl core::fmt::Display for Guard {
 }
 
 impl Bindings {
-    /// Adds `guard` if `binds` is true.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
         self.0 |= u32::from(binds) << guard as u32;
     }

@@ -42,12 +42,10 @@ pub(crate) struct Displacement {
 }
 
 impl Displacement {
-    /// Creates the guard for a reference at `anchor`, `[rad]`.
     pub(crate) fn at(anchor: JointVector) -> Self {
         Self { anchor }
     }
 
-    /// Records a reference that the leash does not hold.
     pub(crate) fn set_free(&mut self, reference: &JointVector) {
         self.anchor = *reference;
     }

@@ -121,7 +121,6 @@ mod tests {
         Model::fr3().dynamics(q, &still, &ee, &Load::NONE, &GRAVITY_EARTH)
     }
 
-    /// Returns the inverse of the inertia of links and rotors.
     fn mobility(dynamics: &Dynamics) -> MassMatrix {
         let mass = dynamics.mass + MassMatrix::from_diagonal(&task_space::ROTORS.into());
         mass.try_inverse().expect("a physical arm")
@@ -136,7 +135,6 @@ mod tests {
         point.try_inverse().expect("regular") * jacobian * inverse * tau
     }
 
-    /// Returns the torques of springs and of dampers.
     fn torques(
         gains: &Gains,
         dynamics: &Dynamics,

@@ -52,7 +52,6 @@ pub(crate) struct BoundsReached {
 }
 
 impl BoundsReached {
-    /// True if any bound limited a joint.
     pub(crate) fn any(self) -> bool {
         self != Self::default()
     }

@@ -115,7 +115,6 @@ impl ObstacleBraking {
         }
     }
 
-    /// Plans the course toward `aim`, or records that no plan could be made.
     fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         let planned = self.course.head_for(model, ee, reference, aim);
         self.failed |= planned.is_err();
@@ -215,7 +214,6 @@ impl ObstacleBraking {
         self.stale = true;
     }
 
-    /// Ends the course if it follows a chunk.
     fn retire_chunk(&mut self) {
         if matches!(self.course, Course::Chunk(_))
             && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
@@ -314,7 +312,6 @@ impl ObstacleBraking {
         (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 
-    /// True if the course has ended.
     pub(in crate::session) fn is_done(&self) -> bool {
         !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
     }

@@ -33,7 +33,6 @@ pub(crate) const LEAST: f64 = 0.1;
 /// The highest accepted cap, `[m/s]`: the robot's own limit for the end effector.
 pub(crate) const MOST: f64 = 3.0;
 
-/// The speed cap of a session.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpeedCap<'a> {
     /// Cap, `[m/s]`.

@@ -38,7 +38,6 @@ pub(crate) struct Unresponsive {
     changed: bool,
 }
 
-/// The command of one cycle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Commanded<'a> {
     /// Torques without gravity, `[N m]`, as the law demands them, before smoothing.

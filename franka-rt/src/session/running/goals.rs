@@ -8,7 +8,6 @@ use super::{Drive, GoalStage, RunningSession, Standing, carry};
 use crate::session::aim::Aim;
 use crate::session::{Budget, Goal, OnArrival, Target};
 
-/// Aim of the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bearing {
     /// The reference moves to this target.

@@ -72,7 +72,6 @@ pub(super) struct RunningSession {
     pub(super) goal: Goal,
     /// The arm in the newest state that was answered.
     arm: Measured,
-    /// Prepared values for the answer to the next state.
     next: Option<Next>,
     /// Leash, fading to the goal's value.
     leash: Fade<Leash>,
@@ -117,7 +116,6 @@ pub(super) struct RunningSession {
     speed_cap: Option<f64>,
 }
 
-/// Status of the goal.
 #[derive(Clone, Copy, Debug)]
 enum Standing {
     /// The session pursues the goal.
@@ -157,7 +155,6 @@ struct Next {
     bindings: Bindings,
 }
 
-/// The arm as measured.
 #[derive(Debug)]
 pub(super) struct Measured {
     /// `message_id` of the measured state.

@@ -8,7 +8,6 @@ use super::{GoalStage, RunningSession, Standing};
 use crate::session::condition::{Observed, Watch};
 use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
 
-/// The reaction of a goal.
 #[derive(Debug)]
 pub(super) struct Reacting {
     watch: Watch,

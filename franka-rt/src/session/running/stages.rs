@@ -15,7 +15,6 @@ use crate::session::{
 /// bounds may still creep after the pose has arrived.
 const REFERENCE_REST: f64 = 1e-3;
 
-/// Stage of the session's goal.
 #[derive(Debug)]
 pub(super) enum GoalStage {
     /// The reference moves, or holds a goal that is still current.

@@ -50,7 +50,6 @@ impl RunningSession {
         }
     }
 
-    /// Gives up the goal and brakes.
     pub(super) fn give_up(&mut self, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.on_arrival);
         self.fade();

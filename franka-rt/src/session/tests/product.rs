@@ -291,7 +291,6 @@ impl Bench {
         (self.state.q, self.state.dq, self.dq) = (q.into(), dq.into(), dq);
     }
 
-    /// Checks that the reference brakes, and then stays at rest.
     fn brakes(&mut self) {
         self.run(BRAKE);
         let at = JointVector::from(self.state.q);
@@ -300,7 +299,6 @@ impl Bench {
         assert!(moved < REST, "{:?}: moves on by {moved} rad", self.way);
     }
 
-    /// Stops the arm as the lifecycle does, and checks that the session finishes.
     fn stops(&mut self) {
         if self.is_finished {
             return;

@@ -23,7 +23,6 @@ const MS: fn(u64) -> Duration = Duration::from_millis;
 const WINDOW: Duration = Duration::from_secs(60);
 const COLLISION: RobotError = RobotError::CartesianReflex;
 
-/// A supervision, its outputs and its events.
 struct Supervised {
     supervision: Supervision,
     now: u64,
@@ -114,7 +113,6 @@ impl Supervised {
         self.shows(RobotMode::Idle);
     }
 
-    /// The robot answers the request to recover from this reflex.
     fn answers(&mut self, reflex: u64, answer: Result<(), RecoveryFailure>) {
         let now = MS(self.now);
         self.after(|it| it.on_recovery(reflex, answer, now));
@@ -184,7 +182,6 @@ impl Supervised {
     }
 }
 
-/// Outcome of a motion that a reflex ended.
 fn collision() -> Outcome {
     let status = Status::Move(MoveStatus::ReflexAborted);
     let refusal = Refusal::new(Command::Move, status, RobotMode::Reflex).expect("a refusal");

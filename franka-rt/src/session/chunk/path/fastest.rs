@@ -12,9 +12,7 @@ use crate::session::chunk::curve_state::CurveState;
 /// Velocity or acceleration of a state. Each column is a group of axes whose norm is limited.
 type Columns<const W: usize, const G: usize> = SMatrix<f64, W, G>;
 
-/// Limits of a retimed path.
 pub(super) struct Limits<M, const W: usize, const G: usize> {
-    /// Limits of each group of axes.
     pub(super) of_groups: [AxisLimits; G],
     /// Function that returns velocity and acceleration of a state.
     pub(super) derivatives: fn(&M) -> [Columns<W, G>; 2],
@@ -80,7 +78,6 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// Appends `next`, which begins where this motion ends.
     fn append(&mut self, next: Self) {
         let end = self.end();
         let times = next.times.iter().skip(1);
@@ -157,7 +154,6 @@ impl<M: CurveState> Timed<M> {
         fine
     }
 
-    /// Returns the derivatives in each part.
     fn parts<const W: usize, const G: usize>(&self, limits: &Limits<M, W, G>) -> Vec<Part<W, G>> {
         let part = |k: usize| {
             let duration = self.times[k + 1] - self.times[k];
@@ -175,7 +171,6 @@ impl<M: CurveState> Timed<M> {
         (0..self.times.len() - 1).map(part).collect()
     }
 
-    /// Returns the same path with the rates of `spline`.
     fn at_rates(&self, spline: &Spline) -> Self {
         let mut time = 0.0;
         let mut next = Self {
@@ -196,7 +191,6 @@ impl<M: CurveState> Timed<M> {
         next
     }
 
-    /// Returns the same motion, with all times multiplied by this factor.
     fn slower(&self, factor: f64) -> Self {
         Self {
             times: self.times.iter().map(|time| time * factor).collect(),

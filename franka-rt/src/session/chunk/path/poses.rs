@@ -93,7 +93,6 @@ pub(super) fn within(limits: [AxisLimits; 2]) -> Limits<PoseState, 3, 2> {
     }
 }
 
-/// Returns the pace at which the time of a path through these states may stop.
 pub(super) fn pace(states: &[PoseState], budget: &Budget) -> Pace {
     let fastest = |part: fn(&Twist) -> Vector3<f64>| {
         let speeds = states.iter().map(|state| part(&state.twist).norm());

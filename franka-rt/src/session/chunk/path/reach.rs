@@ -51,12 +51,10 @@ const STEPS_MAX: f64 = 1e4;
 /// Greatest rotation of a joint in one attempt, `[rad]`.
 const TURN: f64 = 0.1;
 
-/// A step of the joints along a path.
 #[derive(Debug)]
 pub(super) struct Step {
     /// Time since the start of the path, `[s]`.
     pub(super) time: f64,
-    /// Number of the leg to which the step belongs.
     pub(super) leg: usize,
     /// Desired pose of the end effector.
     pub(super) pose: Isometry3<f64>,
@@ -119,11 +117,9 @@ impl Off {
     }
 }
 
-/// The arm that follows a path.
 pub(super) struct Arm<'a> {
     /// Posture that determines the arm's free direction.
     pub(super) posture: &'a Posture,
-    /// Limits of its speed.
     pub(super) budget: &'a Budget,
     pub(super) model: &'a Model,
     pub(super) ee: &'a EndEffector,

@@ -26,7 +26,6 @@ impl Spline {
         Self { durations, c }
     }
 
-    /// Returns the three coefficients of a part.
     pub(super) fn of_part(c: &[f64], k: usize) -> Vector3<f64> {
         Vector3::new(c[k], c[k + 1], c[k + 2])
     }
@@ -73,7 +72,6 @@ impl Spline {
         Self { durations, c }
     }
 
-    /// Returns the rates at all nodes.
     pub(super) fn nodes(&self) -> Vec<Node> {
         let node = |[x, slope]: [f64; 2], duration: f64| Node {
             rate: x.sqrt(),

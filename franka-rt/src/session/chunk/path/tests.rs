@@ -189,7 +189,6 @@ fn path_of_one_line_takes_as_long_as_the_plan_of_a_goal() {
     );
 }
 
-/// Returns the duration of a goal's plan that starts at the ready pose.
 fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
     let limits = franka_otg::Limits::per_axis(budget.joints.map(share)).unwrap();
     let start = franka_otg::State::at_rest(READY.into());
@@ -242,7 +241,6 @@ impl Ratios {
     }
 }
 
-/// Returns the least duration along `curve` if only velocity and acceleration are limited.
 fn least_duration<M: CurveState, const W: usize, const G: usize>(
     curve: &Curve<M>,
     limits: &fastest::Limits<M, W, G>,
@@ -303,7 +301,6 @@ fn random_paths_take_hardly_longer_than_a_lower_bound() {
 /// Result of moving along a path in the control cycle.
 #[derive(Debug)]
 struct Gone {
-    /// True if the arm reaches the end.
     arrives: bool,
     /// Greatest distance of the joints from the path, divided by the permitted distance.
     off: f64,

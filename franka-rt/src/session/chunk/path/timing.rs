@@ -214,7 +214,6 @@ fn change(knots: &mut Vec<Knot>, (from, to): (f64, f64), limits: &AxisLimits) {
     glide(knots, build_up, -jerk);
 }
 
-/// Adds a knot after `duration` at constant jerk.
 fn glide(knots: &mut Vec<Knot>, duration: f64, jerk: f64) {
     if duration < SAME {
         return;

@@ -54,7 +54,6 @@ impl Rhythm {
     }
 }
 
-/// Axis that a policy moves.
 #[derive(Clone, Copy, Debug)]
 enum Axis {
     /// Translation along y, `[m]`.
