@@ -47,7 +47,7 @@ pub struct Gains {
     /// Largest torque that may compensate friction and bias at each joint, `[N m]`. Zero disables
     /// the compensation. With springs alone, friction keeps the arm millimetres from its target.
     pub compensation: [f64; 7],
-    /// Largest torque at each joint, `[N m]`: of springs, dampers and compensation together,
+    /// Largest sum of the torques of springs, dampers and compensation at each joint, `[N m]`,
     /// including the torques of the motion itself. The commanded torque, which excludes gravity,
     /// stays below this limit. Only the torque that brakes a joint above its speed limit may be
     /// larger.

@@ -55,7 +55,7 @@ impl Owner {
     }
 }
 
-/// What the session of a motion has reported about its end.
+/// Report of a motion's session about its end.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -281,7 +281,7 @@ impl Goals {
     }
 
     /// Returns the outcome of the current goal after a motion that the robot was asked to stop,
-    /// because the arm did not stop by itself. If the session has reported an outcome, returns that
+    /// because the arm did not stop before. If the session has reported an outcome, returns that
     /// outcome. Otherwise returns a report if the goal was only a brake, and
     /// [`MotionError::Stopped`] if it was not.
     pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {

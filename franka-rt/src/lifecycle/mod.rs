@@ -133,7 +133,7 @@ pub struct Lifecycle {
     outputs: VecDeque<Output>,
 }
 
-/// Phase of the motion, as far as the lifecycle knows it.
+/// Phase of the motion, to the knowledge of the lifecycle.
 #[derive(Debug)]
 enum LifecyclePhase {
     Idle,
@@ -142,7 +142,7 @@ enum LifecyclePhase {
     /// next motion waits until the thread has seen it.
     Abandoned {
         motion: MotionId,
-        /// Until the deadline, the next motion waits. After the deadline, the error with which new
+        /// Deadline until which the next motion waits. After the deadline, the error with which new
         /// motions are refused.
         deadline: Result<Duration, MotionError>,
     },

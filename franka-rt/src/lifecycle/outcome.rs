@@ -450,7 +450,7 @@ pub struct ControlError {
     pub failure: ControlFailure,
     /// Errors that are active in the last state of the motion.
     pub errors: Errors,
-    /// How far the motion had progressed.
+    /// Progress of the motion.
     pub stage: Stage,
     /// The last cycles of the motion. The newest cycle shows its end. An option of the connection
     /// sets the number of cycles.
@@ -491,8 +491,8 @@ impl ControlError {
 impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self.stage {
-            // libfranka 0.21, `robot_impl.cpp`: if the motion has not begun, the text is that of
-            // the refusal.
+            // libfranka 0.21, `robot_impl.cpp`: if the motion has not begun, the text is the text
+            // of the refusal.
             Stage::Starting if self.is_reflex() && !self.failure.reflex_reason.is_empty() => {
                 write!(f, "{} {}", self.failure.refusal, self.failure.reflex_reason)
             }

@@ -235,8 +235,8 @@ impl Lifecycle {
         })
     }
 
-    /// Postpones the deadlines that have passed by `now`: of the current or abandoned motion, and
-    /// of stops.
+    /// Postpones the deadlines of the current or abandoned motion, and of stops, that have passed
+    /// by `now`.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {

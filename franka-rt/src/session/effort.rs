@@ -45,7 +45,7 @@ pub(super) struct Effort {
     bound: bool,
 }
 
-/// How the law responds to an obstacle that holds back an arm at rest.
+/// Response of the law to an obstacle that holds back an arm at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Resistance {
     /// The law assumes that friction holds the arm, and increases its torques.

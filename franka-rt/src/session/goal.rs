@@ -146,7 +146,7 @@ impl Free {
     };
 }
 
-/// What the session does when the reference has arrived.
+/// Action of the session when the reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnArrival {
     /// Holds the target until the next goal, and reports nothing.
@@ -164,7 +164,7 @@ pub struct Goal {
     pub id: GoalId,
     /// Target of the motion.
     pub target: Target,
-    /// What the session does when the reference has arrived.
+    /// Action of the session when the reference has arrived.
     pub on_arrival: OnArrival,
     /// Limits of velocity, acceleration and jerk.
     pub budget: Budget,

@@ -55,9 +55,9 @@ enum GuideStage {
 struct Floating {
     /// Pose at which the fixed axes are held.
     pose: Isometry3<f64>,
-    /// Positions at which the joints are held, as far as the end effector allows.
+    /// Positions at which the joints are held, to the extent that the end effector allows.
     q: JointVector,
-    /// Offset between reference and arm at the release: of the joints, and of the end effector.
+    /// Offset of the joints, and of the end effector, between reference and arm at the release.
     offset: JointVector,
     offset_at_ee: Twist,
     cycle: u32,

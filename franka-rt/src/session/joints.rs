@@ -56,7 +56,7 @@ impl JointGenerator {
         })
     }
 
-    /// Moves from `reference` to another target, or stops if there is none. If the target's motion
+    /// Moves from `reference` to another target. Without a target, stops. If the target's motion
     /// continues as before, the plan stays as it is.
     ///
     /// # Errors

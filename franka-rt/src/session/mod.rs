@@ -115,9 +115,9 @@ pub struct TargetSession {
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     speed_cap: Option<f64>,
-    /// What the session does after a held goal had to be given up.
+    /// Action of the session after a held goal had to be given up.
     afterwards: OnArrival,
-    /// State of the gate, which lets the goals of a common start begin, as of the newest state.
+    /// State of the gate, which lets the goals of a common start begin, in the newest state.
     gate: Gate,
     /// Values learned about the arm in earlier sessions.
     known: Learned,

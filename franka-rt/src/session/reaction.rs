@@ -19,7 +19,7 @@ pub struct Reaction {
     pub then: Target,
 }
 
-/// What was measured when the condition of a motion became true.
+/// Measurements of a motion when its condition became true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -53,8 +53,8 @@ impl Condition {
     /// true. The arm brakes as quickly as for a plain condition and then moves to the target. It
     /// does not wait for the program.
     ///
-    /// The speed stays the speed of the motion. Acceleration and jerk are at least those of the
-    /// default budget, so that the arm retreats quickly even after a slow approach.
+    /// The speed stays the speed of the motion. Acceleration and jerk are at least as high as in
+    /// the default budget, so that the arm retreats quickly even after a slow approach.
     pub fn then(self, target: impl Into<Target>) -> Reaction {
         Reaction {
             condition: self,

@@ -19,7 +19,7 @@ pub enum SessionEvent {
     Settled {
         /// The goal.
         goal: GoalId,
-        /// How the goal ended.
+        /// Kind of the goal's end.
         settlement: Settlement,
         /// Time from the first cycle that saw the goal to the goal's end, `[ms]` of the robot's
         /// clock.
@@ -42,7 +42,7 @@ pub enum SessionEvent {
     Restless,
 }
 
-/// How a goal ended.
+/// Kind of a goal's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settlement {

@@ -44,7 +44,7 @@ pub(super) struct Up {
     pub(super) configuration: Configuration,
 }
 
-/// How far this program's settings have been sent again on a connection.
+/// Progress of sending this program's settings again on a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Configuration {
     /// The robot has all settings, or the program has made no settings.

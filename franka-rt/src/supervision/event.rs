@@ -43,7 +43,7 @@ pub enum EventKind {
     /// The robot differs from the robot of the previous connection, and may be another robot. Comes
     /// after `Connected`. A waiting motion is refused, and a recovery needs the user's approval.
     Unrecognised {
-        /// How the robots differ.
+        /// Differences between the robots.
         differences: Differences,
     },
     /// A setting that this program had made before a connection was lost could not be restored.

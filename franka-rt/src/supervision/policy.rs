@@ -1,10 +1,10 @@
-//! Policy of a supervisor: what it may do, and how often.
+//! Policy of a supervisor: its permitted actions, and their limits.
 
 use core::time::Duration;
 
 use franka_proto::{Errors, RobotError};
 
-/// What a supervisor does when the connection or the robot fails. The default policy reconnects
+/// Actions of a supervisor when the connection or the robot fails. The default policy reconnects
 /// without a time limit, never recovers from a reflex, and refuses motions until the robot is ready
 /// again.
 ///

@@ -31,7 +31,7 @@ pub(super) struct Sent {
     pub(super) chunk: Chunk,
 }
 
-/// What happened to a chunk.
+/// Fate of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fate {
@@ -53,7 +53,7 @@ pub enum Fate {
 pub struct Returned {
     /// Goal of the chunk.
     pub goal: GoalId,
-    /// What happened to the chunk.
+    /// Fate of the chunk.
     pub fate: Fate,
     /// The chunk.
     pub chunk: Chunk,

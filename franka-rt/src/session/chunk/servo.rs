@@ -18,7 +18,7 @@
 //! **Limits.** A state is admissible if acceleration and velocity are within their limits, and stay
 //! within them while the acceleration is removed as fast as the jerk allows, in whole cycles.
 //! Removing the acceleration leads from one admissible state to another, so an admissible jerk
-//! always exists. The desired jerk is moved toward that jerk only as far as necessary.
+//! always exists. The desired jerk is moved toward that jerk only by the necessary part.
 //!
 //! All limits apply to norms, so this holds for any number of axes. While the acceleration is
 //! removed along its line, the velocity moves on a straight line between two admissible velocities.

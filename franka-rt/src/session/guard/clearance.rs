@@ -61,7 +61,7 @@ struct Known {
     candidates: CandidateMask,
 }
 
-/// What is on the path to rest.
+/// Nearest obstacle on the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ahead {
     /// No obstacle is near.

@@ -9,12 +9,12 @@ use core::time::Duration;
 pub struct Watchdog {
     /// The longest accepted time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does after that time. The motion ends when the arm rests, unless its session
+    /// Action of the arm after that time. The motion ends when the arm rests, unless its session
     /// lasts from goal to goal.
     pub on_timeout: OnTimeout,
 }
 
-/// What the arm does when its targets have stopped arriving.
+/// Action of the arm when its targets have stopped arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OnTimeout {

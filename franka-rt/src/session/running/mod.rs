@@ -88,7 +88,7 @@ pub(super) struct RunningSession {
     response: Unresponsive,
     /// True if the arm ignored its commands in the last answer.
     ignores: bool,
-    /// What the session does after a held goal had to be given up.
+    /// Action of the session after a held goal had to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
     /// `message_id` of the state at the goal's last update.
@@ -126,8 +126,7 @@ enum Standing {
     GivenUp {
         action: OnTimeout,
         cause: Lapse,
-        /// What was measured when the goal's condition became true; `None` if it had not become
-        /// true.
+        /// Measurements when the goal's condition became true; `None` if it had not become true.
         reacted: Option<Reacted>,
     },
     /// The goal's condition became true. The arm brakes, and then moves to the other target if

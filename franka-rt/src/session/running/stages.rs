@@ -25,7 +25,7 @@ pub(super) enum GoalStage {
     Staying,
     /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
-    /// The arm was released but does not come to rest. The robot must stop it.
+    /// The arm was released but does not stop. The robot must stop it.
     Restless,
     /// The last command was sent. The value is the distance of the arm from its target at the
     /// release, if the arm was released.
