@@ -9,8 +9,8 @@ use core::fmt;
 pub struct Differences {
     /// True if the two descriptions differ, or if only one robot has a description.
     pub description: bool,
-    /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or if its mass,
-    /// centre of mass or inertia differs.
+    /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or if the end
+    /// effector's mass, centre of mass or inertia differs.
     pub frames: bool,
     /// True if the robot's clock did not advance by the time that has passed: the robot was
     /// restarted, or it is another robot.

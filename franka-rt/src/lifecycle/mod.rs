@@ -221,8 +221,9 @@ impl Lifecycle {
         Margin::of(gains, &self.model, state, self.version)
     }
 
-    /// Makes the first session begin with the identified values of the arm. They must have been
-    /// [checked](Identified::check). They are valid for the load that is declared at that time.
+    /// Makes the first session begin with the identified values of the arm, which must have been
+    /// [checked](Identified::check). The part of the identified load that is not declared when that
+    /// session begins counts as bias.
     #[must_use]
     pub fn knowing(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));

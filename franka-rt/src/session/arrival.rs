@@ -52,7 +52,7 @@ const PROGRESS: f64 = 0.02;
 /// Cycles over which the spring between arm and reference is released.
 const RELEASE: u32 = 100;
 
-/// Time after which the robot must stop a released arm that does not stop. If the motion finished
+/// Time after which the robot must stop a released arm that still moves. If the motion finished
 /// while the arm moved, it would end in a reflex.
 pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(1);
 

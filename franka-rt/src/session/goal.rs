@@ -187,7 +187,7 @@ pub struct Goal {
     pub deviation: Deviation,
     /// Conditions under which the arm counts as settled.
     pub settling: Settling,
-    /// Joint positions that the elbow moves toward, `[rad]`, while the end effector moves to a
+    /// Joint positions toward which the elbow moves, `[rad]`, while the end effector moves to a
     /// pose. The joints get as near to them as the pose allows. With a posture, the elbow can also
     /// move while the end effector rests, and a goal arrives when both rest. With `None`, the elbow
     /// stays near its place at the session's start while the end effector moves.

@@ -147,8 +147,8 @@ impl SetpointStream {
 
     /// Returns the command for `reference`, and true if the backstop changed it. If no command can
     /// be computed, for example because the reference is not finite, returns the command that holds
-    /// the arm. For the `last` command of a motion, velocities are zero, because the robot repeats
-    /// that command until it has ended the motion.
+    /// the arm. For the `last` command of a motion, velocities are zero, because that command is
+    /// repeated until the robot has ended the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,

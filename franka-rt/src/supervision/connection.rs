@@ -110,9 +110,9 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns the condition in `state`. If several states have the same condition, pass only one
-    /// of them to [`Supervision::on_state`](super::Supervision::on_state), unless there was a
-    /// silence between them.
+    /// Returns the condition in `state`. If several states have the same condition, it is enough to
+    /// pass one of them to [`Supervision::on_state`](super::Supervision::on_state), unless there
+    /// was a silence between them.
     pub fn of(state: &RobotState) -> Self {
         Self {
             mode: state.robot_mode,

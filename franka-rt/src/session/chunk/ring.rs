@@ -162,7 +162,7 @@ impl ChunkReader {
     /// then early by at most that chunk's waiting time. Without this rule, the arm would never
     /// follow a policy whose first point is always further ahead than its next prediction.
     ///
-    /// Returns chunks that are no longer needed to the writer. A chunk of another goal is kept,
+    /// Gives chunks that are no longer needed back to the writer. A chunk of another goal is kept,
     /// because that goal may still arrive. The ids of goals have no order: an id may be created
     /// long before its goal is written.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
@@ -192,8 +192,8 @@ impl ChunkReader {
         None
     }
 
-    /// Returns the chunks that have arrived for `goal` to the writer, because that goal will begin
-    /// no more chunks.
+    /// Gives the chunks that have arrived for `goal` back to the writer, because that goal will
+    /// begin no more chunks.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         self.due = None;

@@ -32,8 +32,8 @@ use crate::shaping::CYCLE;
 /// Greatest rate at which a missing velocity is compensated, `[1/s]`.
 const RATE_MAX: f64 = 100.0;
 
-/// Factor between the ratio of jerk to acceleration, which is the rate at which the acceleration
-/// can change, and the rate that is used.
+/// Rate that is used, as a share of the rate at which the acceleration can change, which is the
+/// ratio of jerk to acceleration limit.
 const RATE_SHARE: f64 = 0.5;
 
 /// Ratio between the decay times of the distance and of the missing velocity. With 3, nothing

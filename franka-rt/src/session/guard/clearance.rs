@@ -61,7 +61,7 @@ struct Known {
     candidates: CandidateMask,
 }
 
-/// Nearest obstacle on the path to rest.
+/// Result of a check of the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ahead {
     /// No obstacle is near.
