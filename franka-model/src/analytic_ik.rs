@@ -1,7 +1,8 @@
 //! All joint positions for a pose of the flange and one redundancy parameter.
 //!
-//! The arm has one joint more than a pose has coordinates. One additional number, a [`Redundancy`],
-//! leaves finitely many postures. This module finds all of them:
+//! The arm has seven joints, and a pose has six coordinates. If the caller also fixes one number, a
+//! [`Redundancy`], only finitely many postures reach the pose. This module finds all of these
+//! postures:
 //!
 //! ```text
 //! joint 7 ──────────────┐
@@ -9,12 +10,13 @@
 //! swivel ──> joint 7 ───┘
 //! ```
 //!
-//! With joint 7 given, the flange's pose fixes the wrist W, where axes 5 and 6 meet. Shoulder S,
-//! elbow E and wrist form a triangle, whose sides determine joint 4. In the hand's axes, the
-//! direction of the forearm determines joints 6 and 5. The remaining rotation determines joints 1
-//! to 3. Every step is an exact equivalence with at most two answers, so no solution is lost.
-//! Fixing joint 7 is the idea of He and Liu (2021). The enumeration and the other two parameters
-//! come from López-Custodio, Gong and Figueredo (GeoFIK, 2025).
+//! If joint 7 is given, the flange's pose determines the wrist W, where axes 5 and 6 meet. The
+//! shoulder S, the elbow E and the wrist form a triangle, and its sides determine joint 4. In the
+//! hand's axes, the direction of the forearm determines joints 6 and 5. The remaining rotation
+//! determines joints 1 to 3. Every step finds all of its at most two answers, so no solution is
+//! lost. The method for a given joint 7 comes from He and Liu (2021). The enumeration and the
+//! methods for joint 4 and the swivel angle come from López-Custodio, Gong and Figueredo (GeoFIK,
+//! 2025).
 //!
 //! | given | method | solutions, at most |
 //! |---|---|---|
@@ -29,33 +31,34 @@
 //!
 //! The driver's own cycle does not call this module: it follows poses with
 //! [`differential_ik`](crate::differential_ik) and starts from
-//! [`inverse_kinematics`](crate::inverse_kinematics). The module is for programs that choose a
-//! posture or refuse a target before a motion: planners, paths through waypoints, tools.
+//! [`inverse_kinematics`](crate::inverse_kinematics). Use this module in programs that choose a
+//! posture or refuse a target before a motion, such as planners.
 //!
 //! # Singularities
 //!
-//! For a solver, a singularity is a posture where solutions meet. With joint 7 locked, the
-//! determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4) cos(q5)` of the other six joints vanishes
-//! there. The solver handles each singularity in its own way:
+//! For a solver, a singularity is a posture where solutions meet. If joint 7 is locked, the
+//! Jacobian of the other six joints has the determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4)
+//! cos(q5)`, which is zero there. The solver handles each singularity in its own way:
 //!
 //! - **Stretched elbow** (joint 4 at its [flip angle](Lengths::flip_angle)) and **wrist** (joint 5
 //!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and
-//!   coincide. The list then contains the common solution twice. A pose that is beyond the boundary
-//!   by less than 1e-12 in the cosine counts as on it. Both solutions are continuous up to the
-//!   boundary; beyond it no solution exists.
+//!   coincide. The list then contains the same solution twice. A pose whose cosine exceeds the
+//!   boundary by less than 1e-12 counts as a pose on the boundary. Both solutions are continuous up
+//!   to the boundary; beyond it no solution exists.
 //! - **Shoulder** (joint 2 at zero): axes 1 and 3 coincide, and the pose fixes only the sum of
 //!   their angles. Each of the two joints then gets half of the sum. [`Solution::slide`] gives the
 //!   range in which joint 1 may turn while joint 3 turns back. [`Solutions::nearest`] slides to the
-//!   posture nearest to the given posture. The posture is thus continuous through the singularity:
-//!   joint 2 changes sign, and joints 1 and 3 do not move. Solutions near the singularity are
-//!   accurate, too. A path that passes *beside* the singularity must turn joint 1 by up to half a
-//!   turn, on a length of path that shrinks with its distance from the singularity. This large turn
-//!   is a property of the arm, not of the solver; [`differential_ik`](crate::differential_ik)
-//!   passes it with bounded velocities.
-//! - Joint 4 given: the two angles of joint 7 may coincide. If the shoulder is on axis 7, the angle
-//!   of joint 7 is free, and zero represents all angles.
-//! - Swivel given: the angle is undefined if the wrist is straight above or below the shoulder. The
-//!   solver seeks no solution within a nanometre of the line straight above or below the shoulder.
+//!   posture nearest to a reference posture. A path through the singularity is therefore
+//!   continuous: joint 2 changes sign, and joints 1 and 3 do not move. Solutions near the
+//!   singularity are also accurate. A path that passes *beside* the singularity must turn joint 1
+//!   by up to half a turn. The closer the path is, the shorter is the part of the path in which
+//!   joint 1 turns. This large turn is a property of the arm, not of the solver;
+//!   [`differential_ik`](crate::differential_ik) passes it with bounded velocities.
+//! - If joint 4 is given, the two angles of joint 7 may coincide. If the shoulder is on axis 7, the
+//!   angle of joint 7 is free, and zero represents all angles.
+//! - If the swivel angle is given: the angle is undefined if the wrist is straight above or below
+//!   the shoulder. The solver therefore ignores solutions whose wrist is within a nanometre of the
+//!   vertical line through the shoulder.
 
 use core::f64::consts::PI;
 
@@ -78,7 +81,7 @@ mod swivel;
 pub use nearest::nearest;
 pub use solutions::{Branch, Singularity, Solution, Solutions};
 
-/// Parameter that selects one posture among the self-motions of a pose.
+/// Parameter that leaves finitely many of the postures that reach a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Redundancy {
     /// The angle of joint 7, `[rad]`.
@@ -86,7 +89,7 @@ pub enum Redundancy {
     /// The angle of joint 4, `[rad]`. It determines the distance between shoulder and wrist.
     Joint4(f64),
     /// The [swivel angle](crate::elbow::swivel), `[rad]`: the position of the elbow on its circle
-    /// about the line from shoulder to wrist. It is zero with the elbow on top.
+    /// about the line from shoulder to wrist. The angle is zero if the elbow is on top.
     Swivel(f64),
 }
 
@@ -100,11 +103,12 @@ impl Redundancy {
 /// Returns the solutions within the joint limits that bring the end effector to `target`. The list
 /// may be empty.
 ///
-/// The nearest rigid frame replaces an end-effector frame that is slightly non-rigid. The
+/// If the end-effector frame is slightly non-rigid, the solver uses the nearest rigid frame. The
 /// benchmarks measure the cost (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
 ///
 /// # Errors
-/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
+/// if the end-effector frame is not rigid.
 pub fn solve(
     model: &Model,
     target: &Isometry3<f64>,
@@ -124,7 +128,7 @@ pub fn solve(
 /// Returns all solutions for a pose of the flange in the base frame, regardless of the limits.
 ///
 /// Angles are in `(−π, π]`, and a given angle is returned unchanged. The result depends on the
-/// lengths, not on the kind of robot. The list is empty if an argument is non-finite.
+/// lengths, not on the kind of robot. The list is empty if an argument is not finite.
 pub fn all(lengths: &Lengths, flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
     let flip = lengths.flip_angle();
     find(lengths, flange, given, [flip - PI, flip + PI])

@@ -11,8 +11,8 @@ use crate::load::Load;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, MassMatrix};
 
-/// True arm of a simulated robot. Its links and joint axes may deviate from the [`Model`] of the
-/// robot's controllers. Control uses [`Model`].
+/// The true arm of a simulated robot. Its links and joint axes may deviate from the [`Model`] that
+/// the robot's controllers use.
 ///
 /// Units, frames and loads are the same as in [`Model`].
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ impl AsBuilt {
         self
     }
 
-    /// Like [`Model::with_deviations`].
+    /// Displaces the joint frames, as [`Model::with_deviations`] does.
     #[must_use]
     pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
         self.model = self.model.with_deviations(deviations);
@@ -58,7 +58,7 @@ impl AsBuilt {
         Placement::of(&self.chain(q), frame, ee).pose()
     }
 
-    /// Like [`Model::pose_and_jacobian`].
+    /// Returns the pose and the zero Jacobian of a frame, as [`Model::pose_and_jacobian`] does.
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,
@@ -71,12 +71,12 @@ impl AsBuilt {
         (placement.pose(), jacobian)
     }
 
-    /// Like [`Model::mass`].
+    /// Returns the joint-space inertia, `[kg·m²]`, as [`Model::mass`] does.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         dynamics::mass(&self.chain(q), &self.model.links_with(load))
     }
 
-    /// Like [`Model::gravity`].
+    /// Returns the torques that hold the arm still against gravity, as [`Model::gravity`] does.
     pub fn gravity(
         &self,
         q: &JointVector,
@@ -86,7 +86,8 @@ impl AsBuilt {
         dynamics::gravity(&self.chain(q), &self.model.links_with(load), gravity_earth)
     }
 
-    /// Like [`Model::forward_dynamics`], with a symmetric armature that may couple the joints.
+    /// Returns the joint accelerations, as [`Model::forward_dynamics`] does. The armature is a
+    /// symmetric matrix and may couple the joints.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

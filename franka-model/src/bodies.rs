@@ -7,7 +7,7 @@ use crate::inertia::{RigidBody, Symmetric3, cross};
 
 /// Returns bodies 1 to 7 in base axes, with centres of mass relative to the shoulder.
 ///
-/// `links` are in link axes; the last includes the load.
+/// `links` are in link axes; the last link includes the load.
 #[inline(always)]
 pub(crate) fn placed(chain: &Chain, links: &[RigidBody; 7]) -> [RigidBody; 7] {
     core::array::from_fn(|i| RigidBody {
@@ -32,7 +32,7 @@ pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f6
 /// Several bodies combined into one rigid body, described about the shoulder.
 pub(crate) struct Composite {
     pub(crate) mass: f64,
-    /// Mass times centre of mass.
+    /// Mass times the centre of mass.
     pub(crate) first_moment: Vector3<f64>,
     /// Inertia about the shoulder.
     pub(crate) inertia: Symmetric3,
@@ -52,8 +52,8 @@ impl Composite {
         self.inertia += body.inertia + Symmetric3::of_point(body.mass, &body.com);
     }
 
-    /// Returns linear momentum, and angular momentum about the shoulder, of the composite if it
-    /// turns about an axis at unit rate.
+    /// Returns the linear momentum of the composite, and its angular momentum about the shoulder,
+    /// if it turns about an axis at unit rate.
     #[inline(always)]
     pub(crate) fn momentum(
         &self,

@@ -9,17 +9,17 @@
 //! 1. hold the active variables on their bounds, and minimise over the other variables;
 //! 2. hold the variables that are then beyond a bound, and free the variables whose gradient points
 //!    inside;
-//! 3. stop if nothing changed. After [`GUESSES`] passes, change one bound at a time.
+//! 3. stop if steps 1 and 2 changed nothing. After [`GUESSES`] passes, change one bound at a time.
 //!
-//! The first two steps alone (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as
-//! a Semismooth Newton Method, 2003) take two or three passes and may, rarely, cycle. Changing one
-//! bound at a time (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section
-//! 16.5) descends with every iterate inside the box, so it terminates.
+//! The first two steps alone usually need two or three passes, but rarely they cycle (Hintermüller,
+//! Ito and Kunisch, The Primal-Dual Active Set Strategy as a Semismooth Newton Method, 2003). A
+//! search that changes one bound at a time always terminates, because it descends and stays inside
+//! the box (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section 16.5).
 //!
-//! `A` has six rows, so only `d` makes the minimum unique, and `d` may be 1e-11 of the rest. The
-//! normal equations `AᵀA + d` resolve the remaining direction to five digits. A refinement step
-//! with a residual computed from `A` itself gives ten digits, and another step gives full
-//! precision. Guesses do not need the refinement.
+//! `A` has six rows, so only the term with `d` makes the minimum unique. `d` may be 1e-11 of the
+//! other terms. The normal equations `AᵀA + d` resolve the remaining direction to five digits. A
+//! refinement step with a residual computed from `A` itself gives ten digits, and another step
+//! gives full precision. The passes that only guess the active bounds do not need this refinement.
 
 mod joint_box;
 mod problem;
@@ -38,21 +38,21 @@ pub enum Outcome {
     /// The search stopped after [`PASSES_MAX`] passes. The result is inside the box, but may not be
     /// the minimum.
     PassLimit,
-    /// An argument was non-finite. The result is inside the box, and has no other guarantee.
+    /// An argument was not finite. The result is inside the box, but is otherwise arbitrary.
     Degenerate,
 }
 
 /// Number of passes after which a search stops.
 ///
-/// Each pass costs one factorisation. Two million random problems of differential IK were solved,
-/// most of them with several variables on their bounds. Half of the problems took seven passes or
-/// fewer, and none took more than 25.
+/// Each pass computes one factorisation. In a test with two million random problems of differential
+/// IK, most solutions had several variables on their bounds. Half of the problems needed seven
+/// passes or fewer, and none needed more than 25.
 pub const PASSES_MAX: usize = 32;
 
 /// Number of passes that correct the whole guess at once.
 const GUESSES: usize = 4;
 
-/// The end of a search.
+/// Result of a search.
 pub(crate) struct Minimum {
     pub(crate) x: JointVector,
     pub(crate) active: [Side; 7],
@@ -107,8 +107,8 @@ pub(crate) fn minimise(
         }
     };
     Minimum {
-        // A held variable is on its bound. A free variable of an optimum is within its bounds,
-        // except for rounding.
+        // A held variable is on its bound. At the optimum, rounding may put a free variable beyond
+        // its bounds.
         x: bounds.clamp(&search.x),
         active: search.active,
         outcome,
@@ -155,8 +155,8 @@ impl Search<'_> {
         Ldl::of(&matrix)
     }
 
-    /// Returns the minimum with the active variables fixed, and its gradient, with the precision of
-    /// the normal equations.
+    /// Returns the minimum with the active variables fixed, and the gradient there. The precision
+    /// is the precision of the normal equations.
     #[inline(always)]
     fn minimum_of_free(&self, factor: &Ldl<7>) -> (JointVector, [f64; 7]) {
         let normal = &self.problem.normal;
@@ -184,7 +184,7 @@ impl Search<'_> {
         (crate::joint_vector(goal), gradient)
     }
 
-    /// Refines the result of `minimum_of_free` to full precision, and returns its gradient.
+    /// Refines the result of `minimum_of_free` to full precision, and returns the gradient there.
     #[inline(always)]
     fn refine(&self, factor: &Ldl<7>, goal: &mut JointVector) -> [f64; 7] {
         let mut gradient = self.problem.gradient(goal);
@@ -202,7 +202,7 @@ impl Search<'_> {
         gradient
     }
 
-    /// True if a guess with this minimum needs no correction.
+    /// Returns true if the guess that led to this minimum needs no correction.
     #[inline(always)]
     fn accepts(&self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         (0..7).all(|i| match self.active[i] {
@@ -237,8 +237,8 @@ impl Search<'_> {
     }
 
     /// Moves towards `goal` while the function decreases. Bounds on the path become active, and the
-    /// path continues along them. If the path met no bound, this frees the variable with the
-    /// steepest descent into the box. Returns true if no variable can be freed.
+    /// path continues along them. If the path met no bound, the function frees the variable with
+    /// the steepest descent into the box. Returns true if no variable can be freed.
     fn descend(&mut self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         if self.walk(goal) {
             return false;
@@ -290,7 +290,8 @@ impl Search<'_> {
         }
     }
 
-    /// Returns the share of `direction`, at most `left`, that leads to a bound, and this bound.
+    /// Returns the share of `direction`, at most `left`, after which a variable meets a bound, and
+    /// that bound.
     fn first_bound(&self, direction: &[f64; 7], left: f64) -> (f64, Option<(usize, Side, f64)>) {
         let mut share = left;
         let mut first = None;
@@ -311,7 +312,7 @@ impl Search<'_> {
         (share, first)
     }
 
-    /// Returns the share of `direction` after which the function increases again.
+    /// Returns the share of `direction` after which the objective increases again.
     fn downhill(&self, direction: &[f64; 7]) -> f64 {
         let gradient = self.problem.gradient(&self.x);
         let (mut slope, mut curvature) = (0.0, 0.0);
@@ -325,8 +326,8 @@ impl Search<'_> {
         if slope > 0.0 { slope / curvature } else { 0.0 }
     }
 
-    /// Returns the slope of the function into the box from the bound that holds variable `i`; zero
-    /// if the slope is rounding error, or if the interval has no interior.
+    /// Returns the slope of the objective into the box at the bound that holds variable `i`. The
+    /// slope is zero if it is only rounding error, or if the interval has no interior.
     #[inline(always)]
     fn inward(&self, i: usize, side: Side, gradient: f64) -> f64 {
         let fall = match side {
@@ -347,7 +348,7 @@ impl Search<'_> {
         if fall > ROUNDING * scale { fall } else { 0.0 }
     }
 
-    /// Moves into the box, so that a descent can begin.
+    /// Moves the point into the box, so that a descent can begin.
     fn settle(&mut self) {
         self.x = self.bounds.clamp(&self.x);
     }

@@ -1,4 +1,4 @@
-//! The joints in base axes: the positions of all frames and the directions of all axes.
+//! Positions of all joint frames and directions of all joint axes, in base axes.
 //!
 //! The FER and the FR3 have the same [geometry](crate::geometry) except for two lengths: an
 //! alternating chain in which every joint frame is rolled by 0 or ±90° relative to the previous
@@ -18,7 +18,7 @@ use crate::scalar::sin_cos;
 pub(crate) struct Chain {
     /// Axes of frame i as columns.
     pub(crate) rotation: [Matrix3<f64>; 7],
-    /// Origin of frame i, from the shoulder.
+    /// Origin of frame i, relative to the shoulder.
     pub(crate) origin: [Vector3<f64>; 7],
     /// Direction of axis i.
     pub(crate) axis: [Vector3<f64>; 7],
@@ -105,8 +105,9 @@ impl Chain {
         }
     }
 
-    /// Returns all frames at the positions `q` of an arm with the joint frames `origins`: their
-    /// rotation and translation at joint position zero, in the frame of the previous link.
+    /// Returns all frames at the positions `q` of an arm with the joint frames `origins`. Each
+    /// origin is a rotation and a translation in the frame of the previous link, at joint position
+    /// zero.
     pub(crate) fn through(origins: &[(Matrix3<f64>, Vector3<f64>); 7], q: &JointVector) -> Self {
         let mut chain = Self {
             rotation: [Matrix3::identity(); 7],

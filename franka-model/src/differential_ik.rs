@@ -1,4 +1,4 @@
-//! Joint velocities for a twist of the end effector, exactly within a box.
+//! Joint velocities for a twist of the end effector, within exact bounds (a box).
 //!
 //! ```text
 //! minimise  |Jp x − vp|² + W² |Jo x − vo|² + λ² |x − x_posture|²   subject to  lower <= x <= upper
@@ -6,17 +6,17 @@
 //!
 //! `x` are joint velocities and `(vp, vo)` is a twist, or both are displacements. In the nullspace
 //! of the task, `x` follows the posture term. If a bound is active, the other joints compensate as
-//! well as possible. Clamping an unbounded solution would neither follow the posture term nor
-//! compensate.
+//! well as possible. An unbounded solution that is clamped afterwards does neither.
 //!
 //! # Position first
 //!
-//! `W` weighs radians of orientation against metres of position. It has no effect if position and
-//! orientation can both be met. Otherwise, joints are at their bounds or the arm is singular. The
-//! small default then sacrifices the orientation, except for a share of `W²/r²`, where `r` is the
-//! lever of the joints that turn the hand. The solver then adds the remaining position error to the
-//! target and solves once more, which squares this share (one step of the method of multipliers:
-//! Hestenes, 1969). The answer is continuous in all of its arguments.
+//! `W` weighs radians of orientation against metres of position. `W` has no effect if position and
+//! orientation can both be met. They cannot if joints are at their bounds or the arm is singular.
+//! With the small default, almost the whole error is then in the orientation. The position keeps a
+//! share of `W²/r²`, where `r` is the lever of the joints that turn the hand. To reduce this share
+//! to its square, the solver adds the remaining position error to the target and solves again (one
+//! step of the method of multipliers: Hestenes, 1969). The answer is a continuous function of all
+//! arguments.
 //!
 //! # Damping
 //!
@@ -26,12 +26,12 @@
 //! ```
 //!
 //! The damping `floor` is too small to affect the motion visibly. The damping rises as the
-//! manipulability `w` falls (Nakamura and Hanafusa, 1986, in `w²`). For the whole task, it rises in
-//! proportion to the weight of orientations, which leaves the position undamped. For the position,
-//! it rises only if the position itself loses a direction. `w²` is a polynomial in sines and
-//! cosines of q, so `λ²` and its derivative are continuous along any path, and the first part does
-//! not depend on the tool's length. Near a singularity, tracking ends smoothly, first in the
-//! directions that need large joint velocities.
+//! manipulability `w` falls (Nakamura and Hanafusa, 1986, in `w²`). For the whole task, the damping
+//! is proportional to the weight of orientations, so the position stays undamped. For the position,
+//! the damping rises only if the arm cannot move the position in some direction. `w²` is a
+//! polynomial in sines and cosines of q, so `λ²` and its derivative are continuous along any path,
+//! and the term with `loss` does not depend on the tool's length. Near a singularity, tracking ends
+//! smoothly, first in the directions that need large joint velocities.
 
 use crate::jacobian::squared_manipulabilities;
 use crate::{Jacobian, JointVector, Twist};
@@ -39,28 +39,30 @@ use crate::{Jacobian, JointVector, Twist};
 pub use crate::box_qp::{JointBox, Outcome, PASSES_MAX, Side};
 use crate::box_qp::{Problem, minimise};
 
-/// Dependence of the damping `λ` on the manipulability; see the [module](self).
+/// How the damping `λ` depends on the manipulability; see the [module](self).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
-    /// Damping far from singularities, in radians per radian. Its square is the share of a rotation
-    /// that is not executed. It must be positive, because it makes the minimum unique.
+    /// Damping far from singularities, in radians per radian. The arm omits this share, squared, of
+    /// a rotation. The value must be positive, because it makes the minimum unique.
     pub floor: f64,
     /// Additional damping in a singularity of the pose, in the same unit.
     pub ceiling: f64,
-    /// Manipulability below which the damping rises. The ready pose has 0.080.
+    /// Manipulability below which the damping rises. At the ready pose, the manipulability is
+    /// 0.080.
     pub onset: f64,
-    /// Additional damping in a singularity of the position, metres per radian.
+    /// Additional damping in a singularity of the position, in metres per radian.
     pub position_ceiling: f64,
     /// Manipulability of the position, `sqrt(det(Jp Jpᵀ))` `[m³]`, below which the damping rises.
-    /// Good postures have 0.1.
+    /// In good postures, it is 0.1.
     pub position_onset: f64,
 }
 
 impl Default for Damping {
-    /// Returns a damping that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the
-    /// ready pose. In a singularity, an orientation requires at most 8 rad/s per rad/s. With a
-    /// stretched elbow, a position may require hundreds of rad/s per m/s, if only a turn of the
-    /// hand can keep it. The box then bounds the velocities.
+    /// Returns a damping that changes a rotation by less than 10⁻⁵ and a translation by less than
+    /// 10⁻⁹ at the ready pose. In a singularity, a rotation of the hand requires joint velocities
+    /// of at most 8 rad/s per rad/s. If the elbow is stretched, a translation may require hundreds
+    /// of rad/s per m/s, because only turns of the hand can produce it. The box then bounds the
+    /// velocities.
     fn default() -> Self {
         Self {
             floor: 1.5e-3,
@@ -72,10 +74,11 @@ impl Default for Damping {
     }
 }
 
-/// The parameters of the problem.
+/// Parameters of differential inverse kinematics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferentialIk {
-    /// Position error, in metres, that weighs as much as one radian of orientation error; positive.
+    /// Position error, in metres, that weighs as much as one radian of orientation error. It must
+    /// be positive.
     pub orientation_weight: f64,
     /// True if the solver adds the position's residual to the target and solves again; see the
     /// [module](self).
@@ -86,11 +89,11 @@ pub struct DifferentialIk {
 
 impl DifferentialIk {
     /// Returns parameters that sacrifice position and orientation equally if both cannot be met. A
-    /// radian counts as 0.3 m, about its effect at the far side of a held object.
+    /// radian counts as 0.3 m, which is about how far it moves the far side of a held object.
     ///
-    /// The joints are therefore slower near singularities: at most 50 rad/s per m/s, regardless of
-    /// the box. Near a singularity, the hand leaves its line and returns to it later. Use these
-    /// parameters for motions whose path does not matter.
+    /// Near singularities, the joints are therefore slower than with the default: at most 50 rad/s
+    /// per m/s, regardless of the box. Near a singularity, the hand leaves its line and returns to
+    /// it later. Use these parameters for motions whose path does not matter.
     pub const fn smooth() -> Self {
         Self {
             orientation_weight: 0.3,
@@ -107,7 +110,8 @@ impl DifferentialIk {
 }
 
 impl Default for DifferentialIk {
-    /// Returns parameters with the position first: a radian counts as 4 mm.
+    /// Returns parameters that give the position priority over the orientation: a radian counts as
+    /// 4 mm.
     fn default() -> Self {
         Self {
             orientation_weight: 0.004,
@@ -122,11 +126,11 @@ impl Default for DifferentialIk {
 pub struct Solution {
     /// Joint velocities (or displacements), inside the box.
     pub velocity: JointVector,
-    /// `J x − v`: the residual of the end effector's velocity, unweighted.
+    /// Unweighted residual of the end effector's velocity, `J x − v`.
     pub residual: Twist,
     /// Active bounds. Pass them to the next, similar problem to save passes.
     pub active: [Side; 7],
-    /// Result of the search. `velocity` is the minimum only with [`Outcome::Optimal`].
+    /// Result of the search. `velocity` is the minimum only if this is [`Outcome::Optimal`].
     pub outcome: Outcome,
     /// Number of factorisations.
     pub passes: usize,
@@ -135,9 +139,9 @@ pub struct Solution {
 impl DifferentialIk {
     /// Solves one problem in at most [`PASSES_MAX`] passes, for any arguments.
     ///
-    /// `jacobian` and `twist` are in the same axes about the same point. `posture` is the preferred
-    /// joint velocity in the nullspace of the task. `start` is the active set of the previous
-    /// problem, or `Default::default()`; it affects the run time, not the answer.
+    /// `jacobian` and `twist` must use the same axes and the same reference point. `posture` is the
+    /// preferred joint velocity in the nullspace of the task. `start` is the active set of the
+    /// previous problem, or `Default::default()`; it affects the run time, not the answer.
     pub fn solve(
         &self,
         jacobian: &Jacobian,
@@ -174,7 +178,7 @@ impl DifferentialIk {
         }
     }
 
-    /// Returns Jacobian and twist with their orientation rows in metres.
+    /// Returns the Jacobian and the twist with their orientation rows converted to metres.
     #[inline(always)]
     fn weighted(&self, jacobian: &Jacobian, twist: &Twist) -> (Jacobian, Twist) {
         let (mut weighted, mut task) = (*jacobian, *twist);

@@ -1,9 +1,10 @@
 //! Mass matrix, bias torques, inverse and forward dynamics.
 //!
-//! Composite rigid bodies give the mass matrix and gravity. Recursive Newton-Euler gives the rest
-//! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6). All vectors are in base
-//! axes about the shoulder. Forces and momenta of different links therefore add up directly, and
-//! the torque of a joint is `axis · torque + moment · force`.
+//! The mass matrix and gravity are computed with composite rigid bodies, and the other quantities
+//! with recursive Newton-Euler (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and
+//! 6). All vectors are in base axes, with the shoulder as reference point. Forces and momenta of
+//! different links therefore add up directly, and the torque of a joint is `axis · torque + moment
+//! · force`.
 
 use nalgebra::{Cholesky, Matrix4, Vector3};
 
@@ -14,7 +15,7 @@ use crate::inertia::{RigidBody, cross, dot};
 use crate::jacobian::{Placement, zero_jacobian};
 use crate::{Jacobian, JointVector, MassMatrix, Twist};
 
-/// The quantities that a control law needs at one state of the arm, from one pass.
+/// All quantities that a control law needs at one state of the arm, computed in one pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dynamics {
     /// Pose of the end effector in the base frame.
@@ -162,7 +163,7 @@ struct LinkMotions {
 }
 
 impl LinkMotions {
-    /// Runs the outward recursion; a missing `ddq` counts as zero.
+    /// Runs the outward recursion; `ddq` is zero if it is `None`.
     #[inline(always)]
     fn of(
         chain: &Chain,

@@ -8,13 +8,14 @@ use crate::scalar::{atan2, sqrt};
 
 /// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips.
 ///
-/// `atan2(-a (d3 + d5), d3 d5 - a²)` with the elbow offset `a` and the lengths `d3`, `d5` of upper
-/// arm and forearm; libfranka 0.21 documents it in `robot_state.h`. On an arm with other
-/// [lengths](crate::geometry::Lengths::flip_angle), the angle differs by less than a milliradian.
+/// The angle is `atan2(-a (d3 + d5), d3 d5 - a²)`, where `a` is the elbow offset, and `d3` and `d5`
+/// are the lengths of the upper arm and the forearm. libfranka 0.21 documents the angle in
+/// `robot_state.h`. On an arm with other [lengths](crate::geometry::Lengths::flip_angle), the angle
+/// differs by less than a milliradian.
 pub const FLIP_ANGLE: f64 = -0.467002423653011;
 
 /// Returns `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1
-/// above [`FLIP_ANGLE`], −1 below, 0 on it.
+/// if joint 4 is above [`FLIP_ANGLE`], −1 if it is below, and 0 if it is equal.
 pub fn elbow(q: &JointVector) -> [f64; 2] {
     let side = match q[3].partial_cmp(&FLIP_ANGLE) {
         Some(core::cmp::Ordering::Greater) => 1.0,
@@ -27,19 +28,19 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
 /// Returns the swivel (arm) angle, `[rad]`: the position of the elbow on its circle about the line
 /// from shoulder to wrist.
 ///
-/// The elbow is the origin of frame 4; the wrist is the origin of frame 5. The angle is between the
-/// vertical half plane above the line and the half plane of the elbow, about the direction from the
-/// shoulder to the wrist, in `(−π, π]`. The angle is zero with the elbow on top (Kreutz-Delgado,
-/// Long and Seraji, 1992, with the base's z axis as reference). `None` if the wrist is on the axis
-/// of joint 1, or the elbow on the line, except for rounding.
+/// The elbow is the origin of frame 4; the wrist is the origin of frame 5. The angle turns the
+/// vertical half plane above the line into the half plane of the elbow, about the direction from
+/// the shoulder to the wrist. It is in `(−π, π]`, and zero if the elbow is on top (Kreutz-Delgado,
+/// Long and Seraji, 1992, with the base's z axis as reference). Returns `None` if the wrist is on
+/// the axis of joint 1, or if the elbow is on the line, within rounding.
 pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     let chain = Chain::at(lengths, q);
     let (e, w) = (&chain.origin[3], &chain.origin[4]);
     let squared = dot(w, w);
     let turned = e.x * w.y - e.y * w.x;
     let up = (e.z * squared - dot(e, w) * w.z) / sqrt(squared);
-    // Both terms contain the horizontal distance of the wrist times the distance of the elbow from
-    // the line.
+    // The size is a product of two distances: the wrist's from the axis of joint 1, and the elbow's
+    // from the line.
     let size = sqrt(turned * turned + up * up);
     (size > UNDEFINED).then(|| atan2(turned, up))
 }

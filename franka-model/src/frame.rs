@@ -6,8 +6,8 @@ use nalgebra::Matrix4;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Frame {
-    /// Frame of link 1, after the rotation of joint 1; z is the joint's axis. The other six joint
-    /// frames follow the same rule.
+    /// Frame of link 1, after the rotation of joint 1; z is the joint's axis. The same rule applies
+    /// to the other six joint frames.
     Joint1,
     /// Frame of link 2.
     Joint2,
@@ -54,7 +54,7 @@ impl Frame {
 /// The frames on the flange that the user defines: end effector and stiffness frame.
 ///
 /// The model uses both poses unchanged, even if the rotation block is not exactly orthonormal (the
-/// vendor supplies 0.7071 for sqrt(1/2)). The last row counts as `0 0 0 1`.
+/// vendor supplies 0.7071 for sqrt(1/2)). The model assumes that the last row is `0 0 0 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// Pose of the end effector in the flange frame, `F_T_EE`.

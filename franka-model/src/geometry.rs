@@ -1,8 +1,8 @@
 //! Lengths and joint frames.
 //!
-//! Source: the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
-//! `franka_description` 1.0.1, `kinematics.yaml` of both robots). Real arms differ from this source
-//! in two lengths, [`Lengths`].
+//! The values are the joint origins of the vendor's URDF (libfranka 0.21, `test/fr3.urdf`;
+//! `franka_description` 1.0.1, `kinematics.yaml` of both robots). Two lengths of real arms differ
+//! from the URDF; see [`Lengths`].
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -47,7 +47,7 @@ impl Lengths {
         forearm: 0.3842,
     };
 
-    /// All sets of lengths known from robots.
+    /// All known sets of lengths.
     pub const KNOWN: [Self; 2] = [Self::DESCRIBED, Self::RECORDED_FR3];
 
     /// Returns the origins of joints 1 to 7; the origin of joint 1 is in the base frame.
@@ -78,8 +78,9 @@ impl Lengths {
     }
 }
 
-/// Pose of a joint's frame in the frame of the previous link, with the joint at zero. The frame is
-/// moved by `translation`, then rolled about x. The joint turns about z of the resulting frame.
+/// Pose of a joint's frame in the frame of the previous link, at joint position zero. The pose is a
+/// translation, followed by a roll about x. The joint turns about the z axis of the resulting
+/// frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointOrigin {
     /// Translation, `[m]`, in the axes of the previous link.

@@ -18,8 +18,8 @@ struct Case {
     gravity: Vector3<f64>,
 }
 
-/// Returns every constant model. The FER client's model is not a set of physical bodies, and loads
-/// join its link 7 by a non-physical rule; the tests mark the places where this matters.
+/// Returns every constant model. The FER client's model is not a set of physical bodies, and it
+/// adds loads to link 7 with a non-physical rule. The tests mark the places where this matters.
 fn models() -> [&'static Model; 3] {
     [
         Model::fr3(),
@@ -33,7 +33,7 @@ fn loads_add_up(model: &Model) -> bool {
     !core::ptr::eq(model, Model::fer())
 }
 
-/// Calls `check` with many cases of every model, every fourth without a load.
+/// Calls `check` with many cases of every model. Every fourth case has no load.
 fn for_each_case(seed: u64, check: impl Fn(&Model, &Case)) {
     for model in models() {
         for_each_case_of(model, seed, &check);
@@ -73,7 +73,8 @@ fn unit(i: usize) -> JointVector {
 
 const ZERO: JointVector = crate::joint_vector([0.0; 7]);
 const FLOATING: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-/// Number of cases per model: ten thousand in all; with `--release`, ten thousand of each.
+/// Number of cases per model. Debug builds check ten thousand cases in total, and release builds
+/// check ten thousand per model.
 const CASES: usize = if cfg!(debug_assertions) {
     3_400
 } else {
@@ -151,8 +152,8 @@ fn forward_dynamics_refuses_what_is_not_positive_definite() {
     assert_eq!(solve(&JointVector::from_element(f64::NAN), 0.1), None);
 }
 
-/// Returns the centre of mass and inertia of body `i` in base axes, from the frames' poses; 7 is
-/// the load.
+/// Returns the mass, the centre of mass and the inertia of body `i` in base axes, from the frames'
+/// poses. Body 7 is the load.
 fn body(model: &Model, case: &Case, i: usize) -> (f64, Vector3<f64>, Matrix3<f64>, Frame) {
     let (frame, mass, com, inertia) = if i == 7 {
         let load = &case.load;
@@ -394,8 +395,8 @@ fn a_payload_in_two_parts_weighs_like_their_combination() {
     }
 }
 
-/// Returns the least principal value of the second moments of a body's mass distribution about its
-/// centre. It is positive for a body of positive mass everywhere.
+/// Returns the smallest eigenvalue of the second moments of a body's mass distribution about its
+/// centre. The eigenvalue is positive if the density is positive everywhere.
 fn least_second_moment(body: &RigidBody) -> f64 {
     let inertia = body.inertia.matrix();
     let moments = Matrix3::from_diagonal_element(0.5 * inertia.trace()) - inertia;

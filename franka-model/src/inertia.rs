@@ -4,7 +4,7 @@ use core::ops::{Add, AddAssign};
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A symmetric 3×3 matrix as six numbers: rows x, y, z and columns x, y, z.
+/// A symmetric 3×3 matrix, stored as six numbers. Field `xy` is the element in row x and column y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the fields are the places in the matrix
 pub struct Symmetric3 {
@@ -126,7 +126,8 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
-    /// Creates a body from numbers in the order of a URDF: `inertia` is xx, xy, xz, yy, yz, zz.
+    /// Creates a body from numbers in the order of a URDF. The order of `inertia` is xx, xy, xz,
+    /// yy, yz, zz.
     pub(crate) const fn new(mass: f64, com: [f64; 3], inertia: [f64; 6]) -> Self {
         let [x, y, z] = com;
         let [xx, xy, xz, yy, yz, zz] = inertia;
@@ -159,7 +160,7 @@ impl RigidBody {
         Self::new(self.mass * factor, self.com.into(), inertia)
     }
 
-    /// Returns both bodies as one; `self` if the total has no mass.
+    /// Returns both bodies as one body, or `self` if the total mass is not positive.
     #[inline]
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;

@@ -1,10 +1,10 @@
 //! Joint positions for a pose, by iteration.
 //!
-//! Use this module to accept or refuse a target before a motion. Each iteration is a damped
-//! Gauss-Newton step inside the joint limits, first from the seed and then from postures spread
-//! over the joint ranges. The search returns one solution, near the seed if possible; it does not
-//! list all solutions. A target without a solution is almost certainly out of reach, but this is no
-//! proof.
+//! Use this module to check before a motion if a target can be reached. The search starts from the
+//! seed, and then from postures that are spread over the joint ranges. Each iteration is a damped
+//! Gauss-Newton step inside the joint limits. The search returns one solution, near the seed if
+//! possible. If the search finds no solution, the target is almost certainly out of reach, but this
+//! is not proven.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -14,19 +14,19 @@ use crate::limits::JointLimits;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, READY, Twist, rotation, transform};
 
-/// Reason why no solution was found.
+/// Reason why the search found no solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum IkError {
-    /// The pose is out of reach within the joint limits. The fields state how close the search
-    /// came.
+    /// The arm cannot reach the pose within the joint limits. The fields describe how close the
+    /// search came.
     Unreachable {
-        /// Remaining distance of the closest start, `[m]`.
+        /// Remaining distance from the target, `[m]`, of the search that came closest.
         position: f64,
-        /// Remaining angle of the closest start, `[rad]`.
+        /// Remaining angle from the target, `[rad]`, of the search that came closest.
         orientation: f64,
     },
-    /// The target or the seed has a non-finite number.
+    /// The target or the seed contains a number that is not finite.
     NotFinite,
     /// The end-effector frame is not a rigid transform.
     EndEffectorNotRigid,
@@ -57,12 +57,12 @@ impl core::error::Error for IkError {}
 /// Returns positions within the limits that bring the end effector to `target`, within
 /// [`TOLERANCE`].
 ///
-/// `seed` selects one of the infinitely many solutions, usually a nearby solution. The nearest
-/// rigid frame replaces an end-effector frame that is slightly non-rigid.
+/// `seed` selects one of the infinitely many solutions, usually a solution near the seed. If the
+/// end-effector frame is slightly non-rigid, the search uses the nearest rigid frame.
 ///
 /// # Errors
-/// See [`IkError`]. The search refuses a target after up to 32 starts of 60 iterations each, some 2
-/// ms.
+/// Returns [`IkError`] if the search finds no solution or an argument is invalid. The search fails
+/// after at most 32 starts of 60 iterations each, about 2 ms.
 pub fn solve(
     model: &Model,
     target: &Isometry3<f64>,
@@ -91,7 +91,8 @@ pub fn solve(
 /// in the base frame, within [`TOLERANCE`], with any orientation.
 ///
 /// # Errors
-/// See [`IkError`]; `orientation` is zero in its fields.
+/// Returns [`IkError`] if the search finds no solution or an argument is invalid; its field
+/// `orientation` is then zero.
 pub fn solve_position(
     model: &Model,
     point: &Vector3<f64>,
@@ -188,8 +189,9 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
             .fixed_rows_mut::<3>(3)
             .scale_mut(ORIENTATION_WEIGHT);
         task.fixed_rows_mut::<3>(3).scale_mut(ORIENTATION_WEIGHT);
-        // Damping in proportion to the remaining error converges from afar and near singularities,
-        // and vanishes where Gauss-Newton converges quadratically (Sugihara, 2011).
+        // With a damping in proportion to the remaining error, the iteration converges from afar
+        // and near singularities. Close to the solution, the damping vanishes, and Gauss-Newton
+        // converges quadratically (Sugihara, 2011).
         let damping = 0.5 * task.norm_squared() + DAMPING_FLOOR;
         let zero = JointVector::zeros();
         let problem = Problem::new(&weighted, &task, &zero, damping);
@@ -202,7 +204,7 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
 
 impl Task {
     /// Returns the remaining error at `q` (position error and rotation vector in base axes) and its
-    /// derivative; zeros for components without a target.
+    /// derivative. Components without a target are zero.
     fn linearised(&self, model: &Model, q: &JointVector) -> (Twist, Jacobian) {
         let flange = EndEffector::default();
         let pose = model.pose(Frame::Flange, q, &flange);
@@ -232,7 +234,8 @@ impl Task {
     }
 }
 
-/// Returns the displacements that stay within the limits and within the validity of a linear model.
+/// Returns bounds on the displacement of one step. Within them, the joints stay inside the limits,
+/// and the linear model is valid.
 fn step_box(limits: &JointLimits, q: &JointVector) -> JointBox {
     let reach = JointVector::from_element(STEP_MAX);
     JointBox::new(
@@ -243,19 +246,19 @@ fn step_box(limits: &JointLimits, q: &JointVector) -> JointBox {
 
 /// Weight of the orientation, in metres per radian: about half the forearm.
 const ORIENTATION_WEIGHT: f64 = 0.2;
-/// Keeps the problem strictly convex at the solution, `[m²]`.
+/// Smallest damping, `[m²]`. It keeps the problem strictly convex at the solution.
 const DAMPING_FLOOR: f64 = 1e-9;
 /// Largest move of a joint in one iteration, `[rad]`.
 const STEP_MAX: f64 = 0.5;
 const ITERATIONS_MAX: usize = 60;
 /// Number of starts after the seed and the ready pose.
 const SPREAD_STARTS: u32 = 30;
-/// Number of starts for a point. Few starts are enough for a point.
+/// Number of starts for a point, which needs fewer starts than a pose.
 const POSITION_STARTS: u32 = 6;
 
 /// Returns posture `index` of a sequence that fills the joint ranges evenly.
 ///
-/// The sequence steps by powers of the reciprocal of 1.1127756842787055, the root of `x⁸ = x + 1`
+/// Each joint advances by a power of the reciprocal of 1.1127756842787055, the root of `x⁸ = x + 1`
 /// (Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018, for seven dimensions).
 fn spread(limits: &JointLimits, index: u32) -> JointVector {
     let mut step = 1.0;
@@ -343,8 +346,8 @@ mod tests {
         let mut target = pose(&READY, &EndEffector::default());
         target.translation.vector.x = 2.0;
         match solve(Model::fr3(), &target, &EndEffector::default(), &READY) {
-            // The distance of the flange from the shoulder is at most arm, wrist and flange
-            // together.
+            // The flange's distance from the shoulder is at most the sum of the arm's, the wrist's
+            // and the flange's lengths.
             Err(IkError::Unreachable { position, .. }) => assert!(position > 1.0, "{position}"),
             other => panic!("{other:?}"),
         }

@@ -127,17 +127,18 @@ pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobia
 /// Returns Yoshikawa's manipulability `sqrt(det(J Jᵀ))`. It is zero in a singularity, and the same
 /// for every point of the last link.
 ///
-/// Its unit mixes metres and radians, as the Jacobian does. The value at the ready pose is 0.080.
+/// The unit mixes metres and radians, because the Jacobian contains both. The value at the ready
+/// pose is 0.080.
 pub fn manipulability(jacobian: &Jacobian) -> f64 {
     sqrt(squared_manipulability(jacobian))
 }
 
-/// Returns `det(J Jᵀ)`; zero if rounding makes the matrix indefinite.
+/// Returns `det(J Jᵀ)`, or zero if rounding makes the matrix indefinite.
 pub(crate) fn squared_manipulability(jacobian: &Jacobian) -> f64 {
     squared_manipulabilities(jacobian)[1]
 }
 
-/// Returns `det(J Jᵀ)` of the first three rows and of all rows.
+/// Returns `det(J Jᵀ)` for the first three rows of `J`, and for all rows.
 pub(crate) fn squared_manipulabilities(jacobian: &Jacobian) -> [f64; 2] {
     let mut gram = [[0.0; 6]; 6];
     for column in &jacobian.data.0 {

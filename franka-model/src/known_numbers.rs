@@ -1,4 +1,4 @@
-//! Numbers at two postures, computed from the same parameters with Pinocchio 4.1.
+//! Tests against numbers that Pinocchio 4.1 computed from the same parameters at two postures.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector3};
 
@@ -8,7 +8,7 @@ use crate::{
     manipulability,
 };
 
-/// Tolerance from the digits of the expected values.
+/// Tolerance for expected values with nine digits.
 const NINE: f64 = 6e-10;
 const SIX: f64 = 6e-7;
 
@@ -21,7 +21,8 @@ pub(crate) fn hand_load() -> Load {
     }
 }
 
-/// The Hand: an eighth of a turn, its tip 0.1034 m from the flange.
+/// The frame of the Franka Hand: turned by an eighth of a turn, with the tip 0.1034 m from the
+/// flange.
 pub(crate) fn hand() -> EndEffector {
     let r = core::f64::consts::FRAC_1_SQRT_2;
     let mut f_t_ee = Matrix4::identity();
@@ -85,7 +86,7 @@ fn a_frame_that_is_not_quite_orthonormal_is_used_as_given() {
     assert_near(&[column], &[0.999], 1e-15);
 }
 
-/// Gravity torques, Coriolis torques at unit velocities, and diagonal of the mass matrix.
+/// Gravity torques, Coriolis torques at unit velocities, and the diagonal of the mass matrix.
 type Torques = [[f64; 7]; 3];
 
 #[track_caller]
@@ -250,7 +251,8 @@ fn dynamics_of_the_fer() {
 
 #[test]
 fn apparent_inertia_of_flange_and_hand() {
-    // 1 / diag(J M⁻¹ Jᵀ) without and with the payload: kg along x, y, z, kg·m² about them.
+    // 1 / diag(J M⁻¹ Jᵀ) without and with the payload: kg along x, y and z, and kg·m² about these
+    // axes.
     for (frame, load, expected) in [
         (
             Frame::Flange,

@@ -7,8 +7,8 @@
 //! | mass matrix | `[f64; 49]` | `7 c + r` |
 //! | inertia of a load | `[f64; 9]` | `3 c + r` |
 //!
-//! Vectors convert with `q.into()`. For the model's functions, a state's `O_ddP_O` is the
-//! gravitational acceleration: `Vector3::from(state.O_ddP_O)`.
+//! `q.into()` converts vectors. For the model's functions, a state's `O_ddP_O` is the gravitational
+//! acceleration: `Vector3::from(state.O_ddP_O)`.
 //!
 //! ```
 //! use franka_model::{EndEffector, Frame, Load, Model, READY, layout};
@@ -28,23 +28,23 @@ use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3};
 
 use crate::{EndEffector, Jacobian, Load, MassMatrix};
 
-/// Returns a homogeneous matrix as an array, as in `O_T_EE`.
+/// Returns a homogeneous matrix as an array, in the format of `O_T_EE`.
 pub fn pose(matrix: &Matrix4<f64>) -> [f64; 16] {
     columns(matrix)
 }
 
-/// Returns a Jacobian as an array, as from `zeroJacobian` and `bodyJacobian`.
+/// Returns a Jacobian as an array, in the format of libfranka's `zeroJacobian` and `bodyJacobian`.
 pub fn jacobian(jacobian: &Jacobian) -> [f64; 42] {
     columns(jacobian)
 }
 
-/// Returns a mass matrix as an array, as from `mass`.
+/// Returns a mass matrix as an array, in the format of libfranka's `mass`.
 pub fn mass(mass: &MassMatrix) -> [f64; 49] {
     columns(mass)
 }
 
 impl EndEffector {
-    /// Creates the frames from `F_T_EE` and `EE_T_K` of a state, unchanged.
+    /// Creates the frames from `F_T_EE` and `EE_T_K` of a state, without changes to the numbers.
     pub fn from_arrays(f_t_ee: &[f64; 16], ee_t_k: &[f64; 16]) -> Self {
         Self {
             f_t_ee: Matrix4::from_column_slice(f_t_ee),
@@ -54,9 +54,9 @@ impl EndEffector {
 }
 
 impl Load {
-    /// Creates a load from mass `[kg]`, centre of mass in the flange frame `[m]` and inertia about
-    /// the centre of mass `[kg·m²]`. In a state these are `m_total`, `F_x_Ctotal` and `I_total`, or
-    /// the values of one of its loads.
+    /// Creates a load from its mass `[kg]`, its centre of mass in the flange frame `[m]` and its
+    /// inertia about the centre of mass `[kg·m²]`. A state contains these values as `m_total`,
+    /// `F_x_Ctotal` and `I_total`.
     pub fn from_arrays(mass: f64, com: &[f64; 3], inertia: &[f64; 9]) -> Self {
         Self {
             mass,

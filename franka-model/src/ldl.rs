@@ -1,7 +1,7 @@
 //! `L D Lᵀ` factorisation of small symmetric matrices, with a size known at compile time.
 //!
-//! It avoids square roots, and its loops unroll, so it takes half the time of a general
-//! factorisation.
+//! The factorisation needs no square roots, and the compiler unrolls the loops. It therefore takes
+//! half the time of a general factorisation.
 
 /// A factorisation of a positive definite matrix.
 #[derive(Debug)]
@@ -15,16 +15,16 @@ pub(crate) struct Ldl<const N: usize> {
 
 #[allow(clippy::needless_range_loop)] // indices are those of the textbook
 impl<const N: usize> Ldl<N> {
-    /// Factorises the matrix with this lower triangle, by rows; `None` if it is not positive
-    /// definite.
+    /// Factorises the matrix with this lower triangle, stored by rows. Returns `None` if the matrix
+    /// is not positive definite.
     #[inline(always)]
     pub(crate) fn of(matrix: &[[f64; N]; N]) -> Option<Self> {
         let (factor, positive) = Self::regardless(matrix);
         positive.then_some(factor)
     }
 
-    /// Returns the determinants of the leading blocks of size 1 to N; zero from the first
-    /// non-positive determinant on.
+    /// Returns the determinants of the leading blocks of size 1 to N. The first non-positive
+    /// determinant and all later ones are zero.
     #[inline(always)]
     pub(crate) fn leading_minors(matrix: &[[f64; N]; N]) -> [f64; N] {
         let (factor, _) = Self::regardless(matrix);
@@ -35,7 +35,8 @@ impl<const N: usize> Ldl<N> {
         })
     }
 
-    /// Returns the factorisation up to the first failure, and true if it is complete.
+    /// Returns the factorisation up to the first failure, and true if the factorisation is
+    /// complete.
     #[inline(always)]
     fn regardless(matrix: &[[f64; N]; N]) -> (Self, bool) {
         let mut factor = Self {

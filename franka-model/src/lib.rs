@@ -7,10 +7,10 @@
 //!                         └─> mass, Coriolis, gravity, inverse and forward dynamics
 //! ```
 //!
-//! Everything is a function of constants ([`Model`]) and arguments: no workspace, no state, no
-//! allocation, no panic, and a bounded amount of work. All functions may therefore run in a
-//! real-time cycle, except where their documentation states a longer time. One call,
-//! [`Model::dynamics`], returns all quantities that a control law needs in one cycle.
+//! Every function depends only on constants ([`Model`]) and on its arguments. No function allocates
+//! or panics, and each does a bounded amount of work. All functions may therefore run in a
+//! real-time cycle, unless their documentation states a longer time. One call, [`Model::dynamics`],
+//! returns all quantities that a control law needs in one cycle.
 //!
 //! | module | content |
 //! |---|---|
@@ -30,17 +30,17 @@
 //! | `urdf` (a feature) | models from the description that a robot provides |
 //! | `model_library` (a feature) | the compiled model code of a Franka Emika Robot |
 //!
-//! Control uses `frame` to `elbow`, the dynamics and `collision`. [`analytic_ik`],
-//! [`manipulability`] and [`JointMargins`] are for the rest of a program: postures for a pose,
-//! reachability of a target before a motion, and distances to the limits. They have no static data
-//! and no dependencies, and cost nothing if unused, so they have no separate feature.
+//! The driver's control uses the modules from `frame` to `elbow`, the dynamics and `collision`. Use
+//! [`analytic_ik`], [`manipulability`] and [`JointMargins`] outside the control cycle: they return
+//! postures for a pose, check if a target is reachable, and measure distances to the limits.
 //!
 //! # Conventions
 //!
-//! SI units and radians. The base frame O is the frame of link 0: at the centre of the base, z
-//! along the axis of joint 1. Twists and wrenches are `[linear; angular]`. Poses are homogeneous
-//! 4×4 matrices, because the vendor's end-effector frame may deviate slightly from a rotation and
-//! is used unchanged. [`transform::isometry`] converts to [`nalgebra::Isometry3`].
+//! All values are in SI units and radians. The base frame O is the frame of link 0. Its origin is
+//! at the centre of the base, and its z axis is the axis of joint 1. Twists and wrenches are
+//! `[linear; angular]`. Poses are homogeneous 4×4 matrices, because the rotation block of the
+//! vendor's end-effector frame may not be exactly a rotation, and the model uses the frame
+//! unchanged. [`transform::isometry`] converts to [`nalgebra::Isometry3`].
 //!
 //! # Example
 //!
@@ -131,7 +131,7 @@ use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// One number per joint, base to flange.
+/// One number per joint, from base to flange.
 pub type JointVector = SVector<f64, 7>;
 
 /// A 6×7 matrix that maps joint velocities to a twist `[linear; angular]`.
@@ -146,8 +146,8 @@ pub type Twist = SVector<f64, 6>;
 /// A wrench `[force; torque]`, `[N, N·m]`.
 pub type Wrench = SVector<f64, 6>;
 
-/// Duration of a control cycle, `[s]`. It is the time between two consecutive states of the robot,
-/// and between two commands, even after lost states.
+/// Duration of a control cycle, `[s]`. The robot sends a state and expects a command in every
+/// cycle, even after lost states.
 pub const CYCLE: f64 = 1e-3;
 
 /// Gravitational acceleration in the base frame of an upright robot, `[m/s²]`.
@@ -155,8 +155,8 @@ pub const CYCLE: f64 = 1e-3;
 /// This is the default value of the vendor's model (libfranka 0.21, `model.h`).
 pub const GRAVITY_EARTH: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
-/// The ready pose of the vendor's examples, `[rad]`: hand in front of the arm, pointing down, far
-/// from limits and singularities.
+/// The ready pose of the vendor's examples, `[rad]`. The hand is in front of the arm and points
+/// down, far from limits and singularities.
 pub const READY: JointVector = {
     use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
     joint_vector([
@@ -170,7 +170,7 @@ pub const READY: JointVector = {
     ])
 };
 
-/// Creates a [`JointVector`] from an array, usable in constants.
+/// Creates a [`JointVector`] from an array. Constants may call this function.
 pub const fn joint_vector(values: [f64; 7]) -> JointVector {
     JointVector::from_array_storage(ArrayStorage([values]))
 }

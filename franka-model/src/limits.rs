@@ -1,13 +1,13 @@
-//! Limits of joints, end effector and elbow. The constants of each robot state the numbers and
+//! Limits of joints, end effector and elbow. The files of the two robots contain the numbers and
 //! their sources.
 //!
-//! All values are nominal: the robot checks against these values. A client stays [`CLIENT_MARGIN`]
-//! below them (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
+//! The robot checks commands against these values. A client stays [`CLIENT_MARGIN`] below them
+//! (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
 
 use crate::JointVector;
 use crate::scalar::sqrt;
 
-/// The margin that libfranka keeps from every limit, as the same number in every unit (libfranka
+/// Margin that libfranka keeps from every limit. The number is the same in every unit (libfranka
 /// 0.21, `rate_limiting.h`).
 pub const CLIENT_MARGIN: f64 = 1e-3;
 
@@ -22,8 +22,8 @@ pub struct JointLimits {
     pub hard_lower: JointVector,
     /// Upper end of the velocity envelope, `[rad]`.
     pub hard_upper: JointVector,
-    /// Largest speed at any position, `[rad/s]`; near the position limits see
-    /// [`velocity_envelope`](Self::velocity_envelope).
+    /// Largest speed at any position, `[rad/s]`. Near the position limits,
+    /// [`velocity_envelope`](Self::velocity_envelope) returns the speed limit.
     pub velocity: JointVector,
     /// Speed limit near the position limits; `None` if the speed limit is the same at all
     /// positions.
@@ -38,7 +38,8 @@ pub struct JointLimits {
     pub torque_rate: JointVector,
 }
 
-/// Speed limit near a position limit: the largest speed from which a joint can still stop in time.
+/// Speed limit near a position limit: the largest speed from which a joint can still stop before
+/// the position limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrakingEnvelope {
     /// Deceleration of the parabola `speed²/2 = deceleration · distance`, `[rad/s²]`.
@@ -60,13 +61,13 @@ impl JointLimits {
     ///
     /// With a [`BrakingEnvelope`], the speed towards a position limit is bounded so that the joint
     /// stops before the hard limit. Without an envelope, the bound is [`velocity`](Self::velocity)
-    /// everywhere, even beyond the limits. `margin` `[rad/s]` is then subtracted on both sides: the
-    /// robot checks with 0, and libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position
-    /// limit with an envelope, the bound towards the limit is `-margin`, which allows only motion
-    /// away from the limit.
+    /// everywhere, even beyond the limits. Both bounds are then reduced by `margin` `[rad/s]`: the
+    /// robot uses 0, and libfranka uses [`CLIENT_MARGIN`]. At and beyond a position limit with an
+    /// envelope, the bound towards the limit is `-margin`, which allows only motion away from the
+    /// limit.
     ///
-    /// Formula and operation order are the same as in libfranka 0.21; the results are identical to
-    /// the last digit.
+    /// The formula and the order of operations are libfranka 0.21's, so the results are identical
+    /// to the last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
         let speed = |i: usize, distance: f64| {
             let nominal = self.velocity[i];
@@ -79,13 +80,14 @@ impl JointLimits {
         )
     }
 
-    /// True if every position is within `lower` and `upper`; false for NaN.
+    /// Returns true if every position is within `lower` and `upper`. Returns false if a position is
+    /// NaN.
     pub fn contains(&self, q: &JointVector) -> bool {
         (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
     }
 
-    /// Returns the first joint (0 to 6) outside `hard_lower` and `hard_upper`, or with a NaN
-    /// position.
+    /// Returns the index (0 to 6) of the first joint whose position is NaN or outside the range
+    /// from `hard_lower` to `hard_upper`.
     pub fn outside_hard(&self, q: &JointVector) -> Option<usize> {
         (0..7).find(|&i| !(self.hard_lower[i]..=self.hard_upper[i]).contains(&q[i]))
     }
@@ -145,7 +147,8 @@ mod tests {
 
     #[test]
     fn one_value_of_the_vendors_library_is_met_exactly() {
-        // libfranka 0.21.3 with its FR3 description, joint 3 near its upper limit.
+        // Expected values from libfranka 0.21.3 with its FR3 description; joint 3 is near its upper
+        // limit.
         let mut q = READY;
         q[2] = 2.8408030722477107;
         let limits = JointLimits::of(RobotKind::Fr3);

@@ -12,8 +12,8 @@ pub struct Load {
     pub mass: f64,
     /// Centre of mass in the flange frame, `[m]`.
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass, in flange axes, `[kg·m²]`; only its symmetric part is
-    /// used.
+    /// Inertia about the centre of mass, in flange axes, `[kg·m²]`; the model uses only the
+    /// symmetric part.
     pub inertia: Matrix3<f64>,
 }
 
@@ -25,9 +25,9 @@ impl Load {
         inertia: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
 
-    /// Returns both loads as one rigid body, by the rules of the vendor's totals (`m_total`,
-    /// `F_x_Ctotal`, `I_total` of libfranka 0.21), identical to the last bit. The inertia of a load
-    /// without mass counts as zero, and the centre of mass of a total without mass is zero.
+    /// Returns both loads as one rigid body. The result is identical to the last bit to the
+    /// vendor's totals (`m_total`, `F_x_Ctotal`, `I_total` of libfranka 0.21). The inertia of a
+    /// load without mass counts as zero. If the total has no mass, its centre of mass is zero.
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let com = if mass > 0.0 {
@@ -68,7 +68,8 @@ impl Default for Load {
 }
 
 /// `mass * S(r)^2` with the skew matrix `S`: minus the inertia of a point mass at `r` about the
-/// origin. The vendor multiplies the first factor by the mass, which determines the last bit.
+/// origin. Like the vendor's code, this function multiplies the first factor by the mass, because
+/// the order affects the last bit.
 fn skew_squared(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     let skew = r.cross_matrix();
     skew * mass * skew
@@ -94,7 +95,7 @@ mod tests {
             inertia: Matrix3::from_diagonal(&Vector3::new(0.001, 0.002, 0.003)),
         };
         let total = hand().combine(&held);
-        // Totals of the vendor's state conversion (libfranka 0.20.4) for these two loads.
+        // The expected totals come from the vendor's state conversion (libfranka 0.20.4).
         let com = Vector3::new(-0.0018699186991869919, 0.008130081300813009, 0.03);
         let inertia = [
             0.00211869918699187,

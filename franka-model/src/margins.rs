@@ -3,21 +3,22 @@
 use crate::JointVector;
 use crate::limits::JointLimits;
 
-/// Distances of one state of the joints from their limits. Values are not clamped: a negative
-/// margin is the excess over a limit.
+/// Distances of the joints from their limits, at given positions and velocities. A negative margin
+/// is the amount by which a joint exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMargins {
     /// Distance to the smallest commanded position, `[rad]`.
     pub to_lower: JointVector,
     /// Distance to the largest commanded position, `[rad]`.
     pub to_upper: JointVector,
-    /// Distance to the nearer of the two positions, as a share of half the range: 1 in the middle,
-    /// 0 at a limit.
+    /// Distance to the nearer position limit, as a share of half the range: 1 in the middle, 0 at a
+    /// limit.
     pub normalised: JointVector,
-    /// Distance, `[rad]`, to the limit in the direction of motion, after braking from the current
-    /// velocity; at rest, the distance to the nearer limit. The joint brakes with the deceleration
-    /// of its [envelope](crate::limits::BrakingEnvelope), or with its largest acceleration if it
-    /// has no envelope. A bound on jerk makes the braking distance slightly longer.
+    /// Distance, `[rad]`, to the limit in the direction of motion if the joint brakes to a stop
+    /// now. At rest, this is the distance to the nearer limit. The joint brakes with the
+    /// deceleration of its [envelope](crate::limits::BrakingEnvelope), or with its largest
+    /// acceleration if it has no envelope. The real braking distance is slightly longer, because
+    /// the jerk is also bounded.
     pub braking: JointVector,
     /// Distance to the smallest velocity allowed at this position, `[rad/s]`; see
     /// [`JointLimits::velocity_envelope`].
@@ -27,8 +28,8 @@ pub struct JointMargins {
 }
 
 impl JointMargins {
-    /// Returns the joint, 1 to 7, with the least [`normalised`](Self::normalised) margin, and that
-    /// margin. A joint whose position is NaN comes before all others.
+    /// Returns the joint, 1 to 7, with the smallest [`normalised`](Self::normalised) margin, and
+    /// that margin. If a position is NaN, returns that joint.
     pub fn tightest(&self) -> (usize, f64) {
         let mut tightest = (1, self.normalised[0]);
         for (i, &margin) in self.normalised.iter().enumerate() {
@@ -70,7 +71,7 @@ impl JointLimits {
         }
     }
 
-    /// Returns the deceleration of a braking joint, `[rad/s²]`.
+    /// Returns the deceleration, `[rad/s²]`, with which joint `i` brakes.
     fn deceleration(&self, i: usize) -> f64 {
         match &self.envelope {
             Some(envelope) => envelope.deceleration[i],
@@ -125,7 +126,7 @@ mod tests {
             let (q, dq) = (random.posture(model), random.joints(2.0));
             let margins = limits.margins(&q, &dq);
             for i in 0..7 {
-                // Integrates small steps of constant deceleration.
+                // The test integrates small steps of constant deceleration.
                 let deceleration = match &limits.envelope {
                     Some(envelope) => envelope.deceleration[i],
                     None => limits.acceleration[i],

@@ -4,15 +4,15 @@ use nalgebra::Vector3;
 
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// A rule of composition. Mass and first moment, and therefore gravity, are the same for both
-/// rules.
+/// Rule that composes a load and link 7. The mass and the first moment, and therefore gravity, are
+/// the same with both rules.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Merge {
-    /// The rule of mechanics: inertias about the common centre of mass add up.
+    /// The physical rule: the inertias about the common centre of mass add up.
     Rigid,
-    /// The rule of the FER's model library. The numbers are the mass and centre of mass of link 7
-    /// in this library. Link 7 keeps its inertia about its own centre, without the lever to the
-    /// common centre.
+    /// The rule of the FER's model library. The numbers are the mass and the centre of mass of link
+    /// 7 in this library. The rule adds the inertia of link 7 about its own centre of mass, and
+    /// ignores the distance to the common centre of mass.
     WithoutOwnLever((f64, [f64; 3])),
 }
 

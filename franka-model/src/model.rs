@@ -1,4 +1,4 @@
-//! The constant description of one kind of robot, and the functions on it.
+//! The constants of one kind of robot, and the functions that use them.
 
 use core::fmt;
 
@@ -19,13 +19,14 @@ use crate::{Jacobian, JointVector, MassMatrix};
 /// A robot's constants: kinematics, bodies and limits.
 ///
 /// Models with the vendor's numbers are static values ([`of`](Self::of),
-/// [`physically_consistent`](Self::physically_consistent)). The description of a connected robot
-/// gives a separate model. Both have the same functions, with the same run time.
+/// [`physically_consistent`](Self::physically_consistent)). The description (URDF) of a connected
+/// robot can be read into a separate model. All models have the same functions, with the same run
+/// time.
 ///
-/// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
-/// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in the
-/// base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH) for an upright robot). Non-finite
-/// numbers give non-finite results.
+/// In all functions, `q` are joint positions `[rad]`, `dq` are joint velocities `[rad/s]`, and
+/// `ddq` are joint accelerations `[rad/s²]`. Torques are in `[N·m]`. `gravity_earth` is the
+/// gravitational acceleration in the base frame `[m/s²]` ([`GRAVITY_EARTH`](crate::GRAVITY_EARTH)
+/// for an upright robot). If an argument is not finite, the result is not finite.
 #[derive(Clone, PartialEq)]
 pub struct Model {
     pub(crate) kind: RobotKind,
@@ -34,12 +35,12 @@ pub struct Model {
     pub(crate) merge: Merge,
     pub(crate) joints: JointLimits,
     pub(crate) lengths: Lengths,
-    /// Joint frames that deviate from `lengths`, for simulation: rotation and translation in the
-    /// frame of the previous link.
+    /// Joint frames of a simulated robot that deviate from `lengths`, as rotation and translation
+    /// in the frame of the previous link.
     pub(crate) origins: Option<[(Matrix3<f64>, Vector3<f64>); 7]>,
 }
 
-/// Prints only the kind, because errors contain a model, whose numbers would hide the text of the
+/// Prints only the kind. Some errors contain a model, and its numbers would hide the text of the
 /// error.
 impl fmt::Debug for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -49,22 +50,22 @@ impl fmt::Debug for Model {
 }
 
 impl Model {
-    /// The kind of robot.
+    /// Returns the kind of robot.
     pub fn kind(&self) -> RobotKind {
         self.kind
     }
 
-    /// The fixed body, in the base frame. The dynamics do not depend on it.
+    /// Returns the fixed body (link 0), in the base frame. The dynamics do not depend on this body.
     pub fn base(&self) -> &RigidBody {
         &self.base
     }
 
-    /// Links 1 to 7 without a load, each in the axes of its own link.
+    /// Returns links 1 to 7 without a load, each in the axes of its own link.
     pub fn links(&self) -> &[RigidBody; 7] {
         &self.links
     }
 
-    /// Limits of the joints.
+    /// Returns the limits of the joints.
     pub fn joint_limits(&self) -> &JointLimits {
         &self.joints
     }
@@ -78,7 +79,7 @@ impl Model {
         }
     }
 
-    /// Lengths of upper arm and forearm.
+    /// Returns the lengths of the upper arm and the forearm.
     pub fn lengths(&self) -> &Lengths {
         &self.lengths
     }
@@ -98,9 +99,9 @@ impl Model {
     /// the new frame of joint `i + 1` in its current frame, at joint position zero. The deviation
     /// of a joint also moves all later frames.
     ///
-    /// Use this for simulation. Kinematics and dynamics use the deviations. [Analytic
-    /// IK](crate::analytic_ik) and [capsules](crate::collision) keep the frames of the
-    /// [`lengths`](Self::lengths).
+    /// Use this function for simulation. Kinematics and dynamics use the displaced frames.
+    /// [Analytic IK](crate::analytic_ik) and [capsules](crate::collision) ignore the deviations and
+    /// use the [`lengths`](Self::lengths).
     #[must_use]
     pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
         if deviations.iter().any(|d| *d != Isometry3::identity()) {
@@ -142,16 +143,16 @@ impl Model {
         Placement::of(&self.chain(q), frame, ee).pose()
     }
 
-    /// Returns the velocity of the frame's origin and the angular velocity of the frame per joint
-    /// velocity, both in base axes. Columns of joints after the frame are zero.
+    /// Returns the Jacobian of `frame`, in base axes: the velocity of its origin and its angular
+    /// velocity, per joint velocity. Columns of joints that do not move the frame are zero.
     pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
         jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
     }
 
-    /// Returns [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along
-    /// the chain.
+    /// Returns the [`pose`](Self::pose) and the [`zero_jacobian`](Self::zero_jacobian), computed in
+    /// one pass along the chain.
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,
@@ -164,8 +165,8 @@ impl Model {
         (placement.pose(), jacobian)
     }
 
-    /// Returns the largest speed of the centres of the joints, the flange and the end effector,
-    /// `[m/s]`. These points are the origins of the first nine frames of [`Frame::ALL`].
+    /// Returns the speed of the fastest of nine points, `[m/s]`: the origins of the seven joint
+    /// frames, of the flange and of the end effector.
     pub fn fastest_point(&self, q: &JointVector, dq: &JointVector, ee: &EndEffector) -> f64 {
         jacobian::fastest_point(&self.chain(q), dq, ee)
     }
@@ -178,7 +179,7 @@ impl Model {
         jacobian::body_jacobian(&zero, &placement.rotation)
     }
 
-    /// Returns the joint-space inertia, without rotors, `[kg·m²]`.
+    /// Returns the joint-space inertia, `[kg·m²]`. Rotor inertias are not included.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         dynamics::mass(&self.chain(q), &self.links_with(load))
     }
@@ -217,12 +218,12 @@ impl Model {
         )
     }
 
-    /// Returns the accelerations under the torques `tau`: solves `(M + diag(armature)) ddq = tau −
-    /// C dq − g`.
+    /// Returns the accelerations that the torques `tau` cause: the solution of `(M +
+    /// diag(armature)) ddq = tau − C dq − g`.
     ///
-    /// `armature` is the reflected rotor inertia of each joint `[kg·m²]`. `None` if the matrix is
-    /// not positive definite. Causes are a non-finite number, a negative armature, or a load that
-    /// is not physical.
+    /// `armature` is the reflected rotor inertia of each joint `[kg·m²]`. Returns `None` if the
+    /// matrix `M + diag(armature)` is not positive definite. Possible causes are a number that is
+    /// not finite, a negative armature, and a load that is not physical.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,
@@ -243,7 +244,7 @@ impl Model {
         )
     }
 
-    /// Returns all quantities that a control law needs in one cycle; each part is computed once.
+    /// Returns all quantities that a control law needs in one cycle, computed in one pass.
     pub fn dynamics(
         &self,
         q: &JointVector,

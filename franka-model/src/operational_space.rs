@@ -2,13 +2,14 @@
 //!
 //! The apparent mass at a point of the arm depends on the posture and on the direction of a push.
 //! The operational space formulation (Khatib, IEEE Journal on Robotics and Automation 3(1), 1987;
-//! effective mass: Khatib, International Journal of Robotics Research 14(1), 1995) describes it
-//! with the Jacobian `J` of the point and the joint-space inertia `M`:
+//! effective mass: Khatib, International Journal of Robotics Research 14(1), 1995) describes this
+//! mass with the Jacobian `J` of the point and the joint-space inertia `M`:
 //!
-//! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. The mobility exists at every
-//!   posture.
+//! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration of the point per wrench. The mobility exists
+//!   at every posture.
 //! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
-//!   point accelerates in this way *and in no other*. `Λ` does not exist in a singularity.
+//!   point has *exactly* this acceleration in all six components. `Λ` does not exist in a
+//!   singularity.
 //! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`. It is the inertia that
 //!   a force along `u` feels while the point is free to move in every direction. The effective mass
 //!   never exceeds the value of `Λ` in the same direction.
@@ -17,7 +18,7 @@ use nalgebra::{Cholesky, Matrix3, SMatrix, UnitVector3, Vector3};
 
 use crate::{Dynamics, EndEffector, Frame, Jacobian, JointVector, Load, MassMatrix, Model, Twist};
 
-/// A 6×6 matrix, `[linear; angular]` in rows and columns.
+/// A 6×6 matrix. Rows and columns are ordered `[linear; angular]`.
 pub type Matrix6 = SMatrix<f64, 6, 6>;
 
 /// Response of a point of the arm to wrenches, in the axes of the point's Jacobian.
@@ -27,14 +28,15 @@ pub struct OperationalSpace {
 }
 
 impl OperationalSpace {
-    /// Creates the operational space of a point with this Jacobian, on an arm with this joint-space
+    /// Creates the operational space of a point from its Jacobian and from the arm's joint-space
     /// inertia.
     ///
-    /// The point is the origin of the Jacobian's frame, and the axes are the Jacobian's: base axes
-    /// for a zero Jacobian. For another point of the last link, move the end effector to this point
-    /// ([`EndEffector::f_t_ee`]).
+    /// The point is the origin of the Jacobian's frame. All results are in the axes of the
+    /// Jacobian, which are base axes for a zero Jacobian. For another point of the last link, move
+    /// the end effector to that point ([`EndEffector::f_t_ee`]).
     ///
-    /// `None` if `mass` is not positive definite, which is impossible for a physical arm.
+    /// Returns `None` if `mass` is not positive definite. The mass matrix of a physical arm is
+    /// always positive definite.
     pub fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Option<Self> {
         // With M = L Lᵀ, the mobility is a product of a matrix and its transpose, so it is
         // symmetric to the last digit.
@@ -47,35 +49,35 @@ impl OperationalSpace {
         })
     }
 
-    /// Returns `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, without other joint
-    /// torques.
+    /// Returns `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, if no other joint
+    /// torques act.
     pub fn mobility(&self) -> &Matrix6 {
         &self.mobility
     }
 
-    /// Returns `Λ`, the inverse of the mobility: wrench per acceleration when all six components
-    /// are prescribed. `None` in a singularity.
+    /// Returns `Λ`, the inverse of the mobility: the wrench per acceleration if all six components
+    /// are prescribed. Returns `None` in a singularity.
     pub fn inertia(&self) -> Option<Matrix6> {
         Cholesky::new(self.mobility).map(|factor| factor.inverse())
     }
 
-    /// Returns `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: force per acceleration of the point, with free rotation.
-    /// `None` if the point cannot move in some direction.
+    /// Returns `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: the force per acceleration of the point, if the body may
+    /// rotate freely. Returns `None` if the point cannot move in some direction.
     pub fn translational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(0, 0).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// Returns `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: torque per angular acceleration, with a free point.
-    /// `None` if the body cannot turn about some axis.
+    /// Returns `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: the torque per angular acceleration, if the point may
+    /// move freely. Returns `None` if the body cannot turn about some axis.
     pub fn rotational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(3, 3).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// Returns the effective mass along `direction`, `[kg]`: the ratio of a force along `direction`
-    /// to the point's acceleration along `direction`. Infinite if the point cannot move in this
-    /// direction.
+    /// Returns the effective mass along `direction`, `[kg]`: a force along `direction` divided by
+    /// the point's acceleration along `direction`. The mass is infinite if the point cannot move in
+    /// this direction.
     pub fn effective_mass(&self, direction: &UnitVector3<f64>) -> f64 {
         self.effective_inertia(&Self::twist(direction, &Vector3::zeros()))
     }
@@ -85,7 +87,8 @@ impl OperationalSpace {
         self.effective_inertia(&Self::twist(&Vector3::zeros(), axis))
     }
 
-    /// Returns the effective inertia along any unit twist, such as a screw: `1 / (uᵀ J M⁻¹ Jᵀ u)`.
+    /// Returns the effective inertia along a unit twist `u`, such as a screw motion: `1 / (uᵀ J M⁻¹
+    /// Jᵀ u)`.
     pub fn effective_inertia(&self, unit: &Twist) -> f64 {
         unit.dot(&(self.mobility * unit)).recip()
     }
@@ -98,8 +101,8 @@ impl OperationalSpace {
 }
 
 impl Model {
-    /// Returns the operational space of the origin of `frame`, in base axes. `None` for a load that
-    /// is not physical: see [`OperationalSpace::new`].
+    /// Returns the operational space of the origin of `frame`, in base axes. Returns `None` if the
+    /// load is not physical; see [`OperationalSpace::new`].
     pub fn operational_space(
         &self,
         frame: Frame,
@@ -126,8 +129,8 @@ mod tests {
     use crate::random::Random;
     use crate::{GRAVITY_EARTH, READY, Wrench};
 
-    /// Effective inertias along and about x, y, z; the diagonals of the translational inertia and
-    /// of Λ.
+    /// Effective inertias along and about x, y and z, the diagonal of the translational inertia,
+    /// and the diagonal of Λ.
     type Row = ([f64; 6], [f64; 3], [f64; 6]);
 
     #[track_caller]

@@ -1,17 +1,18 @@
-//! Rotation vectors: orientations as three numbers, with their rates.
+//! Rotation vectors, which describe orientations by three numbers, and their derivatives.
 //!
-//! A rotation vector `phi` is axis times angle. A path of orientations is `R(t) = exp(phi(t)) R0`
-//! with a fixed anchor `R0`; then, in base axes,
+//! A rotation vector `phi` is the axis times the angle. A path of orientations is `R(t) =
+//! exp(phi(t)) R0` with a fixed orientation `R0`. The angular velocity and acceleration are then,
+//! in base axes,
 //!
 //! ```text
 //! omega = J(phi) phi'                 J: left Jacobian of SO(3)
 //! alpha = J(phi) phi'' + J'(phi) phi'
 //! ```
 //!
-//! With `K = [phi]×` and `x = |phi|²`, `J = 1 + c2 K + c3 K²`, where the functions
-//! `c_k(x) = 1/k! − x/(k+2)! + x²/(k+4)! − …` are Stumpff's. They are smooth at zero, obey
-//! `c_k = 1/k! − x c_(k+2)`, and give the derivative and the inverse without cancellation:
-//! `dc2/dt = (2 c4 − c3) phi·phi'` and `dc3/dt = (3 c5 − c4) phi·phi'`.
+//! With `K = [phi]×` and `x = |phi|²`, `J = 1 + c2 K + c3 K²`, where the functions `c_k(x) = 1/k! −
+//! x/(k+2)! + x²/(k+4)! − …` are Stumpff's. These functions are smooth at zero, obey `c_k = 1/k! −
+//! x c_(k+2)`, and yield the derivative and the inverse without cancellation: `dc2/dt = (2 c4 − c3)
+//! phi·phi'` and `dc3/dt = (3 c5 − c4) phi·phi'`.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -27,7 +28,7 @@ pub fn exp(phi: &Vector3<f64>) -> UnitQuaternion<f64> {
 
 /// Returns the shortest rotation vector of `rotation`, of length at most π.
 ///
-/// At exactly half a turn, both directions are right; the quaternion determines which is returned.
+/// At exactly half a turn, both directions are valid; the sign of the quaternion selects one.
 pub fn log(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let v = rotation.imag();
     let w = rotation.w;
@@ -78,7 +79,7 @@ pub fn angular_velocity(phi: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64>
 }
 
 /// Returns the angular acceleration `[rad/s²]`, in base axes, from the rotation vector and its
-/// derivatives.
+/// first two derivatives.
 pub fn angular_acceleration(
     phi: &Vector3<f64>,
     rate: &Vector3<f64>,
@@ -87,8 +88,8 @@ pub fn angular_acceleration(
     left_jacobian(phi) * second + left_jacobian_rate(phi, rate) * rate
 }
 
-/// Returns the first and second derivative of the rotation vector at `phi` for the angular velocity
-/// `omega` and acceleration `alpha`; valid for `|phi| < 2π`.
+/// Returns the first and the second derivative of the rotation vector at `phi`, for the angular
+/// velocity `omega` and the angular acceleration `alpha`. The result is valid for `|phi| < 2π`.
 pub fn derivatives(
     phi: &Vector3<f64>,
     omega: &Vector3<f64>,
@@ -159,8 +160,8 @@ mod tests {
     use crate::random::Random;
     use core::f64::consts::PI;
 
-    /// Returns rotation vectors of many lengths below `limit`, including zero and the switch of
-    /// formulas.
+    /// Returns rotation vectors of many lengths below `limit`, including zero and the length at
+    /// which the formula changes.
     fn samples(limit: f64) -> std::vec::Vec<Vector3<f64>> {
         let mut random = Random::new(11);
         let lengths = [

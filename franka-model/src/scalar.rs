@@ -1,4 +1,5 @@
-//! Elementary functions, from the platform's library with `std` and from `libm` without.
+//! Elementary functions, from the platform's library if `std` is available, and from `libm`
+//! otherwise.
 //!
 //! `core` has no such functions: the methods come from `std`, or from nalgebra's traits.
 

@@ -1,8 +1,9 @@
 //! Conversions between homogeneous matrices and isometries.
 //!
-//! The robot's matrices are column-major, may come from `f32` fields, and need not be exactly
-//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The conversion replaces the
-//! rotation block by the nearest rotation in the least-squares sense (the polar factor).
+//! The robot's matrices are column-major, may come from `f32` fields, and are not always exactly
+//! rigid. For example, a pose with the vendor's 0.7071 for sqrt(1/2) deviates by 1e-5. The
+//! conversion replaces the rotation block by the nearest rotation in the least-squares sense (the
+//! polar factor).
 
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
@@ -14,8 +15,9 @@ pub const DISTORTION_MAX: f64 = 1e-3;
 
 /// Returns the rigid transform nearest to `matrix`.
 ///
-/// `None` if an element is not finite, the last row is not `0 0 0 1`, or the rotation block is
-/// further than `DISTORTION_MAX` (1e-3) from every rotation (mirrored, scaled, sheared).
+/// Returns `None` if an element is not finite, if the last row is not `0 0 0 1`, or if the rotation
+/// block deviates by more than `DISTORTION_MAX` (1e-3) from every rotation, for example because it
+/// is mirrored, scaled or sheared.
 pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
     let last_row = [matrix.m41, matrix.m42, matrix.m43, matrix.m44];
     if last_row != [0.0, 0.0, 0.0, 1.0] {
@@ -31,7 +33,8 @@ pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
     })
 }
 
-/// Like [`isometry`], for 16 numbers, column-major, as in `O_T_EE`.
+/// Returns the rigid transform nearest to a column-major matrix, such as `O_T_EE`; see
+/// [`isometry`].
 pub fn isometry_from_array(column_major: &[f64; 16]) -> Option<Isometry3<f64>> {
     isometry(&Matrix4::from_column_slice(column_major))
 }
@@ -41,7 +44,7 @@ pub fn matrix(isometry: &Isometry3<f64>) -> Matrix4<f64> {
     isometry.to_homogeneous()
 }
 
-/// Returns 16 numbers, column-major, as in `O_T_EE_c`.
+/// Returns the column-major matrix of a rigid transform, in the format of `O_T_EE_c`.
 pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
     let mut column_major = [0.0; 16];
     column_major.copy_from_slice(matrix(isometry).as_slice());
@@ -52,8 +55,8 @@ pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
 /// 2`.
 ///
 /// The iteration converges for every matrix of positive determinant, and quadratically near a
-/// rotation (Higham, Functions of Matrices, 2008, section 8.3). `None` for other matrices, and if
-/// 20 steps are not enough, which happens only close to a singular matrix.
+/// rotation (Higham, Functions of Matrices, 2008, section 8.3). Returns `None` for other matrices,
+/// and if 20 steps are not enough. Only matrices that are almost singular need more steps.
 pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
     let determinant = block.determinant();
     if determinant.is_nan() || determinant <= 0.0 {
