@@ -42,8 +42,9 @@ use crate::box_qp::{Problem, minimise};
 /// How the damping `λ` depends on the manipulability; see the [module](self).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
-    /// Damping far from singularities, in radians per radian. The arm omits this share, squared, of
-    /// a rotation. The value must be positive, because it makes the minimum unique.
+    /// Damping far from singularities, in radians per radian. The square of this value is the share
+    /// of a rotation that the arm does not execute. The value must be positive, because it makes
+    /// the minimum unique.
     pub floor: f64,
     /// Additional damping in a singularity of the pose, in the same unit.
     pub ceiling: f64,

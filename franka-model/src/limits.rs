@@ -61,8 +61,8 @@ impl JointLimits {
     ///
     /// With a [`BrakingEnvelope`], the speed towards a position limit is bounded so that the joint
     /// stops before the hard limit. Without an envelope, the bound is [`velocity`](Self::velocity)
-    /// everywhere, even beyond the limits. Both bounds are then reduced by `margin` `[rad/s]`: the
-    /// robot uses 0, and libfranka uses [`CLIENT_MARGIN`]. At and beyond a position limit with an
+    /// everywhere, even beyond the limits. `margin` `[rad/s]` reduces both speed limits: the robot
+    /// uses 0, and libfranka uses [`CLIENT_MARGIN`]. At and beyond a position limit with an
     /// envelope, the bound towards the limit is `-margin`, which allows only motion away from the
     /// limit.
     ///

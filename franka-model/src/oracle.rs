@@ -5,14 +5,14 @@ use std::vec::Vec;
 use crate::JointVector;
 use crate::box_qp::{JointBox, Problem};
 
-/// Rows of the task, and of the damping below them.
+/// Number of rows: the task, and the damping below it.
 const ROWS: usize = 6 + 7;
 type Column = [f64; ROWS];
 
-/// Returns the minimum by trying all 3⁷ ways to hold variables on their bounds. The result is the
-/// best point within the box whose gradient does not point into the box.
+/// Returns the minimum. The function tries all 3⁷ ways to hold variables on their bounds. The
+/// result is the best point within the box whose gradient does not point into the box.
 ///
-/// The least squares of each way are solved by orthogonalising the columns of `[A; sqrt(d) 1]`,
+/// For each way, it orthogonalises the columns of `[A; sqrt(d) 1]` to solve the least squares,
 /// without normal equations.
 pub(crate) fn minimum_by_enumeration(problem: &Problem<'_>, bounds: &JointBox) -> JointVector {
     let root = problem.damping.sqrt();
@@ -60,7 +60,7 @@ pub(crate) fn minimum_by_enumeration(problem: &Problem<'_>, bounds: &JointBox) -
 }
 
 /// Returns the violation: the distance of free variables from the box, or the gradient of held
-/// variables that points into it.
+/// variables that points into the box.
 fn fault(
     columns: &[Column; 7],
     target: &Column,

@@ -34,7 +34,7 @@ impl Random {
         JointVector::from_fn(|i, _| self.uniform(limits.lower[i], limits.upper[i]))
     }
 
-    /// Returns a physical load: a box of some density away from the flange.
+    /// Returns a physical load: a box of uniform density away from the flange.
     pub(crate) fn load(&mut self) -> Load {
         let mass = self.uniform(0.1, 3.0);
         let side = self.vector3(0.2);

@@ -40,8 +40,9 @@ pub(super) fn root(
     if fa.abs() < fb.abs() { a } else { b }
 }
 
-/// Searches for roots around the middle of three points in order. The three values have the same
-/// sign, and the middle value is nearest to zero. Finds two roots, one double root, or no root.
+/// Searches for roots around the middle of three successive points. The three values have the same
+/// sign, and the middle value is nearest to zero. The search finds two roots, one double root, or
+/// no root.
 pub(super) fn dip(
     f: impl Fn(f64) -> f64,
     [mut a, mut b, mut c]: [(f64, f64); 3],
@@ -51,7 +52,7 @@ pub(super) fn dip(
     let mut settled = 0;
     for step in 0..STEPS_MAX {
         let (vertex, expected) = vertex(a, b, c);
-        // Golden section, if the parabola gives no new point.
+        // Uses the golden section if the parabola yields no new point.
         let wide = if (b.0 - a.0).abs() > (c.0 - b.0).abs() {
             a
         } else {
@@ -64,7 +65,7 @@ pub(super) fn dip(
         let x = if usable { vertex } else { golden };
         let point = (x, f(x));
         if point.1 * sign <= 0.0 {
-            // The function crosses zero before its extremum, so one root is on either side.
+            // The function crosses zero before its extremum, so one root is on each side.
             visit(root(&f, a, point));
             visit(root(&f, point, c));
             return;
@@ -96,8 +97,8 @@ pub(super) fn dip(
     }
 }
 
-/// Like [`dip`], but between the end of an interval and the next point. The value at the next point
-/// is further from zero.
+/// Searches for roots as [`dip`] does, but between the end of an interval and the point next to it.
+/// The value at that point is further from zero than at the end.
 pub(super) fn dip_at_end(
     f: impl Fn(f64) -> f64,
     end: (f64, f64),
@@ -134,11 +135,11 @@ fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> (f64, f64) {
 }
 
 const STEPS_MAX: u32 = 60;
-/// Number of predicted steps without improvement after which a search ends.
+/// Number of parabola steps without improvement after which a search stops.
 const SETTLED: u32 = 3;
 /// Number of samples between an end and the point next to it.
 const END_STEPS: u32 = 5;
-/// Distance of points below which they count as equal, `[rad]`.
+/// Distance, `[rad]`, below which two points count as equal.
 const RESOLUTION: f64 = 1e-16;
 /// Width of a bracket within which a smooth function differs from its extremum only by rounding.
 const NARROW: f64 = 1e-8;

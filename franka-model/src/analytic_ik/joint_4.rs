@@ -27,14 +27,14 @@ pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Soluti
     found
 }
 
-/// Returns the angles of joint 7 that place the wrist at a distance from the shoulder.
+/// Returns the angles of joint 7 at which the wrist has the given distance from the shoulder.
 fn circle(flange: &Flange, squared_distance: f64) -> [Option<f64>; 2] {
     let d = &flange.from_shoulder;
     let (p, q) = (dot(d, &flange.x), dot(d, &flange.y));
     let radius = sqrt(p * p + q * q);
     let along = (dot(d, d) + WRIST * WRIST - squared_distance) / (2.0 * WRIST);
     if radius < AXIS {
-        // The shoulder is on axis 7: all angles are solutions, or none.
+        // If the shoulder is on axis 7, either every angle is a solution, or none is.
         return [(along.abs() < AXIS).then_some(0.0), None];
     }
     let Some(cos) = cosine(along / radius) else {

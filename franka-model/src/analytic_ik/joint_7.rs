@@ -113,7 +113,8 @@ impl Elbow {
     /// Returns both solutions for the squared distance between shoulder and wrist, or none.
     fn both(lengths: &Lengths, squared_distance: f64) -> [Option<Self>; 2] {
         match cosine(Self::from_flip(lengths, squared_distance)) {
-            // If the shoulder is on the axis of joint 5, far outside the limits, f vanishes.
+            // `f` is zero if the shoulder is on the axis of joint 5. Such postures are far outside
+            // the limits.
             Some(cos) => [false, true].map(|above| {
                 let elbow = Self::turned(lengths, above, cos);
                 (elbow.f != 0.0).then_some(elbow)
@@ -122,21 +123,21 @@ impl Elbow {
         }
     }
 
-    /// Returns the solution on one side of the flip angle. The distance must be possible, except
-    /// for rounding.
+    /// Returns the solution on one side of the flip angle. The arm must be able to produce the
+    /// distance, except for rounding.
     pub(super) fn on_side(lengths: &Lengths, above: bool, squared_distance: f64) -> Self {
         let cos = Self::from_flip(lengths, squared_distance).clamp(-1.0, 1.0);
         Self::turned(lengths, above, cos)
     }
 
-    /// Returns the solution with the given joint 4.
+    /// Returns the solution with joint 4 at `q4`.
     pub(super) fn at(lengths: &Lengths, q4: f64) -> Option<Self> {
         let above = sin_cos(q4 - lengths.flip_angle()).0 > 0.0;
         let elbow = Self::of(lengths, above, sin_cos(q4));
         (elbow.f != 0.0).then_some(elbow)
     }
 
-    /// Cosine of the angle of joint 4 from the flip angle.
+    /// Returns the cosine of the angle between joint 4 and the flip angle.
     fn from_flip(lengths: &Lengths, squared_distance: f64) -> f64 {
         let [upper, fore] = squared_sides(lengths);
         (squared_distance - upper - fore) / (2.0 * sqrt(upper * fore))
@@ -216,8 +217,8 @@ impl Forearm {
         let (x6, y6, v) = (&hand.x6, &hand.y6, &hand.to_shoulder);
         let x5 = x6 * c6 - y6 * s6;
         let z5 = x6 * s6 + y6 * c6;
-        // Component of the shoulder perpendicular to the axis of joint 5, in frame 5 (whose y axis
-        // is −z6). Its angle from x is −q5.
+        // `beside` is the part of the vector to the shoulder that is perpendicular to the axis of
+        // joint 5. In frame 5, whose y axis is −z6, its angle from x is −q5.
         let beside = v - z5 * elbow.h;
         let (s5, c5) = (
             dot(&hand.z6, &beside) / elbow.f,
@@ -225,7 +226,7 @@ impl Forearm {
         );
         let norm = sqrt(s5 * s5 + c5 * c5);
         let (s5, c5) = (s5 / norm, c5 / norm);
-        // The direction is undefined only if the solution itself is.
+        // The direction is undefined only if the solution itself is undefined.
         norm.is_normal().then(|| Self {
             straight: straight.unwrap_or(c5 * elbow.f > 0.0),
             q5: atan2(s5, c5),
@@ -261,7 +262,8 @@ impl Turn {
         let radius = sqrt(z3.x * z3.x + z3.y * z3.y);
         let in_line = radius <= SHOULDER_SINGULAR;
         let (s1, c1) = if in_line {
-            // Half of the sum of both angles. With joint 2 at π, only their difference matters.
+            // Each joint gets half of the sum of both angles. With joint 2 at π, only the
+            // difference of the angles matters.
             sin_cos(0.5 * atan2(x3.y - y3.x, x3.x + y3.y))
         } else {
             (z3.y / radius, z3.x / radius)
@@ -292,8 +294,8 @@ pub(super) fn cosine(x: f64) -> Option<f64> {
     (x.abs() <= 1.0 + FOLD).then(|| x.clamp(-1.0, 1.0))
 }
 
-/// Excess beyond a double root up to which a pose counts as on the root: some thousand rounding
-/// errors.
+/// Largest distance beyond a double root at which a pose still counts as on the root: a few
+/// thousand rounding errors.
 const FOLD: f64 = 1e-12;
 /// Sine of joint 2 below which axes 1 and 3 count as one axis. The resulting error of the pose has
 /// the same size, in radians.

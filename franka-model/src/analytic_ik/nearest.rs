@@ -1,4 +1,4 @@
-//! The nearest posture to a given one, among all postures for a pose.
+//! The posture nearest to a reference posture, among all postures for a pose.
 
 use nalgebra::Isometry3;
 
@@ -8,15 +8,17 @@ use crate::frame::EndEffector;
 use crate::inverse_kinematics::{self, IkError};
 use crate::model::Model;
 
-/// Returns the posture within the limits that brings the end effector to `target` and is nearest to
-/// `q` (least sum of squares), over all redundancy parameters; `None` if no posture was found.
+/// Returns the posture nearest to `q` that brings the end effector to `target`, within the limits
+/// and for any redundancy parameter. The nearest posture has the smallest sum of squared joint
+/// differences. Returns `None` if no posture was found.
 ///
-/// The search sweeps joint 7 through its range and refines the best posture of every branch. This
-/// takes some 0.3 ms. The sweep may miss solutions if they exist only in a hundredth of a radian of
-/// joint 7. [`reach`](super::reach) searches more finely.
+/// The search sweeps joint 7 through its range and refines the best posture of every branch. The
+/// search takes about 0.3 ms. The sweep may miss solutions that exist only in a range of joint 7 of
+/// a hundredth of a radian. [`reach`](super::reach) searches more finely.
 ///
 /// # Errors
-/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
+/// if the end-effector frame is not rigid.
 pub fn nearest(
     model: &Model,
     target: &Isometry3<f64>,
@@ -28,7 +30,7 @@ pub fn nearest(
         return Err(IkError::NotFinite);
     }
     let limits = model.joint_limits();
-    // The least distance per branch. Along joint 7, the postures of one branch are continuous.
+    // Smallest distance for each branch. Along joint 7, the postures of one branch are continuous.
     let mut least = [None; 8];
     let near = inverse_kinematics::from_seed(model, &flange, q).unwrap_or(*q)[6];
     let places = [q[6], near].into_iter();
@@ -38,7 +40,7 @@ pub fn nearest(
         let place: &mut Option<Solution> = &mut least[solution.branch.index()];
         *place = best([*place, Some(solution)].into_iter().flatten(), q);
     }
-    // Refines between samples by descending steps whose size is halved.
+    // Refines the result between samples by descending steps, and halves the step size each time.
     for found in least.iter_mut().flatten() {
         let mut step = (limits.upper[6] - limits.lower[6]) / f64::from(STEPS);
         while step > RESOLUTION {

@@ -1,7 +1,7 @@
 //! Reachability of a pose or a point, and its distance from the boundary of the reachable set.
 //!
-//! Both functions are for planning, not for a control cycle: they take from about 10 µs (well
-//! inside) to about 10 ms (far outside).
+//! Use these functions for planning, not in a control cycle. They take about 10 µs for targets well
+//! inside the reachable set, and up to about 10 ms for targets far outside.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -16,16 +16,15 @@ use crate::model::Model;
 /// Reachability of a target, and its distance from the boundary of the reachable set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// Posture within the limits that reaches the target. Of the examined postures, it has the
-    /// largest distance to the limits. `None` if the target is out of reach.
+    /// Posture within the limits that reaches the target. Among the examined postures, this posture
+    /// has the largest distance to the limits. It is `None` if the target is out of reach.
     pub posture: Option<JointVector>,
-    /// Distance, `[m]`, by which the target may move along the line through the shoulder, out or
-    /// in, before it becomes unreachable. At most [`FAR`].
+    /// Distance, `[m]`, by which the target may move outwards or inwards, along the line through
+    /// the shoulder, before it becomes unreachable. The distance is at most [`FAR`].
     ///
-    /// For an unreachable target the value is negative: minus the distance along this line to the
-    /// reachable set. It is −∞ if no point of the line is reachable with this orientation. The
-    /// value is exact to a micrometre, unless the reachable set has gaps shorter than 5 mm on the
-    /// line.
+    /// For an unreachable target, the value is minus the distance along this line to the reachable
+    /// set. The value is −∞ if no point of the line is reachable with this orientation. The value
+    /// is exact to a micrometre, unless the line has unreachable gaps shorter than 5 mm.
     pub margin: f64,
 }
 
@@ -39,7 +38,8 @@ impl Reach {
 /// Computes the reachability of the pose `target` for the end effector.
 ///
 /// # Errors
-/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
+/// if the end-effector frame is not rigid.
 pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
     let flange = flange_of(target, ee)?;
     let limits = model.joint_limits();
@@ -59,11 +59,12 @@ pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<
 /// Computes the reachability of `point` `[m]`, in the base frame, for the end effector's origin
 /// with any orientation.
 ///
-/// The search iterates from several starting postures. A point that it does not reach is almost
-/// certainly out of reach, but this is no proof.
+/// The search iterates from several starting postures. If no iteration reaches the point, the point
+/// is almost certainly out of reach, but this is not proven.
 ///
 /// # Errors
-/// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
+/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
+/// if the end-effector frame is not rigid.
 pub fn position(model: &Model, point: &Vector3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
     let mut seed = crate::READY;
     let mut find =
@@ -112,8 +113,8 @@ impl PoseSearch<'_> {
         }
     }
 
-    /// Iterates from the last posture. This finds the boundary, where joint 7 has only one possible
-    /// angle, which a sweep misses.
+    /// Iterates from the last posture. At the boundary of the reachable set, joint 7 has only one
+    /// possible angle. The iteration finds it, but a sweep misses it.
     fn posture(&self, flange: &Isometry3<f64>) -> Option<JointVector> {
         let seed = self.seed.unwrap_or(crate::READY);
         inverse_kinematics::from_seed(self.model, flange, &seed).ok()
@@ -147,7 +148,8 @@ fn margin(
             if reaches(&(outward * (direction * far))) == inside {
                 continue;
             }
-            // The answer changes between the last point with the target's answer and this point.
+            // The answer of `reaches` changes between the last point with the same answer as the
+            // target and this point.
             let (mut same, mut other) = (far - STRIDE, far);
             while other - same > PRECISION {
                 let middle = 0.5 * (same + other);
@@ -165,7 +167,7 @@ fn margin(
 
 /// Number of intervals of a sweep of joint 7.
 const STEPS: u32 = 32;
-/// Distance between examined places, `[m]`.
+/// Distance between two examined points of the line, `[m]`.
 const STRIDE: f64 = 5e-3;
 /// Resolution of the distance, `[m]`.
 const PRECISION: f64 = 1e-6;
@@ -193,9 +195,9 @@ mod tests {
 
     #[test]
     fn the_margin_of_a_pose_ends_at_the_stretched_arm() {
-        // The hand points forward, with axis 7 on the line from the shoulder through a wrist at
-        // the same height. The distance of the wrist is then a side of a right triangle with the
-        // offset of the wrist as another side.
+        // The hand points forward, with axis 7 on the line from the shoulder through a wrist at the
+        // same height. The wrist's distance from the shoulder and the wrist's offset are then two
+        // sides of a right triangle.
         let forward = nalgebra::UnitQuaternion::from_axis_angle(
             &Vector3::y_axis(),
             core::f64::consts::FRAC_PI_2,
@@ -258,8 +260,7 @@ mod tests {
             assert!((found.fixed_view::<3, 1>(0, 3) - point).norm() < 2e-9);
             assert!(reach.margin >= 0.0);
         }
-        // A point out of reach: from both directions, the negative margin leads to the same
-        // boundary.
+        // For points out of reach at two distances, the negative margin leads to the same boundary.
         let near = position(model, &Vector3::new(1.1, 0.0, 0.4), &ee).expect("finite");
         let far = position(model, &Vector3::new(1.3, 0.0, 0.4), &ee).expect("finite");
         assert!(!near.within() && !far.within());

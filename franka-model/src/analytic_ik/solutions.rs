@@ -1,4 +1,4 @@
-//! Solutions with their properties, and lists of solutions.
+//! A solution with its properties, and lists of solutions.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 use core::ops::Deref;
@@ -7,13 +7,12 @@ use crate::JointVector;
 use crate::elbow::FLIP_ANGLE;
 use crate::limits::JointLimits;
 
-/// Choice of one of the two answers in each step of the solver.
+/// Branch of a solution: which of the two answers each step of the solver chose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Branch {
     /// True if joint 4 is above the [flip angle](crate::elbow::FLIP_ANGLE).
     pub elbow: bool,
-    /// True if joint 5 is within a quarter turn of zero, for positions of joint 4 within its
-    /// limits.
+    /// True if joint 5 is within a quarter turn of zero, if joint 4 is within its limits.
     pub wrist: bool,
     /// True if joint 2 is negative.
     pub shoulder: bool,
@@ -33,20 +32,21 @@ pub struct Solution {
     pub q: JointVector,
     /// Branch of the solution. It stays the same along a path that crosses no singularity.
     pub branch: Branch,
-    /// Range by which joint 1 may turn, `[rad]`, if axes 1 and 3 are in line (joint 2 at zero):
-    /// lower and upper bound. Joint 3 turns back by the same angle, and the hand does not move. The
-    /// range is within the joint limits if the search was. `None` in all other postures.
+    /// Lower and upper bound of the angle, `[rad]`, by which joint 1 may turn if axes 1 and 3 are
+    /// in line (joint 2 at zero). Joint 3 then turns back by the same angle, and the hand does not
+    /// move. The bounds respect the joint limits if the search did. The value is `None` in all
+    /// other postures.
     pub slide: Option<[f64; 2]>,
 }
 
 impl Solution {
-    /// Returns the distance of each joint to the nearer of its limits, `[rad]`; negative beyond the
-    /// limit.
+    /// Returns the distance of each joint to the nearer of its limits, `[rad]`. The distance is
+    /// negative beyond the limit.
     pub fn limit_distances(&self, limits: &JointLimits) -> JointVector {
         (self.q - limits.lower).inf(&(limits.upper - self.q))
     }
 
-    /// Returns the least of [`limit_distances`](Self::limit_distances), `[rad]`.
+    /// Returns the smallest of the [`limit_distances`](Self::limit_distances), `[rad]`.
     pub fn limit_margin(&self, limits: &JointLimits) -> f64 {
         self.limit_distances(limits).min()
     }
@@ -90,7 +90,8 @@ impl Solution {
         (0..7).all(inside).then_some(moved)
     }
 
-    /// Returns `moved` with joints 1 and 3 as near to their half of the turn as the limits allow.
+    /// Returns `moved`, with joints 1 and 3 as near to their positions in `self` as the limits
+    /// allow.
     fn slid_within(&self, moved: &Self, lower: &JointVector, upper: &JointVector) -> Option<Self> {
         let (q1, q3) = (self.q[0], self.q[2]);
         let back = (lower[0] - q1).max(q3 - upper[2]);
@@ -108,12 +109,12 @@ impl Solution {
     }
 }
 
-/// Distances of joints, `[rad]`, from postures where two solutions meet and the six joints without
-/// joint 7 lose a direction. The determinant of these six joints is `L1 L2 sin(elbow) ·
-/// sin(shoulder) · f(q4) sin(wrist)`. Each distance is the angle of one joint from the position at
-/// which a factor vanishes.
+/// Distances of three joints, `[rad]`, from singular postures of joints 1 to 6. In such a posture,
+/// two solutions meet. The Jacobian of these six joints has the determinant `L1 L2 sin(elbow) ·
+/// sin(shoulder) · f(q4) sin(wrist)`. Each distance is the angle between a joint and the position
+/// at which one of the three sines is zero.
 ///
-/// With its seventh joint, the arm may still be regular in such a posture; see
+/// With joint 7, the whole arm may still be regular in such a posture; see
 /// [`manipulability`](crate::manipulability).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Singularity {
@@ -136,7 +137,7 @@ impl Singularity {
         }
     }
 
-    /// Returns the least of the three.
+    /// Returns the smallest of the three distances.
     pub fn least(&self) -> f64 {
         self.shoulder.min(self.elbow).min(self.wrist)
     }
@@ -149,8 +150,8 @@ pub struct Solutions {
     count: usize,
 }
 
-/// Capacity of a list: four times the largest number of solutions for a given joint angle. Not one
-/// of two million problems with a given swivel angle had more than 12 solutions within the limits.
+/// Capacity of a list: four times the largest number of solutions for a given joint angle. In a
+/// test with two million given swivel angles, no list had more than 12 solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {
@@ -175,8 +176,8 @@ impl Solutions {
         }
     }
 
-    /// Returns the solutions within `lower` and `upper` `[rad]`. If necessary, angles are shifted
-    /// by a turn.
+    /// Returns the solutions within `lower` and `upper` `[rad]`. If necessary, the function shifts
+    /// angles by a turn.
     ///
     /// No joint of these robots has a range of a full turn, so the shift is unique.
     pub fn within(mut self, lower: &JointVector, upper: &JointVector) -> Self {
@@ -190,8 +191,8 @@ impl Solutions {
         self
     }
 
-    /// Returns the solution whose largest joint displacement from `q` is smallest, slid towards `q`
-    /// if possible ([`Solution::slide`]).
+    /// Returns the solution nearest to `q`: its largest joint displacement from `q` is the
+    /// smallest. If [`Solution::slide`] allows, joints 1 and 3 are moved towards `q`.
     pub fn nearest(&self, q: &JointVector) -> Option<Solution> {
         let distance = |solution: &Solution| (solution.q - q).amax();
         self.iter()

@@ -1,19 +1,19 @@
 //! Joint 7 from the swivel angle: the roots of one equation.
 //!
-//! A given angle of joint 7 determines the wrist and the bend of the elbow. The swivel angle then
-//! places the elbow, which determines the axis of the forearm, y4. This is the axis of joint 5, so
-//! it must be at right angles to the axis of joint 6:
+//! A given angle of joint 7 determines the position of the wrist and the angle of joint 4. The
+//! swivel angle then determines the position of the elbow, and therefore the forearm's axis y4. y4
+//! is also the axis of joint 5, so it must be at right angles to the axis of joint 6:
 //!
 //! ```text
 //! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
 //! ```
 //!
 //! The solver seeks the roots of `g` on arcs of joint 7. On these arcs, joint 4 can produce the
-//! distance of shoulder and wrist within its range. Samples are dense where the half plane of the
-//! elbow turns quickly (the wrist passes near axis 1). The solver brackets changes of sign. Where
-//! samples approach zero without a change of sign, it computes the extremum to find two close
-//! roots. At the ends of an arc `g` behaves like a square root; cosine spacing of the samples
-//! compensates for this.
+//! distance between shoulder and wrist within its range. Samples are dense where the half plane of
+//! the elbow turns quickly, because the wrist passes near axis 1. The solver brackets every change
+//! of sign. Where samples approach zero without a change of sign, the solver computes the extremum
+//! to find two close roots. At the ends of an arc, `g` behaves like a square root; the cosine
+//! spacing of the samples compensates for this.
 
 use core::f64::consts::PI;
 
@@ -26,8 +26,7 @@ use crate::geometry::{Lengths, WRIST};
 use crate::inertia::dot;
 use crate::scalar::{acos, atan2, sin_cos, sqrt};
 
-/// Returns all solutions with the elbow at `angle` and joint 4 within `q4_range`, a part of the
-/// turn about the flip angle.
+/// Returns all solutions with the swivel angle `angle` and with joint 4 within `q4_range`.
 pub(super) fn all(
     lengths: &Lengths,
     flange: &Isometry3<f64>,
@@ -83,8 +82,8 @@ impl Side<'_> {
         let squared = dot(&w, &w);
         let elbow = Elbow::on_side(self.lengths, self.above, squared);
         let (length, offset) = (sqrt(squared), sqrt(w.x * w.x + w.y * w.y));
-        // The unit vector at right angles to w, towards the elbow, as two parts: upwards, and
-        // turned about w.
+        // The unit vector towards the elbow, at right angles to w, is the sum of an upward part and
+        // a part turned about w.
         let (up, turned) = (self.cos / (length * offset), self.sin / offset);
         let towards = Vector3::new(
             -w.x * w.z * up + w.y * turned,
@@ -114,8 +113,8 @@ impl Side<'_> {
         let norm = sqrt(s6 * s6 + c6 * c6);
         let mut forearm = Forearm::of(&hand, &elbow, (s6 / norm, c6 / norm), None);
         if g.abs() > ROUNDING {
-            // The equation is so steep that no number is closer to its root. The pose is met
-            // exactly; the swivel angle is approximate.
+            // The equation is so steep here that no floating-point number is closer to the root.
+            // The solution has the exact pose, and an approximate swivel angle.
             let same =
                 |other: &Forearm| Some(other.straight) == forearm.as_ref().map(|f| f.straight);
             let exact = Forearm::both(&hand, &elbow).into_iter().flatten();
@@ -174,8 +173,8 @@ struct Sample {
 }
 
 impl Sample {
-    /// True if the interval to `other` may contain undetected roots, because the half plane of the
-    /// elbow turns by a large angle, or because of a root or near-root.
+    /// Returns true if the interval up to `other` may contain undetected roots. The reason is a
+    /// large turn of the elbow's half plane, or a root or near-root at a sample.
     fn hides_something_before(&self, other: &Self) -> bool {
         let ([a, b], [c, d]) = (self.horizontal, other.horizontal);
         let (along, across) = (a * c + b * d, a * d - b * c);
@@ -215,7 +214,7 @@ impl Arc {
         let mut before: Option<Sample> = None;
         let mut left = sample(0.0);
         for step in 1..=STEPS {
-            // Stack of samples to visit. The next sample is the last.
+            // Stack of samples to visit. The last entry is the next sample.
             let mut pending = [sample(PI * f64::from(step) / f64::from(STEPS)); HALVINGS + 1];
             let mut count = 1;
             while count > 0 {
@@ -252,7 +251,7 @@ impl Arc {
     }
 }
 
-/// Number of samples of an arc after its first.
+/// Number of samples of an arc, without its first sample.
 const STEPS: u32 = 24;
 /// Largest number of halvings of an interval between samples.
 const HALVINGS: usize = 24;

@@ -4,7 +4,7 @@ use crate::{Frame, JointVector, READY, RobotKind, elbow, rotation};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{Matrix4, Translation3, Vector3};
 
-/// Number of poses per robot and parameter. With `--release`, it is the number stated in the docs.
+/// Number of poses per robot and parameter. With `--release`, it is the number that the docs state.
 const CASES: usize = if cfg!(debug_assertions) {
     2_000
 } else {
@@ -45,7 +45,7 @@ fn parameters(q: &JointVector) -> [Parameter; 3] {
     ]
 }
 
-/// Returns the difference between the parameter of a posture and the given parameter.
+/// Returns the difference between the redundancy parameter of posture `q` and the given parameter.
 fn parameter_miss(q: &JointVector, given: Redundancy, of: fn(&JointVector) -> f64) -> f64 {
     let (Redundancy::Joint7(angle) | Redundancy::Joint4(angle) | Redundancy::Swivel(angle)) = given;
     let off = of(q) - angle;
@@ -70,8 +70,8 @@ fn solutions_meet_pose_and_limits_and_include_the_seed() {
                     assert!(limits.contains(&solution.q));
                     assert_eq!(solution.branch, branch(&solution.q), "{case} {given:?}");
                     let off = parameter_miss(&solution.q, given, of);
-                    // If the wrist is some micrometres off axis 1, the swivel is not known more
-                    // exactly.
+                    // The wrist may be only a few micrometres off axis 1; rounding then limits the
+                    // precision of the swivel angle.
                     assert!(off < 1e-7, "{kind:?} {case} {given:?}: {off:e} rad");
                 }
                 // Near a double root, the error of an angle is the square root of the rounding
@@ -107,8 +107,8 @@ fn joint_7_gives_none_four_or_eight_solutions() {
     }
 }
 
-/// Counts, per branch, how often the swivel angle along joint 7 passes the given angle. This search
-/// does not use the solver's equation.
+/// Counts how often the swivel angle passes `angle` while joint 7 moves through its range, for all
+/// branches. The count does not use the solver's equation.
 fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
     let mut last: [Option<f64>; 8] = [None; 8];
     let mut count = 0;
@@ -237,7 +237,7 @@ fn turn_of_joints_1_and_3_is_shared_within_the_limits() {
 
 #[test]
 fn path_through_the_shoulder_singularity_does_not_jump() {
-    // Joint 2 passes through zero; the others move evenly.
+    // Joint 2 passes through zero, and the other joints move evenly.
     let at = |step: i32| {
         let share = f64::from(step) * 1e-3;
         let mut q = READY + JointVector::repeat(0.2 * share);
@@ -284,7 +284,7 @@ fn solutions_merge_as_square_roots_at_elbow_and_wrist() {
             q[index] = place - gap;
             let target = flange(&q);
             let found = all(&Lengths::DESCRIBED, &target, Redundancy::Joint7(q[6]));
-            // The posture and its mirror image beyond the fold.
+            // The two solutions are the posture and its mirror image beyond the fold.
             let near = found.iter().filter(|s| (s.q - q).amax() < 8.0 * gap);
             assert_eq!(near.clone().count(), 2, "joint {index}, {gap:e}");
             assert!(near.clone().all(|s| miss(&s.q, &target) < 1e-12));
@@ -334,7 +334,7 @@ fn nearest_posture_is_no_further_than_the_known_one() {
         assert!(miss(&found.q, &target) < 1e-12);
         // A sweep misses narrow minima.
         further += usize::from((found.q - from).norm() > (q - from).norm() + 1e-6);
-        // From a posture of the pose, the nearest posture is that posture.
+        // If the reference posture itself reaches the pose, it is the nearest posture.
         let same = nearest(model, &target, &ee, &q)
             .expect("finite")
             .expect("one");

@@ -2,7 +2,7 @@
 
 use crate::JointVector;
 
-/// Bound on which a variable is held, if any.
+/// Bound on which the search holds a variable, if any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
     /// No bound: the variable is inside its interval.
@@ -14,7 +14,7 @@ pub enum Side {
     Upper,
 }
 
-/// Intervals for seven variables, never empty.
+/// Intervals for seven variables. An interval is never empty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointBox {
     pub(super) lower: JointVector,
@@ -22,11 +22,12 @@ pub struct JointBox {
 }
 
 impl JointBox {
-    /// Creates the box between `lower` and `upper`; an infinite bound is never active.
+    /// Creates the box between `lower` and `upper`. A bound may be infinite and is then never
+    /// active.
     ///
-    /// If rounding makes the bounds of a narrow interval cross, both become their midpoint, and the
-    /// variable is fixed. If bounds can contradict each other by more than rounding, the caller
-    /// must first decide which bound to drop.
+    /// If a lower bound exceeds its upper bound, both become their midpoint, and the variable is
+    /// fixed. This rule is meant for rounding errors. If bounds can contradict each other by more
+    /// than rounding, the caller must first decide which bound to drop.
     pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
         let mut bounds = Self {
             lower: *lower,
@@ -47,12 +48,12 @@ impl JointBox {
         Self::new(&-bound, bound)
     }
 
-    /// Lower bounds.
+    /// Returns the lower bounds.
     pub fn lower(&self) -> &JointVector {
         &self.lower
     }
 
-    /// Upper bounds.
+    /// Returns the upper bounds.
     pub fn upper(&self) -> &JointVector {
         &self.upper
     }

@@ -2,7 +2,7 @@
 
 use crate::{Jacobian, JointVector, Twist};
 
-/// The parts of the function to minimise; see [`box_qp`](crate::box_qp).
+/// The function to minimise; see [`box_qp`](crate::box_qp).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     /// Matrix `A`: the Jacobian of the task.
@@ -60,7 +60,8 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// `Aᵀ(A x − t) + d (x − x0)`, with the residual first.
+    /// Returns the gradient `Aᵀ(A x − t) + d (x − x0)`. The function computes the residual `A x −
+    /// t` first, for precision.
     #[inline(always)]
     pub(super) fn gradient(&self, x: &JointVector) -> [f64; 7] {
         let columns = &self.rows.data.0;

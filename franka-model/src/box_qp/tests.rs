@@ -14,8 +14,8 @@ struct Case {
 }
 
 impl Case {
-    /// Returns a problem as in differential IK: rank 6 and damping. Some intervals have no width,
-    /// some bounds are infinite, and some bounds are at the free minimum.
+    /// Returns a problem like those of differential IK, with rank 6 and damping. Some intervals
+    /// have no width, some bounds are infinite, and some bounds are at the free minimum.
     fn random(random: &mut Random, damping: f64) -> Self {
         let rows = Jacobian::from_fn(|_, _| random.uniform(-1.0, 1.0));
         let bound = JointVector::from_fn(|_, _| match random.bits() % 8 {
@@ -45,8 +45,8 @@ impl Case {
         self.bounds.clamp(x) == *x
     }
 
-    /// Returns the largest violation of the optimality conditions: a gradient that points into the
-    /// box, or any gradient inside it.
+    /// Returns the largest violation of the optimality conditions. A violation is a gradient that
+    /// points into the box at a bound, or any gradient inside the box.
     fn fault(&self, x: &JointVector) -> f64 {
         let residual = self.rows * x - self.task;
         let gradient = self.rows.tr_mul(&residual) + (x - self.posture) * self.damping;
@@ -67,7 +67,7 @@ fn sides(random: &mut Random) -> [Side; 7] {
     })
 }
 
-/// Number of cases. With `--release`, it is the number stated in the docs.
+/// Number of cases. With `--release`, it is the number that the docs state.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 10_000 };
 
 #[test]

@@ -7,8 +7,8 @@ use super::shape::Capsule;
 pub(super) struct LinkCapsule {
     pub(super) link: u8,
     pub(super) capsule: Capsule,
-    /// Excess of the radius over the least-squares fit to the surface of the link, `[m]`; 0 if no
-    /// such fit is known.
+    /// Difference between the radius and the radius fitted to the link's surface, `[m]`. It is 0 if
+    /// the capsule was not fitted.
     pub(super) margin: f64,
 }
 
@@ -37,7 +37,8 @@ pub(super) const ARM_MAX: usize = FR3.len();
 /// relative to this link.
 pub(super) const TOOL_MEETS: u8 = 5;
 
-/// Pairs of the vendor's capsules. See [`Shape::vendor`] for the rule; the tests repeat the search.
+/// Pairs of the vendor's capsules. [`Shape::vendor`] states how they were selected; the tests
+/// repeat this search.
 pub(super) static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
     &VENDOR,
     &[
@@ -111,7 +112,7 @@ const fn pairs<const N: usize>(capsules: &[LinkCapsule], links: &[(u8, u8)]) -> 
 /// Sine and cosine of the Hand's turn on the flange.
 const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns a capsule of the Hand in the flange frame: `RotZ(-45°)` applied.
+/// Returns a capsule of the Hand in the flange frame, rotated by `RotZ(-45°)`.
 const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     const fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
         [HALF * (x + y), HALF * (y - x), z]
@@ -119,15 +120,15 @@ const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     Capsule::new(turned(start), turned(end), radius)
 }
 
-/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`: body, and fingers at any
-/// width.
+/// The vendor's capsules of the Hand's body, and of its fingers at any width. Source:
+/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`.
 pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.04], [0.0, 0.05, 0.04], 0.04),
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// The body is fitted in the same way as the links. The fingers have the vendor's capsule, and a
-/// second capsule at their connection to the body.
+/// Capsules that contain the Hand. The capsule of the body was fitted like those of the links. The
+/// fingers have the vendor's capsule, and a second capsule where they join the body.
 pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],
@@ -138,9 +139,9 @@ pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the
-/// same for the FER and the FR3. The 45° turn of link 7's sub-link is applied to its second
-/// capsule.
+/// The vendor's capsules, the same for the FER and the FR3. Source: `franka_description` 1.0.1,
+/// `robots/common/franka_arm.xacro`, with a safety distance of 0. The second capsule of link 7
+/// includes the 45° turn of its sub-link.
 pub(super) static VENDOR: [LinkCapsule; 10] = [
     link(0, [-0.09, 0.0, 0.06], [-0.06, 0.0, 0.06], 0.06),
     link(1, [0.0, 0.0, -0.333], [0.0, 0.0, -0.05], 0.06),
@@ -160,8 +161,8 @@ pub(super) static VENDOR: [LinkCapsule; 10] = [
 ];
 
 /// Franka Research 3: capsules fitted to the surface of the collision meshes of
-/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, of
-/// the link's collision and visual meshes outside the fit.
+/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, by
+/// which the link's collision and visual meshes extend beyond the fit.
 pub(super) static FR3: [LinkCapsule; 17] = [
     covering(
         0,
@@ -285,8 +286,8 @@ pub(super) static FR3: [LinkCapsule; 17] = [
 ];
 
 /// Franka Emika Robot: capsules fitted to the surface of the collision meshes of
-/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, of
-/// the link's visual mesh outside the fit.
+/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, by
+/// which the link's visual mesh extends beyond the fit.
 pub(super) static FER: [LinkCapsule; 17] = [
     covering(
         0,

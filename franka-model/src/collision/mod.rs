@@ -9,27 +9,26 @@
 //! ```
 //!
 //! The bodies are [capsules](Capsule): all points within a radius of a segment. Distances are
-//! exact, between surfaces, in metres. The distance of overlapping bodies is negative: minus the
-//! length of the shortest shift that separates them. Gradients are with respect to the joint
-//! positions, in m/rad. Work and memory are bounded; nothing is allocated.
+//! exact, in metres, and measured between surfaces. If two bodies overlap, their distance is minus
+//! the length of the shortest shift that separates them. Gradients are with respect to the joint
+//! positions, in m/rad. No function allocates, and the amount of work is bounded.
 //!
 //! # Kinks
 //!
-//! Each distance is continuous in `q` and changes by at most the motion of the points, but it is
-//! not smooth everywhere:
+//! Each distance is a continuous function of `q`, but it is not smooth everywhere:
 //!
-//! - The nearest points jump between two segments that are parallel and side by side, or that cross
-//!   (distance `-(r1 + r2)`). The gradient is then one of the gradients near this posture. For
-//!   parallel segments, it is the gradient at the middle of the overlap. For crossing segments, it
-//!   is along their common normal; rounding determines its sign.
+//! - Two axes may be parallel and side by side, or they may cross (distance `-(r1 + r2)`). The
+//!   nearest points then jump, and the gradient is one of the gradients at neighbouring postures.
+//!   For parallel axes, it is the gradient at the middle of the overlap. For crossing axes, it is
+//!   the gradient along their common normal, and rounding determines its sign.
 //! - The axis of a capsule that crosses a box may have equal distances to several faces or edges.
-//!   An axis parallel to a face or a plane has equal distances at both ends. The gradient is one of
-//!   the possible gradients; for a parallel axis, it is the gradient at the middle.
+//!   An axis parallel to a face or a plane has equal distances at both ends. The gradient is then
+//!   one of the possible gradients. For a parallel axis, it is the gradient at the middle.
 //! - The least distance over all pairs has a kink where another pair becomes the nearest. For a
 //!   smooth constraint, use every pair's distance and gradient ([`Placed::pairs`]) as a separate
 //!   constraint.
 //!
-//! Outside these sets (which have no volume), the gradient is the derivative.
+//! At all other postures, the gradient is the derivative of the distance.
 //!
 //! # Example
 //!
@@ -81,7 +80,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// Number of the body along the arm: links count from the base, and the tool is number 8.
+    /// Returns the number of the body along the arm: the link's number, or 8 for the tool.
     #[must_use]
     pub fn number(self) -> u8 {
         match self {
@@ -90,7 +89,7 @@ impl Body {
         }
     }
 
-    /// Number of joints that move the body.
+    /// Returns the number of joints that move the body.
     pub(crate) fn joints(self) -> usize {
         match self {
             Self::Link(link) => usize::from(link),
@@ -99,21 +98,22 @@ impl Body {
     }
 }
 
-/// Distance of two bodies, and its derivative. `P` names the bodies: `(Body, Body)` within the arm,
-/// with the inner body first, or [`Body`] for an obstacle.
+/// Distance between two bodies, and its derivative. `P` identifies the bodies. Within the arm it is
+/// `(Body, Body)`, with the body nearer to the base first; for an obstacle it is the arm's
+/// [`Body`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity<P> {
     /// The bodies.
     pub bodies: P,
-    /// Distance between the surfaces, `[m]`; negative if the bodies overlap.
+    /// Distance between the surfaces, `[m]`. It is negative if the bodies overlap.
     pub distance: f64,
     /// Change of the distance per joint position, `[m/rad]`.
     pub gradient: JointVector,
-    /// Direction in which the distance grows, in base axes: from the inner body, or the obstacle,
-    /// to the outer body. Length 1.
+    /// Unit vector from the inner body, or the obstacle, to the outer body, in base axes.
     pub normal: Vector3<f64>,
-    /// The nearest points of the axes, `[m]`, in the base frame: on the inner body's axis or on the
-    /// surface of the obstacle, then on the outer body's axis.
+    /// The nearest points, `[m]`, in the base frame. The first point is on the axis of the inner
+    /// body's capsule, or on the surface of the obstacle. The second is on the axis of the outer
+    /// body's capsule.
     pub points: [Vector3<f64>; 2],
 }
 
@@ -125,7 +125,7 @@ pub struct Placed<'a> {
     segments: [Segment; CAPACITY],
 }
 
-/// Largest number of capsules of a shape: the largest arm and a tool.
+/// Largest number of capsules of a shape with a tool.
 pub(crate) const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
 
 impl<'a> Shape<'a> {
@@ -164,7 +164,7 @@ impl<'a> Shape<'a> {
 }
 
 impl Placed<'_> {
-    /// Returns every pair that can meet.
+    /// Returns the distance and the gradient of every pair that can meet.
     pub fn pairs(&self) -> impl Iterator<Item = Proximity<(Body, Body)>> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -173,7 +173,8 @@ impl Placed<'_> {
     }
 
     /// Returns the distance of every pair that can meet, `[m]`, in the order of
-    /// [`pairs`](Self::pairs). This is cheaper, because it computes no gradients.
+    /// [`pairs`](Self::pairs). This function is cheaper than `pairs`, because it computes no
+    /// gradients.
     pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -181,8 +182,8 @@ impl Placed<'_> {
         })
     }
 
-    /// Returns the pair with the least distance. This is cheaper than [`pairs`](Self::pairs),
-    /// because it computes only one gradient.
+    /// Returns the pair with the smallest distance. This function is cheaper than
+    /// [`pairs`](Self::pairs), because it computes only one gradient.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
         let distances = self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -202,7 +203,8 @@ impl Placed<'_> {
     }
 
     /// Returns the moving capsule that is nearest to an obstacle. For a floor at the height of the
-    /// base, this is link 1 in most postures. Link 1 turns in place a decimetre above such a floor.
+    /// base, the nearest capsule is usually link 1, which turns in place a decimetre above the
+    /// floor.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
         let distances = self.moving().map(|i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -217,9 +219,8 @@ impl Placed<'_> {
         (0..self.shape.len()).map(|i| (self.body(i), self.segments[i].capsule()))
     }
 
-    /// Returns capsules along the surface of the arm, relative to the shoulder, for contacts on the
-    /// surface. They are the [`Self::capsules`] without the margins that make them contain the
-    /// links.
+    /// Returns capsules that follow the surface of the arm, relative to the shoulder, for contacts
+    /// on the surface. They are the [`Self::capsules`] without their margins.
     pub(crate) fn surfaces(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
         (0..self.shape.len()).map(|i| {
             let segment = &self.segments[i];
@@ -270,8 +271,9 @@ impl Placed<'_> {
     /// Computes distance and gradient from the nearest points. `joints` are the joints that move
     /// the second point but not the first.
     ///
-    /// The nearest points stay nearest to first order. So the distance changes by the velocity of
-    /// the second point along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
+    /// To first order, the same points stay nearest. Therefore the distance changes by the velocity
+    /// of the second point along the normal: `n · (axis × p + moment) = axis · (p × n) + moment ·
+    /// n`.
     #[inline(always)]
     fn proximity<P>(
         &self,
@@ -296,7 +298,7 @@ impl Placed<'_> {
     }
 }
 
-/// Returns the item with the least distance; an item with a NaN distance comes before all others.
+/// Returns the item with the smallest distance. If a distance is NaN, returns that item.
 fn least<T>(items: impl Iterator<Item = (f64, T)>) -> Option<T> {
     let nearer = |best: (f64, T), next: (f64, T)| {
         if next.0 < best.0 || next.0.is_nan() {

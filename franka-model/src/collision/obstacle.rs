@@ -21,7 +21,8 @@ pub enum Obstacle {
     Box {
         /// Pose of the centre of the box in the base frame.
         pose: Isometry3<f64>,
-        /// Half of its sides, `[m]`, along the axes of `pose`; not negative.
+        /// Half of the box's side lengths, `[m]`, along the axes of `pose`. They must not be
+        /// negative.
         half: Vector3<f64>,
     },
 }
@@ -36,8 +37,8 @@ impl Obstacle {
     }
 
     /// Returns the nearest points of the obstacle and a capsule. The distance is exact. If both are
-    /// apart, it is the least distance between any two points. If they overlap, it is minus the
-    /// length of the shortest shift that separates them.
+    /// apart, the distance is the smallest distance between any two points. If they overlap, the
+    /// distance is minus the length of the shortest shift that separates them.
     #[inline(always)]
     pub(super) fn nearest(&self, segment: &Segment) -> Nearest {
         match self {
@@ -49,7 +50,7 @@ impl Obstacle {
 
 #[inline(always)]
 fn nearest_to_plane(normal: &UnitVector3<f64>, offset: f64, segment: &Segment) -> Nearest {
-    // The segment is relative to the shoulder, so the offset must be, too.
+    // The segment is relative to the shoulder, so the offset must also be relative to the shoulder.
     let offset = offset - normal.z * SHOULDER;
     let rise = normal.dot(&segment.along);
     let t = if rise > 0.0 {
@@ -95,8 +96,8 @@ fn nearest_to_box(pose: &Isometry3<f64>, half: &Vector3<f64>, segment: &Segment)
     }
 }
 
-/// Length, `[m]`, below which the axis counts as touching the box, because the direction of a
-/// shorter gap is rounding error.
+/// Gap, `[m]`, below which the axis counts as touching the box, because the direction of a smaller
+/// gap is rounding error.
 const TOUCHING: f64 = 1e-12;
 
 /// The axis of a capsule in the axes of a box.
@@ -104,13 +105,13 @@ pub(super) struct Axis {
     pub(super) start: Vector3<f64>,
     /// End minus start.
     pub(super) along: Vector3<f64>,
-    /// Half of the box's sides.
+    /// Half of the box's side lengths.
     pub(super) half: Vector3<f64>,
 }
 
 impl Axis {
-    /// Returns the distance to the box. Inside the box it is minus the length of the shortest way
-    /// out.
+    /// Returns the distance to the box. If the axis meets the box, the distance is minus the length
+    /// of the shortest shift out of it.
     pub(super) fn distance(&self) -> f64 {
         let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
@@ -122,9 +123,9 @@ impl Axis {
         }
     }
 
-    /// Returns a parameter with the least distance to the box; see
-    /// [`nearest_outside`](Self::nearest_outside). Examines only bends at which the sign of the
-    /// slope is not known yet.
+    /// Returns a parameter with the smallest distance to the box; see
+    /// [`nearest_outside`](Self::nearest_outside). The function examines only bends at which the
+    /// sign of the slope is not known yet.
     fn one_nearest_outside(&self) -> f64 {
         let mut low = (0.0, self.slope(0.0));
         if low.1 >= 0.0 {
@@ -169,21 +170,22 @@ impl Axis {
         self.at(t).zip_map(&self.half, clamp)
     }
 
-    /// Returns half the derivative of the squared distance from outside. It is piecewise linear and
-    /// never decreases, because the distance to a convex body is convex.
+    /// Returns half the derivative of the squared distance to the box, which is zero inside. The
+    /// slope is piecewise linear in `t` and never decreases, because the distance to a convex body
+    /// is convex.
     fn slope(&self, t: f64) -> f64 {
         (self.at(t) - self.clamped(t)).dot(&self.along)
     }
 
-    /// Returns the parameter with the least distance to the box; the middle of the interval if
-    /// several exist.
+    /// Returns the parameter with the smallest distance to the box, or the middle of the interval
+    /// if an interval has the smallest distance.
     ///
-    /// The slope bends where a coordinate passes a face. Between two bends it is a straight line.
+    /// The slope bends where a coordinate passes a face. Between two bends, the slope is linear.
     fn nearest_outside(&self) -> f64 {
         let bends = self.bends();
         let slopes = bends.map(|t| self.slope(t));
-        // The last bend with a negative slope and the first with a positive slope enclose all
-        // roots.
+        // All roots are between the last bend with a negative slope and the first bend with a
+        // positive slope.
         let below = slopes.iter().rposition(|&slope| slope < 0.0);
         let above = slopes.iter().position(|&slope| slope > 0.0);
         match (below, above) {
@@ -198,14 +200,15 @@ impl Axis {
         }
     }
 
-    /// Returns the ends, and the parameters where a coordinate passes a face, in order.
+    /// Returns the two ends and the parameters at which a coordinate passes a face, in ascending
+    /// order.
     fn bends(&self) -> [f64; BENDS] {
         let mut bends = [1.0; BENDS];
         bends[0] = 0.0;
         for i in 0..3 {
             for (k, face) in [self.half[i], -self.half[i]].into_iter().enumerate() {
                 let t = (face - self.start[i]) / self.along[i];
-                // The value is non-finite if the axis is parallel to the face.
+                // The value is not finite if the axis is parallel to the face.
                 if t > 0.0 && t < 1.0 {
                     bends[1 + 2 * i + k] = t;
                 }
@@ -215,19 +218,20 @@ impl Axis {
         bends
     }
 
-    /// Returns the shortest shift out of the box, given that the axis meets it: the parameter of
-    /// the point that leaves the box last, the direction, and the negative length.
+    /// Returns the shortest shift out of the box, for an axis that meets the box. The result is the
+    /// parameter of the point that leaves the box last, the direction, and the negative length.
     ///
-    /// The relative positions at which segment and box meet fill a polytope: the box swept by the
-    /// segment. The faces of the polytope are the faces of the box, and the faces that the segment
-    /// sweeps from the box's edges. The nearest face is the way out (Gottschalk, Lin and Manocha,
-    /// OBBTree, 1996).
+    /// The relative positions at which the segment and the box meet form a polytope: the box swept
+    /// along the segment. Its faces are the faces of the box, and the faces that the segment sweeps
+    /// from the box's edges. The shortest shift leads to the nearest face (Gottschalk, Lin and
+    /// Manocha, OBBTree, 1996).
     fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
         let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
         for i in 0..3 {
             let face = unit(i);
             for normal in [face, -face] {
-                // The end of the axis that leaves last; the middle if both ends leave together.
+                // `t` is the end of the axis that leaves last, or the middle if both ends leave
+                // together.
                 let t = 0.5 - 0.5 * sign(normal.dot(&self.along));
                 self.consider(&mut best, t, normal);
             }
@@ -242,10 +246,11 @@ impl Axis {
         best
     }
 
-    /// Replaces `best` if leaving along `normal` is shorter; the point at `t` then leaves last.
+    /// Replaces `best` if the shift along `normal` is shorter. The point at `t` leaves last with
+    /// this shift.
     fn consider(&self, best: &mut (f64, Vector3<f64>, f64), t: f64, normal: Vector3<f64>) {
         let reach = normal.abs().dot(&self.half);
-        // Uses the lower end, which is also correct if rounding turned the direction.
+        // Uses the lower end, so the result is also correct if rounding turned the direction.
         let height = normal.dot(&self.start) + normal.dot(&self.along).min(0.0) - reach;
         if height > best.2 || height.is_nan() {
             *best = (t, normal, height);
@@ -256,7 +261,7 @@ impl Axis {
     /// edge is outermost along `normal`, a direction perpendicular to axis and edge.
     fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
         let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
-        // Seen along the edge, the edge is a point, which the axis passes.
+        // In the projection along the edge, the edge is a point, and the axis passes it.
         let (mut gap, mut along) = (edge - self.start, self.along);
         (gap[i], along[i]) = (0.0, 0.0);
         // On the way out, the point is between the ends, except for rounding.
@@ -279,9 +284,9 @@ fn sign(x: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which an axis counts as parallel to an edge. A parallel
-/// axis sweeps no separate face from the edge.
+/// Square of the sine of the angle below which an axis counts as parallel to an edge. A parallel
+/// axis sweeps no face from the edge.
 const PARALLEL: f64 = 1e-24;
 
-/// Two ends and two faces per coordinate.
+/// Number of bends: two ends, and two faces per coordinate.
 const BENDS: usize = 8;

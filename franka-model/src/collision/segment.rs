@@ -77,11 +77,12 @@ impl Segment {
         self.start + self.along * t
     }
 
-    /// Returns the nearest points of two axes, and the distance of the surfaces.
+    /// Returns the nearest points of two axes, and the distance between the surfaces.
     ///
-    /// The two parameters minimise a convex quadratic function in a square. This solves for the
-    /// first parameter and clamps it, solves for the second and clamps it, and then solves for the
-    /// first again (Ericson, Real-Time Collision Detection, 2004, section 5.1.9).
+    /// The two parameters minimise a convex quadratic function in a square. The function solves for
+    /// the first parameter and clamps it, solves for the second parameter and clamps it, and then
+    /// solves for the first parameter again (Ericson, Real-Time Collision Detection, 2004, section
+    /// 5.1.9).
     #[inline(always)]
     pub(super) fn nearest(&self, other: &Self) -> Nearest {
         let between = self.start - other.start;
@@ -117,8 +118,8 @@ impl Segment {
     /// Returns the parameter on this segment that is nearest to a parallel segment. `ends` are the
     /// parameters of the other segment's ends.
     ///
-    /// Along the overlap, the distance is constant except for rounding. The middle is the only
-    /// symmetric choice, unless an end of the overlap is nearer by more than the last digits.
+    /// Along the overlap, the distance is constant except for rounding. The function returns the
+    /// middle of the overlap, unless an end of the overlap is nearer by more than rounding.
     #[cold]
     fn beside(&self, other: &Self, ends: [f64; 2]) -> f64 {
         let [from, to] = ends.map(clamp);
@@ -134,7 +135,7 @@ impl Segment {
         let mut best = (middle, square(middle));
         for end in [from, to] {
             let candidate = square(end);
-            // A difference in the last digits does not count.
+            // Ignores a difference in the last digits.
             if candidate < best.1 * (1.0 - 1e-14) {
                 best = (end, candidate);
             }
@@ -143,8 +144,8 @@ impl Segment {
     }
 }
 
-/// Returns a direction perpendicular to both segments, which touch. No other direction is
-/// distinguished.
+/// Returns a direction perpendicular to both segments. The segments touch, so their gap has no
+/// direction.
 #[cold]
 fn common_normal(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
     let unit = |v: Vector3<f64>| v.try_normalize(f64::MIN_POSITIVE);
@@ -175,8 +176,8 @@ fn ratio(numerator: f64, square: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which segments count as parallel. Below this angle, the
-/// solution for two parameters is rounding error.
+/// Square of the sine of the angle below which segments count as parallel. Below this angle, the
+/// two parameters would be rounding errors.
 const PARALLEL: f64 = 1e-12;
 
 /// Length, `[m]`, below which the direction of a gap is rounding error.

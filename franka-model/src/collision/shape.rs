@@ -1,4 +1,4 @@
-//! The colliding parts: capsules on the links and on the flange.
+//! Capsules that describe the links and the tool.
 
 use nalgebra::Vector3;
 
@@ -8,7 +8,7 @@ use super::capsules::{
 use crate::geometry::Lengths;
 use crate::kind::RobotKind;
 
-/// All points within `radius` of a segment; a ball if both ends coincide.
+/// A capsule: all points within `radius` of a segment. It is a ball if both ends coincide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     /// One end of the axis, `[m]`.
@@ -41,16 +41,16 @@ impl Capsule {
 ///
 /// Two sets of capsules describe the arm: [`vendor`](Self::vendor) for self-collision and
 /// [`covering`](Self::covering) for obstacles. Neither set depends on the end effector. Add the
-/// [Hand](Self::with_hand) or [another tool](Self::with_tool) to either.
+/// [Hand](Self::with_hand) or [another tool](Self::with_tool) to either set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'a> {
-    /// Capsules of the arm by link, the base first.
+    /// Capsules of the arm, ordered by link from the base.
     pub(super) arm: &'static [LinkCapsule],
     /// Indices into `arm` of capsules that can meet, with the inner capsule first.
     pub(super) pairs: &'static [(u8, u8)],
     /// Capsules in the flange frame.
     pub(super) tool: &'a [Capsule],
-    /// The Hand's capsules of the same set as `arm`, in the flange frame.
+    /// Capsules of the Hand from the same set as `arm`, in the flange frame.
     hand: &'static [Capsule],
     pub(super) lengths: Lengths,
 }
@@ -58,13 +58,14 @@ pub struct Shape<'a> {
 impl Shape<'static> {
     /// Returns the vendor's capsules for self-collision, the same for both robots.
     ///
-    /// The vendor made them for links that are far from each other along the chain. They **do not
-    /// cover** the links: for example, the elbow extends several centimetres beyond them. For
-    /// obstacles use [`covering`](Self::covering).
+    /// The vendor made these capsules for links that are far from each other along the chain. The
+    /// capsules **do not cover** the links: for example, the elbow extends several centimetres
+    /// beyond them. For obstacles use [`covering`](Self::covering).
     ///
-    /// A pair of capsules is checked if it comes within 5 cm somewhere within the position limits
-    /// of either robot, and if at least one link is between its links. Links 1 and 3 are excluded:
-    /// their capsules overlap around the shoulder, where the links themselves fit together.
+    /// The shape contains a pair of capsules if they come within 5 cm of each other somewhere
+    /// within the position limits of either robot, and if at least one link is between their links.
+    /// Links 1 and 3 are no pair, because their capsules overlap around the shoulder, where the
+    /// links themselves fit together.
     pub const fn vendor() -> Self {
         Self {
             arm: &VENDOR,
@@ -77,14 +78,14 @@ impl Shape<'static> {
 
     /// Returns capsules that contain the links, for the distance to obstacles.
     ///
-    /// They contain the whole surface of the vendor's meshes: collision and visual meshes of the
-    /// FR3, visual meshes of the FER. With the [Hand](Self::with_hand), this includes its body, and
-    /// its fingers at any width. Other parts mounted on an arm are not included: cables, cameras,
-    /// covers.
+    /// The capsules contain the collision and visual meshes of the FR3, or the visual meshes of the
+    /// FER. [`with_hand`](Self::with_hand) adds the Hand's body, and its fingers at any width.
+    /// Cables, cameras, covers and other parts mounted on an arm are not included.
     ///
-    /// The capsules are up to 3.5 cm thicker than the links, so a small negative distance need not
-    /// be a collision. The pairs are the base, link 1 and link 2 with links 5 to 7. Closer links
-    /// are no pairs, because their capsules touch in common postures.
+    /// The capsules are up to 3.5 cm thicker than the links, so a small negative distance is not
+    /// always a collision. Each of the base, link 1 and link 2 forms pairs with links 5 to 7. Links
+    /// that are closer to each other form no pairs, because their capsules touch in common
+    /// postures.
     pub const fn covering(kind: RobotKind) -> Self {
         let arm: &[LinkCapsule] = match kind {
             RobotKind::Fr3 => &FR3,
@@ -99,14 +100,13 @@ impl Shape<'static> {
         }
     }
 
-    /// Sets the lengths of the arm: [`Model::lengths`](crate::Model::lengths). The default is
-    /// [`Lengths::DESCRIBED`].
+    /// Sets the lengths of the arm, usually to [`Model::lengths`](crate::Model::lengths). The
+    /// default is [`Lengths::DESCRIBED`].
     pub const fn with_lengths(self, lengths: Lengths) -> Self {
         Self { lengths, ..self }
     }
 
-    /// Adds the Franka Hand on the flange, mounted as the vendor mounts it: turned by -45° about
-    /// its axis.
+    /// Adds the Franka Hand on the flange, turned by -45° about its axis as the vendor mounts it.
     pub const fn with_hand(self) -> Self {
         Self {
             tool: self.hand,
@@ -118,10 +118,11 @@ impl Shape<'static> {
 impl Shape<'_> {
     /// Replaces any tool with the given capsules, in the flange frame.
     ///
-    /// A tool is checked against links 0 to 5.
+    /// The tool forms pairs with links 0 to 5.
     ///
     /// # Errors
-    /// [`ToolError`] for more than 8 capsules, for non-finite numbers and for a negative radius.
+    /// Returns [`ToolError`] if there are more than 8 capsules, if a number is not finite, or if a
+    /// radius is negative.
     pub fn with_tool<'a>(&self, capsules: &'a [Capsule]) -> Result<Shape<'a>, ToolError> {
         if capsules.len() > TOOL_MAX {
             return Err(ToolError::TooMany {
@@ -143,7 +144,7 @@ impl Shape<'_> {
         })
     }
 
-    /// Number of capsules.
+    /// Returns the number of capsules.
     pub(super) fn len(&self) -> usize {
         self.arm.len() + self.tool.len()
     }
@@ -153,12 +154,12 @@ impl Shape<'_> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {
-    /// More than 8 capsules.
+    /// The tool has more than 8 capsules.
     TooMany {
-        /// Number of capsules.
+        /// Returns the number of capsules.
         got: usize,
     },
-    /// A number is not finite, or the radius negative.
+    /// A number is not finite, or the radius is negative.
     NotACapsule {
         /// Index of the capsule.
         index: usize,

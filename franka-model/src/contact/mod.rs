@@ -6,38 +6,40 @@
 //!                                   └──────────> locate ──> Contact | Unknown
 //! ```
 //!
-//! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and no
-//! joint further out. [`locate`] divides the surface of the arm into patches (1.5 to 4 centimetres
-//! wide, on the capsules that were fitted to the links). For each patch it computes the force that
-//! explains the torques best, and how well it explains them. A contact pushes: the force points
-//! into the surface, and its likelihood decreases with its angle from the normal. The probability
-//! of a body is the sum over the body's patches. The place is the mean of the patches around the
-//! best patch.
+//! A point force `f` on link `k` loads joints 1 to `k`, each with the torque `axis · ((p − origin)
+//! × f)`. It does not load the joints further out. [`locate`] divides the surface of the arm into
+//! patches (1.5 to 4 centimetres wide, on the capsules that were fitted to the links). For each
+//! patch, the function computes the force that explains the torques best, and how well this force
+//! explains them. The function assumes that a contact pushes: the force points into the surface,
+//! and its likelihood decreases with its angle from the normal. The probability of a body is the
+//! sum of the probabilities of the body's patches. The contact point is the mean of the patches
+//! around the best patch.
 //!
 //! # What can be known
 //!
-//! Each joint between the base and the contact gives one equation; a place on a surface and a force
-//! are five unknowns. So the contact must be far enough from the base:
+//! Each joint between the base and the contact contributes one equation. A point on a surface and a
+//! force are five unknowns. Therefore the contact must be far enough from the base:
 //!
-//! - On links 1 and 2, one or two torques determine neither place nor force: [`Unknown::Base`].
-//! - On link 3, three torques determine the force along the normal and an inexact place. On link 4,
-//!   the place depends on the angle of the force. [`Contact::spread`] is the uncertainty.
-//! - If the torques of a force are within the errors of the estimate, the force cannot be detected:
-//!   [`Unknown::Weak`].
+//! - On links 1 and 2, one or two torques determine neither the point nor the force:
+//!   [`Unknown::Base`].
+//! - On link 3, three torques determine the force along the normal and an approximate point. On
+//!   link 4, the point depends on the angle of the force. [`Contact::spread`] is the uncertainty.
+//! - If a force causes smaller torques than the errors of the estimate, the force cannot be
+//!   detected: [`Unknown::Weak`].
 //! - A force along a line that crosses the axes of the outer joints looks the same on several
 //!   links: [`Unknown::Tie`].
-//! - A force can be shifted along its own line without changing the torques: the place is the point
-//!   where that line enters the arm.
+//! - Shifting a force along its own line does not change the torques. The function returns the
+//!   point where that line enters the arm.
 //!
-//! Two simultaneous contacts are treated as one. A torque without a force (a firm grip) is not
-//! modelled. Both leave a residual, or give [`Unknown::Unexplained`].
+//! The function treats two simultaneous contacts as one contact. It does not model a torque without
+//! a force (a firm grip). In both cases the result has a residual, or is [`Unknown::Unexplained`].
 //!
 //! # Errors of external torques
 //!
-//! External torques measured without a contact are errors. They come from the arm's model, from the
-//! sensors' zero, and from the friction between the sensor and the link. [`Tare`] removes the
-//! constant part. Friction also takes up part of a contact's torque; [`TorqueError`] states the
-//! expected amount.
+//! External torques that are measured without a contact are errors. They are caused by the arm's
+//! model, the zero offset of the sensors, and the friction between the sensor and the link.
+//! [`Tare`] removes the constant part. Friction also hides part of a contact's torque;
+//! [`TorqueError`] states the expected amount.
 
 mod patches;
 mod tare;
@@ -62,7 +64,7 @@ pub struct TorqueError {
     pub floor: JointVector,
     /// Part of the standard deviation that grows with the torque, as a share of the torque, 0 to 1.
     pub share: f64,
-    /// Friction between the sensor and the link, `[N·m]`. At rest, friction takes up part of a
+    /// Friction between the sensor and the link, `[N·m]`. At rest, friction hides part of a
     /// contact's torque. The measured torque is then too small by at most this value.
     pub friction: JointVector,
 }
@@ -70,10 +72,10 @@ pub struct TorqueError {
 impl TorqueError {
     /// Errors of an arm at rest after [`Tare`].
     ///
-    /// The floor is the noise of the sensors and the drift of a few seconds, because the friction
-    /// of a joint without motion does not change. The friction was fitted on the link's side of the
-    /// sensors by Gaz et al. 2019 (Dynamic Identification of the Franka Emika Panda Robot With
-    /// Retrieval of Feasible Parameters).
+    /// The floor contains the noise of the sensors and the drift of a few seconds. It contains no
+    /// friction, because the friction of a resting joint is constant. The friction values were
+    /// fitted on the link's side of the sensors by Gaz et al. 2019 (Dynamic Identification of the
+    /// Franka Emika Panda Robot With Retrieval of Feasible Parameters).
     pub const AT_REST: Self = Self {
         floor: crate::joint_vector([0.08, 0.08, 0.08, 0.08, 0.05, 0.05, 0.05]),
         share: 0.03,
@@ -83,10 +85,10 @@ impl TorqueError {
     /// Errors of a moving arm after [`Tare`]. Sliding friction does not depend on contacts, but it
     /// changes with velocity and posture.
     ///
-    /// The floor is close to the residual torques of simulated arms with stiction and elasticity.
-    /// Their joints swung at up to 0.25 rad/s. The root mean square of the residuals was least on
-    /// joint 7, 0.13 N·m. It was largest on joint 2, 0.55 N·m. With two thirds of this floor, one
-    /// reported body in thirteen was wrong.
+    /// The floor is close to the residual torques of simulated arms with stiction and elasticity,
+    /// whose joints swung at up to 0.25 rad/s. The root mean square of the residuals ranged from
+    /// 0.13 N·m (joint 7) to 0.55 N·m (joint 2). With a floor one third lower, one reported body in
+    /// thirteen was wrong.
     pub const IN_MOTION: Self = Self {
         floor: crate::joint_vector([0.35, 0.4, 0.3, 0.4, 0.3, 0.15, 0.14]),
         share: 0.05,
@@ -94,7 +96,7 @@ impl TorqueError {
     };
 
     /// Returns the probable torque for the measured torque `read`, and the reciprocal of its
-    /// variance. The friction is assumed to take up between zero and its full value.
+    /// variance. The function assumes that friction hides a torque between zero and its full value.
     fn correct(&self, i: usize, read: f64) -> (f64, f64) {
         let friction = self.friction[i];
         let taken = if friction > 0.0 {
@@ -113,9 +115,9 @@ impl TorqueError {
 pub struct Contact {
     /// The touched body: a link or the tool on the flange.
     pub body: Body,
-    /// Point of the force on the surface, `[m]`, in the base frame.
+    /// Point on the surface where the force acts, `[m]`, in the base frame.
     pub point: Vector3<f64>,
-    /// Outward direction at that point, of length 1, in base axes.
+    /// Outward unit normal of the surface at that point, in base axes.
     pub normal: Vector3<f64>,
     /// Force on the arm, `[N]`, in base axes.
     pub force: Vector3<f64>,
@@ -123,8 +125,9 @@ pub struct Contact {
     pub residual: JointVector,
     /// Probability that the contact is on this body, 0 to 1.
     pub probability: f64,
-    /// Uncertainty of the place, `[m]`: root mean square distance from [`point`](Self::point) of
-    /// the places on this body that explain the torques equally well.
+    /// Uncertainty of the point, `[m]`. It is the root mean square distance between
+    /// [`point`](Self::point) and the other points on this body that explain the torques equally
+    /// well.
     pub spread: f64,
     /// The second most probable body and its probability.
     pub next: Option<(Body, f64)>,
@@ -136,12 +139,13 @@ pub struct Contact {
 pub enum Unknown {
     /// The torques are not finite.
     NotFinite,
-    /// No contact, or a force whose torques are within the errors of the estimate.
+    /// The arm has no contact, or the torques of the contact are within the errors of the estimate.
     Weak {
         /// Root mean square of the torques divided by their standard deviations.
         ratio: f64,
     },
-    /// The contact is probably on link 1 or 2, for which too few joints give information.
+    /// The contact is probably on link 1 or 2. Too few joints provide information about these
+    /// links.
     Base {
         /// The more probable of links 1 and 2.
         body: Body,
@@ -150,24 +154,26 @@ pub enum Unknown {
     },
     /// Several bodies explain the torques about equally well.
     Tie {
-        /// The contact, if it is on the most probable body.
+        /// The contact on the most probable body.
         likeliest: Contact,
     },
-    /// No force at one point explains the torques: several contacts, or a grip that twists.
+    /// No force at one point explains the torques. The arm may have several contacts, or a grip may
+    /// twist it.
     Unexplained {
-        /// Root mean square of the residual of the best force, divided by the standard deviations.
+        /// Root mean square of the residual torques of the best force, divided by their standard
+        /// deviations.
         ratio: f64,
-        /// The contact with the best force.
+        /// The contact whose force explains the torques best.
         nearest: Contact,
     },
 }
 
-/// Returns the contact on an `arm` that explains the external torques, `[N·m]`. These are the
-/// torques of the environment on the joints, minus their values without contact.
-/// `tau_ext_hat_filtered` of a state has the opposite sign.
+/// Returns the contact on `arm` that explains the external torques, `[N·m]`. External torques are
+/// the torques that the environment exerts on the joints, minus their values without contact. A
+/// state's `tau_ext_hat_filtered` has the opposite sign.
 ///
-/// The work is bounded (0.4 ms of a processor) and allocates nothing, but it is too long for the
-/// control thread.
+/// The function takes at most about 0.4 ms and does not allocate. It is too slow for the control
+/// thread.
 ///
 /// # Errors
 /// [`Unknown`] if the torques do not determine the contact.
@@ -229,7 +235,7 @@ struct Search<'a> {
 /// The force on a patch that explains the torques best.
 struct Fit {
     force: Vector3<f64>,
-    /// Logarithm of the probability of the torques with a force on this patch, except for a
+    /// Logarithm of the probability of the torques if the force acts on this patch, up to a
     /// constant. The value grows with the area of the patch.
     evidence: f64,
 }
@@ -266,7 +272,7 @@ impl<'a> Search<'a> {
         self.surfaces.iter().flatten()
     }
 
-    /// Visits the patches of the uncovered surface of a moving body.
+    /// Calls `each` with every patch of a moving body that no other capsule covers.
     fn visit(&self, of: Body, spacing: f64, mut each: impl FnMut(&Patch)) {
         for (index, (body, capsule)) in self.surfaces().enumerate() {
             if *body != of {
@@ -285,9 +291,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns two values for each body, by its number: the probability of a contact on this body,
-    /// relative to the most probable body, and its best patch. All bodies, and all places on a
-    /// body, are equally probable beforehand.
+    /// Returns two values for each body, indexed by its number: the probability of a contact on the
+    /// body, relative to the most probable body, and the point of the body's best patch. A priori,
+    /// all bodies and all points on a body are equally probable.
     fn bodies(&self) -> [(f64, Vector3<f64>); BODIES] {
         let mut logarithms = [f64::NEG_INFINITY; BODIES];
         let mut places = [Vector3::zeros(); BODIES];
@@ -314,7 +320,7 @@ impl<'a> Search<'a> {
         core::array::from_fn(|i| (exp(logarithms[i] - most), places[i]))
     }
 
-    /// Returns the contact on this body: the mean of the places around the body's best patch.
+    /// Returns the contact on this body, with the mean of the points around the body's best patch.
     fn contact(&self, of: Body, around: &Vector3<f64>) -> Contact {
         let (mut most, mut sum) = (f64::NEG_INFINITY, 0.0);
         let (mut point, mut normal) = (Vector3::zeros(), Vector3::zeros());
@@ -363,17 +369,18 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Torque of joint `i` per force at a point, `[m]`.
+    /// Returns the torque of joint `i` per force at a point, `[m]`.
     fn row(&self, i: usize, point: &Vector3<f64>) -> Vector3<f64> {
         let chain = self.arm.chain();
         cross(&chain.axis[i], point) + chain.moment[i]
     }
 
-    /// Returns the force on a patch that explains the torques best; `None` if this force pulls.
+    /// Returns the force on a patch that explains the torques best, or `None` if this force pulls.
     ///
-    /// Minimises the weighted square of the residual torques. The force across the normal counts as
-    /// an additional measurement of about zero. Its deviation is proportional to the force along
-    /// the normal, which two passes determine.
+    /// The function minimises the weighted square of the residual torques. It treats the force
+    /// across the normal as an additional measurement with the value zero. The standard deviation
+    /// of this measurement is proportional to the force along the normal, so several passes are
+    /// needed.
     fn fit(&self, of: Body, patch: &Patch) -> Option<Fit> {
         let joints = of.joints();
         let (mut normal_matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -422,7 +429,7 @@ fn inverse(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, f64)> {
     (determinant > 0.0).then(|| (Matrix3::from_columns(&[a, b, c]) / determinant, determinant))
 }
 
-/// The body with this number.
+/// Returns the body with this number.
 fn body(number: usize) -> Body {
     match number {
         0..=7 => Body::Link(number as u8),
@@ -437,28 +444,29 @@ fn largest(values: &[f64; BODIES], except: Option<usize>) -> usize {
         .fold(0, |best, i| if values[i] > values[best] { i } else { best })
 }
 
-/// The base, seven links and a tool.
+/// Number of bodies: the base, seven links and a tool.
 const BODIES: usize = 9;
 
 /// Number of capsules of an arm with a tool.
 const SURFACES: usize = crate::collision::CAPACITY;
 
-/// Width of the patches for the choice of the body, by body number, `[m]`. A force on the next
-/// patch changes the torques by less than their errors. The errors are larger near the base. With
-/// 25 mm for all bodies, one body in 40 was wrong that is right with these widths.
+/// Width of the patches for the choice of the body, by body number, `[m]`. If a force moves to the
+/// next patch, the torques change by less than their errors, which are larger near the base. With
+/// patches of 25 mm on all bodies, one body in 40 was wrong that is right with these widths.
 const COARSE: [f64; BODIES] = [1.0, 0.04, 0.04, 0.03, 0.03, 0.025, 0.018, 0.015, 0.015];
 
-/// Width of the patches for the place, `[m]`: finer than the precision of the place.
+/// Width of the patches for the contact point, `[m]`. The patches are finer than the precision of
+/// the point.
 const FINE: f64 = 0.012;
 
 /// Depth inside another capsule at which a patch counts as covered, `[m]`.
 const SKIN: f64 = 0.003;
 
-/// Distance from the best patch, `[m]`, within which places count as the same explanation.
+/// Distance from the best patch, `[m]`, within which patches count as the same contact.
 const NEAR: f64 = 0.06;
 
-/// Standard deviation of the force across the normal, relative to the force along it: hands and
-/// edges push within about 30 degrees of the normal.
+/// Standard deviation of the force across the normal, divided by the force along the normal. Hands
+/// and edges push within about 30 degrees of the normal.
 const LEAN: f64 = 0.35;
 
 /// Smallest force of the search, `[N]`.
@@ -468,12 +476,13 @@ const PUSH_MOST: f64 = 200.0;
 /// Number of passes for the force along the normal.
 const PASSES: usize = 3;
 
-/// Root mean square of the torques, in standard deviations, below which no contact is assumed.
+/// Root mean square of the torques, in standard deviations, below which the function assumes that
+/// there is no contact.
 const WEAK: f64 = 1.5;
 
-/// Root mean square of the residual, in standard deviations, above which errors of the torques do
-/// not explain it.
+/// Root mean square of the residual, in standard deviations, above which errors of the torques
+/// cannot explain the residual.
 const UNEXPLAINED: f64 = 3.0;
 
-/// Probability above which a body is reported as known.
+/// Probability above which the function reports a contact instead of a tie.
 const SURE: f64 = 0.75;

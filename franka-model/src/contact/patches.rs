@@ -13,14 +13,14 @@ use crate::scalar::{sin_cos, sqrt};
 pub(super) struct Patch {
     /// Middle of the patch, in the frame in which the capsule's ends are given.
     pub(super) point: Vector3<f64>,
-    /// Outward direction, of length 1.
+    /// Outward unit normal.
     pub(super) normal: Vector3<f64>,
     /// Area, `[m²]`.
     pub(super) area: f64,
 }
 
-/// Visits patches about `spacing` metres wide that cover the capsule: bands around its axis, from
-/// pole to pole, each cut into equal pieces.
+/// Calls `each` with patches that cover the capsule, each about `spacing` metres wide. The patches
+/// form bands around the axis, from pole to pole, and each band is cut into equal pieces.
 pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)) {
     let along = capsule.end - capsule.start;
     let length = sqrt(dot(&along, &along));
@@ -52,7 +52,7 @@ pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)
         let count = pieces(circumference, spacing, AROUND_MAX);
         let area = width * circumference / count as f64;
         for piece in 0..count {
-            // Every other band is turned by half a piece.
+            // Every second band is turned by half a piece.
             let turn = piece as f64 + 0.5 * (band % 2) as f64;
             let (sin, cos) = sin_cos(TAU * turn / count as f64);
             let outwards = first * cos + second * sin;
@@ -66,7 +66,7 @@ pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)
     }
 }
 
-/// True if a point is inside a capsule made thinner by `skin`.
+/// Returns true if a point is inside a capsule whose radius is reduced by `skin`.
 pub(super) fn contains(capsule: &Capsule, skin: f64, point: &Vector3<f64>) -> bool {
     let (along, way) = (capsule.end - capsule.start, point - capsule.start);
     let square = dot(&along, &along);
@@ -80,7 +80,7 @@ pub(super) fn contains(capsule: &Capsule, skin: f64, point: &Vector3<f64>) -> bo
     dot(&off, &off) < reach * reach
 }
 
-/// Returns the number of pieces of about `spacing` in a length.
+/// Returns the number of pieces of about `spacing` that fit a length.
 fn pieces(length: f64, spacing: f64, most: usize) -> usize {
     // The cast saturates, also for NaN.
     ((length / spacing + 0.5) as usize).clamp(1, most)
@@ -98,8 +98,8 @@ fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
 /// Length, `[m]`, below which a direction is rounding error.
 const SHORT: f64 = 1e-9;
 
-/// Largest number of bands of a capsule. It is enough for a capsule 2 m long in bands of 2 cm, and
-/// bounds the work for larger tools.
+/// Largest number of bands of a capsule. The number is enough for a capsule of 2 m in bands of 2
+/// cm, and bounds the work for larger tools.
 const BANDS_MAX: usize = 100;
 
 /// Largest number of pieces of a band, enough for a radius of 0.1 m.
@@ -124,7 +124,7 @@ mod tests {
                 mean += patch.point * patch.area;
             });
             let expected = 2.0 * TAU * radius * radius + TAU * radius * length;
-            // Bands are flat and cut at their middle.
+            // The area is approximate, because each band is treated as flat.
             assert!((area / expected - 1.0).abs() < 2e-3, "{area} {expected}");
             assert!((mean / area - capsule.end / 2.0).norm() < 1e-4);
         }

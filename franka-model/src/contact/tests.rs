@@ -1,4 +1,4 @@
-//! Contacts with exactly computed torques; for a simulated arm see `tests/lockstep/contact.rs`.
+//! Contacts whose torques are computed exactly. `tests/lockstep/contact.rs` tests a simulated arm.
 
 #![allow(clippy::result_large_err)] // See `locate`.
 
@@ -7,7 +7,7 @@ use crate::collision::Shape;
 use crate::random::Random;
 use crate::{Frame, Model, READY, RobotKind};
 
-/// Errors of torques that are exact, except for the width of the patches.
+/// Errors of exact torques. The only error of the estimate is the width of the patches.
 const EXACT: TorqueError = TorqueError {
     floor: crate::joint_vector([0.05; 7]),
     share: 0.03,
@@ -32,7 +32,7 @@ fn torque(q: &JointVector, body: Body, point: &Vector3<f64>, force: &Vector3<f64
     Model::fr3().zero_jacobian(frame, q, &ee).tr_mul(&wrench)
 }
 
-/// Returns a push along the normal of a random place of a body, and its torques.
+/// Returns a push along the normal at a random point of a body, and its torques.
 fn push(
     random: &mut Random,
     placed: &Placed<'_>,
@@ -61,7 +61,7 @@ fn exact_torques_name_body_place_and_force() {
         };
         told += 1;
         assert!(contact.force.dot(&contact.normal) < 0.0);
-        // A force along the axis of the outermost joint is also a force on the previous link.
+        // A force through the axis of the outermost joint may also act on the previous link.
         if contact.body != body {
             continue;
         }
@@ -84,7 +84,7 @@ fn unknown_contact_is_reported_with_the_reason() {
     assert_eq!(locate(torque), Err(Unknown::NotFinite));
     torque[0] = 5.0;
     assert!(matches!(locate(torque), Err(Unknown::Base { .. })));
-    // A grip that turns the last joint: no push on the surface causes such a torque.
+    // A grip turns the last joint; no push on the surface causes such a torque.
     torque = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 8.0]);
     let grip = locate(torque);
     assert!(matches!(grip, Err(Unknown::Unexplained { .. })), "{grip:?}");
@@ -125,7 +125,7 @@ fn the_tare_follows_offset_and_friction_and_not_a_contact() {
     let run = |tare: &mut Tare, milliseconds: u32, push: f64| {
         let mut left = JointVector::zeros();
         for i in 0..milliseconds {
-            // Back and forth, half a second each.
+            // The joints move back and forth, half a second in each direction.
             let v = if (i / 500) % 2 == 0 { 0.2 } else { -0.2 };
             let dq = JointVector::repeat(v);
             let read = offset + friction * (v / 0.2) + JointVector::repeat(push);
@@ -137,7 +137,7 @@ fn the_tare_follows_offset_and_friction_and_not_a_contact() {
     let left = run(&mut tare, 1000, 0.0);
     assert!(left.amax() < 0.1, "{left}");
     assert!(!tare.is_touched());
-    // The baseline is frozen for any duration.
+    // The baseline stays frozen, however long the contact lasts.
     for _ in 0..20 {
         let left = run(&mut tare, 1000, 4.0);
         assert!((left.add_scalar(-4.0)).amax() < 0.1, "{left}");

@@ -44,7 +44,8 @@ fn the_posture_moves_the_joints_without_moving_the_hand() {
         let solution = solve(&jacobian, &Twist::zeros(), &posture, &UNBOUNDED);
         assert!(solution.residual.norm() < 1e-3 * posture.norm());
         assert!(solution.residual.fixed_rows::<3>(0).norm() < 1e-8);
-        // The rest of the posture is its part in the nullspace, orthogonal to the difference.
+        // The solution is the part of the posture in the nullspace, so it is orthogonal to the
+        // rest.
         let rest = posture - solution.velocity;
         assert!(solution.velocity.dot(&rest).abs() < 1e-3);
         let nullspace_share = jacobian
@@ -110,8 +111,8 @@ fn damping_bounds_the_joint_velocities_near_singularities() {
         let direction = random.vector3(1.0).normalize();
         let twist = Twist::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
         let solution = solve(&jacobian, &twist, &JointVector::zeros(), &UNBOUNDED);
-        // The position is kept at the cost of the orientation, even if the orientation then changes
-        // fast.
+        // The solver keeps the position at the cost of the orientation, even if the orientation
+        // then changes fast.
         assert!(solution.velocity.norm() < 1000.0);
         let turn = Twist::new(0.0, 0.0, 0.0, direction.x, direction.y, direction.z);
         let solution = solve(&jacobian, &turn, &JointVector::zeros(), &UNBOUNDED);
@@ -150,7 +151,7 @@ fn damping_is_smooth_along_a_path_into_a_singularity() {
     }
 }
 
-/// Number of cases. With `--release`, it is the number stated in the docs.
+/// Number of cases. With `--release`, it is the number that the docs state.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 100_000 };
 
 #[test]
@@ -314,8 +315,8 @@ fn line_along_a_joint_limit_gives_up_orientation_only() {
         let turn = rotation::error(&flange(&q).rotation, &flange(&follower.q).rotation);
         turned += usize::from(turn.norm() > 0.05);
     }
-    // The test covers limits only if they were active, and the priority only if a part of the task
-    // failed.
+    // The test covers the limits only if some were active, and the priority only if a part of the
+    // task failed.
     assert!(
         3 * pinned > lines && 20 * turned > lines,
         "{pinned}, {turned} of {lines}"
@@ -348,8 +349,8 @@ fn a_line_through_a_wrist_singularity_keeps_the_position() {
     let model = Model::fr3();
     let (mut lines, mut crossed, mut singular) = (0, 0, 0);
     while lines < LINES {
-        // With joint 7 locked, the wrist is singular in all of these postures. In every second one
-        // all joints are singular, or as nearly as the limits allow.
+        // With joint 7 locked, the wrist is singular in all of these postures. In every second
+        // posture, the whole arm is singular, or as close to singular as the limits allow.
         let mut q = READY + random.joints(0.4);
         q[4] = core::f64::consts::FRAC_PI_2;
         if lines % 2 == 1 {

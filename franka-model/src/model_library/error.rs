@@ -4,8 +4,8 @@ use std::string::String;
 
 /// Reason why a model library cannot be used. The texts of the variants come from libfranka 0.9.
 ///
-/// libfranka also has a text for a library that is already loaded. This crate does not need it,
-/// because each library is a separate value.
+/// libfranka also has a text for a library that is already loaded. This crate does not need that
+/// text, because each library is a separate value.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LibraryError {

@@ -1,11 +1,11 @@
 //! The FER's own model library: compiled code that a robot of FCI version 5 sends to its clients.
 //!
 //! [`Model::fer`](crate::Model::fer) matches that library to the last digits in all comparisons
-//! (the book's page on the model). Use this module to compare the two on a particular robot, or if
-//! a program must not rely on such a comparison. It requires the feature `model-library`, and
-//! Linux.
+//! (see the book's page on the model). Use this module to compare both on a particular robot, or if
+//! a program must not rely on earlier comparisons. The module requires Linux and the feature
+//! `model-library`.
 //!
-//! The code is loaded into this process. It runs unchecked, with the rights of the process.
+//! The code is loaded into this process, and runs unchecked with the rights of the process.
 //! Therefore [`ModelLibrary::load`] is `unsafe`.
 
 mod error;
@@ -28,7 +28,7 @@ use symbols::{Jacobians, Symbols};
 
 /// A loaded model library. Dropping it unloads the library.
 ///
-/// It has the same functions as [`Model`](crate::Model), with the same arguments.
+/// It has some of the functions of [`Model`](crate::Model), with the same arguments.
 pub struct ModelLibrary {
     symbols: Symbols,
     /// The symbols point into this library.
@@ -52,8 +52,8 @@ impl ModelLibrary {
     /// The bytes must be the vendor's model library, or a library that meets these conditions. The
     /// library's initialisers and functions must be safe to run from any thread at any time. Its
     /// functions named `M_NE`, `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` must have the
-    /// vendor's signatures. Loading a robot's library means trusting that robot, and every host
-    /// that can impersonate it on the network, with this process.
+    /// vendor's signatures. A caller that loads a robot's library trusts the robot, and every host
+    /// that can impersonate the robot on the network.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
         // SAFETY: the caller guarantees safe initialisers.
@@ -90,17 +90,19 @@ impl ModelLibrary {
         pose
     }
 
-    /// See [`Model::zero_jacobian`](crate::Model::zero_jacobian).
+    /// Returns the Jacobian of `frame` in base axes, as
+    /// [`Model::zero_jacobian`](crate::Model::zero_jacobian) does.
     pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         jacobian(&self.symbols.zero_jacobians, frame, q, ee)
     }
 
-    /// See [`Model::body_jacobian`](crate::Model::body_jacobian).
+    /// Returns the Jacobian in the axes of `frame`, as
+    /// [`Model::body_jacobian`](crate::Model::body_jacobian) does.
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         jacobian(&self.symbols.body_jacobians, frame, q, ee)
     }
 
-    /// Returns the joint-space inertia, without rotors, `[kg·m²]`.
+    /// Returns the joint-space inertia, `[kg·m²]`. Rotor inertias are not included.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         let mut mass = MassMatrix::zeros();
         // SAFETY: as in `pose`; 7, 9 and 3 numbers are read, 49 are written.
@@ -171,7 +173,8 @@ fn jacobian(symbols: &Jacobians, frame: Frame, q: &JointVector, ee: &EndEffector
     jacobian
 }
 
-/// Returns the pose of a frame on the flange that the user defines; `None` for other frames.
+/// Returns the pose, in the flange frame, of a frame that the user defines, or `None` for other
+/// frames.
 fn on_flange(frame: Frame, ee: &EndEffector) -> Option<Matrix4<f64>> {
     match frame {
         Frame::EndEffector => Some(ee.f_t_ee),
@@ -186,8 +189,8 @@ struct Temporary {
 }
 
 impl Temporary {
-    /// Writes a new file. If the name exists, this tries another name and leaves the existing file
-    /// unchanged.
+    /// Writes a new file. If the name exists, the function tries another name and leaves the
+    /// existing file unchanged.
     fn with(bytes: &[u8]) -> io::Result<Self> {
         loop {
             let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -218,7 +221,7 @@ impl Drop for Temporary {
     }
 }
 
-/// Handles may be sent and shared, because the functions depend only on their arguments.
+/// Threads may send and share the library, because its functions depend only on their arguments.
 const _: () = {
     const fn shared<T: Send + Sync + 'static>() {}
     shared::<ModelLibrary>();

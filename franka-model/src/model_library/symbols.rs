@@ -6,7 +6,7 @@ use std::string::ToString;
 
 use super::LibraryError;
 
-/// A function without inputs: the same result at every posture.
+/// A function without inputs; its result is the same at every posture.
 pub(super) type OfNothing = unsafe extern "C" fn(*mut f64);
 /// A function of `q`.
 pub(super) type OfPosture = unsafe extern "C" fn(*const f64, *mut f64);

@@ -19,11 +19,11 @@ pub(super) static FER: Description = Description {
     cartesian: CARTESIAN,
 };
 
-/// Matches the vendor's model library (libfranka 0.9, FCI version 5).
+/// Model that matches the vendor's model library (libfranka 0.9, FCI version 5).
 ///
 /// Source: `fer.urdf` of the crate franka-rs 0.4.0, identified from that library as exactly as
 /// joint torques allow. Without a load it matches the library to 4e-15 kg·m² and 3e-14 N·m. Some
-/// moments are negative: only sums along the chain are meaningful.
+/// moments are negative, because only sums along the chain are meaningful.
 static CLIENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,
@@ -150,9 +150,9 @@ static CLIENT: Model = Model {
 /// Link 7 as in the vendor's library, in link axes. Only the composition of link 7 with a load
 /// depends on these numbers.
 ///
-/// Source: fitted to the library's mass matrices under one load of 1.23 kg: three equations for two
-/// unknowns with a residual of 4e-15 kg·m². For other loads, the only confirmation is one published
-/// figure (7e-4 kg·m², against 7.1e-4 here).
+/// The numbers were fitted to the library's mass matrices under one load of 1.23 kg. The fit has
+/// three equations, two unknowns and a residual of 4e-15 kg·m². For other loads, the only
+/// confirmation is one published figure (7e-4 kg·m², compared with 7.1e-4 from this model).
 const LINK_7_INSIDE: (f64, [f64; 3]) = (
     0.536221593609,
     [
@@ -162,13 +162,13 @@ const LINK_7_INSIDE: (f64, [f64; 3]) = (
     ],
 );
 
-/// Close to the vendor's library, with physical bodies: without a load within 0.018 kg·m² (mass),
-/// 0.013 N·m (gravity) and 0.083 N·m (Coriolis) at the 40 reference states.
+/// Model with physical bodies, close to the vendor's library. At the 40 reference states without a
+/// load, it deviates by at most 0.018 kg·m² (mass), 0.013 N·m (gravity) and 0.083 N·m (Coriolis).
 ///
-/// Source: a least-squares fit to the library's torques at 300 random states with every body's
-/// pseudo-inertia kept positive definite, regularised towards the feasible set of Gaz, Cognetti,
-/// Oliva, Robuffo Giordano and De Luca, Dynamic Identification of the Franka Emika Panda Robot,
-/// 2019.
+/// The numbers come from a least-squares fit to the library's torques at 300 random states. The fit
+/// kept every body's pseudo-inertia positive definite, and was regularised towards the parameters
+/// of Gaz, Cognetti, Oliva, Robuffo Giordano and De Luca, Dynamic Identification of the Franka
+/// Emika Panda Robot, 2019.
 static PHYSICALLY_CONSISTENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,
@@ -252,16 +252,16 @@ static PHYSICALLY_CONSISTENT: Model = Model {
     origins: None,
 };
 
-/// `franka_description` 1.0.1, `robots/fer/inertials.yaml`.
+/// Source: `franka_description` 1.0.1, `robots/fer/inertials.yaml`.
 const BASE: RigidBody = RigidBody::new(
     2.3966,
     [-0.0172, 0.0004, 0.0745],
     [0.009, 0.0, 0.002, 0.0115, 0.0, 0.0085],
 );
 
-/// Positions, velocities and torques: limits table of the FCI documentation for the FER
-/// (`franka_description` 1.0.1, `robots/fer/joint_limits.yaml`), which has one pair of position
-/// limits. The other limits: libfranka 0.9, `rate_limiting.h`.
+/// Positions, velocities and torques come from the limits table of the FCI documentation for the
+/// FER (`franka_description` 1.0.1, `robots/fer/joint_limits.yaml`), which has one pair of position
+/// limits. The other limits come from libfranka 0.9, `rate_limiting.h`.
 const JOINTS: JointLimits = JointLimits {
     lower: LOWER,
     upper: UPPER,
@@ -280,8 +280,8 @@ const LOWER: JointVector = joint_vector([
 ]);
 const UPPER: JointVector = joint_vector([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]);
 
-/// libfranka 0.9, `rate_limiting.h`. The limits table of the FCI documentation for the FER states
-/// 1.7 m/s for the translation; the vendor's client limits to 2.0 m/s.
+/// Source: libfranka 0.9, `rate_limiting.h`. For the translation, the limits table of the FCI
+/// documentation for the FER states 1.7 m/s, but the vendor's client uses 2.0 m/s.
 const CARTESIAN: CartesianLimits = CartesianLimits {
     translation: MotionLimits {
         velocity: 2.0,

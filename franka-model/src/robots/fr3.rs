@@ -117,9 +117,10 @@ static MODEL: Model = Model {
     origins: None,
 };
 
-/// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,
-/// `robots/fr3/joint_limits.yaml`). `hard_*`, `velocity`, `envelope`, `torque`: the robot's URDF
-/// (libfranka 0.21, `test/fr3.urdf`). The other limits: libfranka 0.21, `rate_limiting.h`.
+/// `lower` and `upper` come from the limits table of the FCI documentation (`franka_description`
+/// 1.0.1, `robots/fr3/joint_limits.yaml`). `hard_*`, `velocity`, `envelope` and `torque` come from
+/// the robot's URDF (libfranka 0.21, `test/fr3.urdf`). The other limits come from libfranka 0.21,
+/// `rate_limiting.h`.
 const JOINTS: JointLimits = JointLimits {
     lower: joint_vector([-2.7437, -1.7837, -2.9007, -3.0421, -2.8065, 0.5445, -3.0159]),
     upper: joint_vector([2.7437, 1.7837, 2.9007, -0.1518, 2.8065, 4.5169, 3.0159]),
@@ -139,9 +140,9 @@ const JOINTS: JointLimits = JointLimits {
 };
 
 /// Joints of a robot with system 5.9 or later. `lower`, `upper` and the offsets of the envelope
-/// come from the vendor's documentation of 2025-10-14. `hard_*` are assumed, because no hard range
-/// of these systems is published: the documented range and the margins of [`JOINTS`]. The other
-/// limits are unchanged.
+/// come from the vendor's documentation of 2025-10-14. No source publishes the hard range of these
+/// systems. `hard_*` are therefore assumed to be the documented range plus the margins of
+/// [`JOINTS`]. The other limits are unchanged.
 pub(super) static JOINTS_5_9: JointLimits = JointLimits {
     lower: joint_vector([-2.9007, -1.8361, -2.9007, -3.077, -2.8763, 0.4398, -3.0508]),
     upper: joint_vector([2.9007, 1.8361, 2.9007, -0.1169, 2.8763, 4.6216, 3.0508]),

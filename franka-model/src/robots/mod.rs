@@ -16,7 +16,7 @@ struct Description {
     cartesian: CartesianLimits,
 }
 
-/// Returns the description of a kind: the only place that distinguishes the kinds.
+/// Returns the description of a kind. No other function distinguishes the kinds.
 const fn of(kind: RobotKind) -> &'static Description {
     match kind {
         RobotKind::Fr3 => &fr3::FR3,
@@ -34,16 +34,17 @@ impl Model {
     /// Returns the model of the Franka Emika Robot (Panda) that matches the robot's own model
     /// library.
     ///
-    /// That library is not exact mechanics. Some of the [`links`](Self::links) that match it have
-    /// negative moments. The library combines a load with link 7 without the lever of link 7's own
-    /// mass. This omits 3.0e-3 kg·m² of the mass matrix with a load of 1.23 kg. For physics use
+    /// That library is not physically exact. Some of the [`links`](Self::links) that match it have
+    /// negative moments. When the library adds a load to link 7, it ignores the distance of link
+    /// 7's own mass from the common centre of mass. With a load of 1.23 kg, the mass matrix is
+    /// therefore too small by 3.0e-3 kg·m². For simulation, use
     /// [`physically_consistent`](Self::physically_consistent).
     pub const fn fer() -> &'static Self {
         Self::of(RobotKind::Fer)
     }
 
-    /// Returns the vendor's client model of a kind, for controllers. Torques from this model equal
-    /// the torques of libfranka.
+    /// Returns the vendor's model of a kind, for controllers. Torques from this model equal the
+    /// torques of libfranka.
     pub const fn of(kind: RobotKind) -> &'static Self {
         of(kind).client
     }
@@ -52,8 +53,8 @@ impl Model {
     ///
     /// For the Franka Research 3 this is the same model as [`of`](Self::of). For the FER it is
     /// another set of bodies, with physically correct loads. On an upright FER without a load, the
-    /// two models differ by less than 0.1 N·m at moderate speed. With a tilted base, joint 1
-    /// differs by up to 0.08 N·m per m/s² of horizontal gravity.
+    /// two models differ by less than 0.1 N·m at moderate speed. If the base is tilted, the torques
+    /// of joint 1 differ by up to 0.08 N·m per m/s² of horizontal gravity.
     pub const fn physically_consistent(kind: RobotKind) -> &'static Self {
         of(kind).physically_consistent
     }
@@ -74,7 +75,7 @@ impl JointLimits {
     /// Returns the limits of a Franka Research 3 with system 5.9 or later: wider ranges, and lower
     /// speeds near the ends of the ranges.
     ///
-    /// The hard range is an assumption: no source publishes it.
+    /// The hard range is an assumption, because no source publishes it.
     pub const fn fr3_system_5_9() -> &'static Self {
         &fr3::JOINTS_5_9
     }

@@ -1,4 +1,4 @@
-//! Masses, and the bodies that move together.
+//! Masses and inertias of the links, and of the bodies that move together.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::borrow::ToOwned;
@@ -40,7 +40,7 @@ pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
 
 const NOTHING: RigidBody = RigidBody::new(0.0, [0.0; 3], [0.0; 6]);
 
-/// The requirement on a link's mass.
+/// States if a link must have a mass.
 #[derive(Clone, Copy, PartialEq)]
 enum Weight {
     Needed,
@@ -72,7 +72,7 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
         &inertia,
         "moments of 0 or more",
         |least, largest| {
-            // The least moment of a rod is zero, except for rounding.
+            // The smallest moment of a rod is zero, except for rounding.
             least >= -1e-12 * largest
         },
     )?;
@@ -85,7 +85,8 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
     Ok(Some(moved(&on_link, &link.place.pose)))
 }
 
-/// Returns a body, given in the axes of a frame, in the axes of the frame's pose.
+/// Returns the body in the axes in which `pose` is given. The argument is in the axes of the frame
+/// at `pose`.
 fn moved(body: &RigidBody, pose: &Isometry3<f64>) -> RigidBody {
     let turn = pose.rotation.to_rotation_matrix();
     // An identity rotation must not change the last digits.

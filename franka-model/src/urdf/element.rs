@@ -7,7 +7,7 @@ use std::string::String;
 
 use super::UrdfError;
 
-/// An XML element and the joint or link that owns it, for messages.
+/// An XML element, and the joint or link that contains it. Error messages name both.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a, 'n> {
     node: Node<'a, 'n>,
@@ -28,7 +28,7 @@ impl<'a, 'n> Element<'a, 'n> {
         })
     }
 
-    /// Like [`child`](Self::child), but `None` if the child does not exist.
+    /// Returns the direct child named `name`, or `None` if the child does not exist.
     pub(super) fn find(parent: Node<'a, 'n>, name: &'static str, owner: &'a str) -> Option<Self> {
         let node = parent.children().find(|node| node.has_tag_name(name))?;
         Some(Self { node, name, owner })
@@ -59,7 +59,7 @@ impl<'a, 'n> Element<'a, 'n> {
         plausible(text.trim()).ok_or_else(|| self.unexpected(attribute, text, ONE_NUMBER))
     }
 
-    /// Returns a number that meets a condition; `expected` describes it.
+    /// Returns a number that meets a condition. `expected` describes the condition.
     pub(super) fn number_where(
         &self,
         attribute: &'static str,
@@ -98,11 +98,11 @@ impl<'a, 'n> Element<'a, 'n> {
 const ONE_NUMBER: &str = "a number of at most 1e6 in size";
 const THREE_NUMBERS: &str = "three numbers of at most 1e6 in size";
 
-/// Returns a number of at most 1e6: larger values do not occur in a robot in SI units, and products
-/// of such numbers stay finite.
+/// Returns a number whose absolute value is at most 1e6. A robot in SI units has no larger values,
+/// and products of such numbers stay finite.
 fn plausible(text: &str) -> Option<f64> {
     let number: f64 = text.parse().ok()?;
-    // False for NaN.
+    // The comparison is false for NaN.
     (number.abs() <= 1e6).then_some(number)
 }
 

@@ -3,11 +3,11 @@
 use std::string::String;
 use std::vec::Vec;
 
-/// Reason why a text is not a valid description of the arm. Each variant contains the value found;
-/// its text also states the expected value.
+/// Reason why a text is not a valid description of the arm. Each variant contains the value that
+/// was found. The variant's text also states the expected value.
 ///
-/// If the velocity-limit parser of libfranka 0.21 has a text for the case, the text of the variant
-/// begins with it.
+/// If libfranka 0.21 has a text for the same error in its velocity-limit parser, the variant's text
+/// begins with that text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {
@@ -40,7 +40,7 @@ pub enum UrdfError {
         if .got.is_empty() { String::from("none") } else { .got.join(" ") }
     )]
     MissingJoints {
-        /// The missing names, of `joint1` to `joint7`.
+        /// The missing names among `joint1` to `joint7`.
         missing: Vec<&'static str>,
         /// The names of all joints in the text.
         got: Vec<String>,
@@ -53,7 +53,8 @@ pub enum UrdfError {
         /// Type of the joint.
         got: String,
     },
-    /// A movable joint exists besides the seven of the arm, such as the joint of a finger.
+    /// The text has another movable joint besides the arm's seven joints, such as the joint of a
+    /// finger.
     #[error(
         "got the additional joint {joint} of type '{got}', expected seven movable joints, joint1 \
          to joint7"
@@ -85,7 +86,7 @@ pub enum UrdfError {
     /// Two joints or two links have the same name.
     #[error("two elements <{element}> have the name '{name}', expected one")]
     Duplicate {
-        /// Kind of the two: `joint` or `link`.
+        /// Kind of the duplicate elements: `joint` or `link`.
         element: &'static str,
         /// The duplicate name.
         name: String,
@@ -150,7 +151,7 @@ pub enum UrdfError {
     UnknownLink {
         /// Name of the joint.
         joint: String,
-        /// Role of the link: `parent` or `child`.
+        /// Role of the link in this joint: `parent` or `child`.
         role: &'static str,
         /// Name of the link.
         got: String,
@@ -160,7 +161,7 @@ pub enum UrdfError {
     TwoParents {
         /// Name of the link.
         link: String,
-        /// Name of the first joint in the text.
+        /// Name of the joint that comes first in the text.
         first: String,
         /// Name of the other joint.
         second: String,
@@ -171,18 +172,18 @@ pub enum UrdfError {
         /// Names of the root links: none, or several.
         got: Vec<String>,
     },
-    /// The joints form a circle.
+    /// The joints form a loop.
     #[error(
         "no chain of joints connects link {link} to the root {root}, expected one for every \
         link"
     )]
     Circle {
-        /// Name of a link in the circle, or after it.
+        /// Name of a link in the loop, or of a link after the loop.
         link: String,
         /// Name of the root.
         root: String,
     },
-    /// A joint is not in the sequence of the arm.
+    /// A joint is not at its place in the arm's sequence of joints.
     #[error(
         "joint {joint} has the parent {got}, which {} moves, expected a link that {} moves",
         mover(*.moved_by),

@@ -1,7 +1,7 @@
-//! A model from the robot's own description: URDF.
+//! A model from the robot's own description (URDF).
 //!
-//! Robots with FCI version 10 send this text on request (`GetRobotModel`). It contains the values
-//! that may differ between arms: masses, position limits, speeds, torques, and the velocity
+//! Robots with FCI version 10 send this text on request (`GetRobotModel`). The text contains the
+//! values that may differ between arms: masses, position limits, speeds, torques, and the velocity
 //! envelope, a vendor-specific element.
 //!
 //! # What is read, and what is not
@@ -12,23 +12,23 @@
 //! | `limit`, `position_based_velocity_limits` | position, velocity, torque and envelope of [`Model::joint_limits`] |
 //! | `origin`, `axis` of the joints, `link8` | [`Model::lengths`]; checked against the [geometry](crate::geometry) |
 //!
-//! The geometry is the crate's own, with one of the [known](crate::geometry::Lengths::KNOWN) sets
-//! of lengths, because inverse kinematics and capsules depend on it. A text with another geometry
-//! is refused rather than used in part. If a frame deviates by less than 1 µm and 10 µrad, the
-//! error of rounded numbers, the crate's numbers replace the numbers of the text.
+//! The model uses the crate's own geometry with one of the [known](crate::geometry::Lengths::KNOWN)
+//! sets of lengths, because inverse kinematics and capsules depend on this geometry. The parser
+//! refuses a text with another geometry. Frames may deviate by rounding errors, 1 µm and 10 µrad;
+//! the crate's numbers then replace the numbers of the text.
 //!
 //! The text has no limits of acceleration, jerk and torque rate, and no end-effector limits; the
 //! model then uses the limits of the FR3. The text has no commanded position range either
 //! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)).
-//! This range keeps the same distance from the text's limits as the documented range from the
-//! vendor's limits.
+//! The model's range keeps the same distance from the limits in the text as the documented range
+//! keeps from the vendor's limits.
 //!
 //! # What is refused
 //!
 //! [`UrdfError`] lists the errors. The vendor's parsers accept some of these texts: they treat an
 //! unreadable inertia as a link without mass, and use the last of two joints with the same name.
-//! Here, numbers must be complete and inertias must be positive. The triangle inequality of the
-//! moments is not checked, because the vendor's own descriptions of other arms violate it.
+//! This parser requires complete numbers and positive inertias. It does not check the triangle
+//! inequality of the moments, because the vendor's own descriptions of other arms violate it.
 //!
 //! # Example
 //!
@@ -59,26 +59,27 @@ use crate::{JointVector, Model, RobotKind};
 use element::Element;
 use tree::Tree;
 
-/// Largest accepted translation of a frame from its place in the [geometry](crate::geometry),
+/// Largest accepted distance of a frame from its position in the [geometry](crate::geometry),
 /// `[m]`.
 pub const TRANSLATION_OFF: f64 = 1e-6;
 
-/// Largest accepted rotation of a frame from its place in the [geometry](crate::geometry), `[rad]`.
+/// Largest accepted rotation of a frame from its orientation in the [geometry](crate::geometry),
+/// `[rad]`.
 pub const ROTATION_OFF: f64 = 1e-5;
 
-/// Largest number of elements and attribute texts: the vendor's description has a few hundred.
+/// Largest number of XML nodes that the parser accepts. The vendor's description has a few hundred.
 const NODES_MAX: u32 = 100_000;
 
 impl Model {
-    /// Creates a model from the URDF of a Franka Research 3. This requires the feature `urdf`.
+    /// Creates a model from the URDF of a Franka Research 3. Requires the feature `urdf`.
     ///
-    /// The text of an arm with the vendor's numbers gives a model that equals [`Model::fr3`] to the
-    /// last bit. See [`urdf`](crate::urdf) for the parts that are read.
+    /// If the text contains the vendor's numbers, the model equals [`Model::fr3`] to the last bit.
+    /// See [`urdf`](crate::urdf) for the parts that are read.
     ///
     /// # Errors
     /// [`UrdfError`] if the text is not a valid description of the arm.
     pub fn from_urdf(text: &str) -> Result<Self, UrdfError> {
-        // The robot may send a byte order mark, and its client a terminator.
+        // The robot may add a byte order mark, and the client may add a terminator.
         let text = text.trim_start_matches('\u{feff}').trim_start();
         let text = text.trim_end_matches('\0');
         let options = ParsingOptions {
@@ -128,7 +129,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         offset: JointVector::zeros(),
     };
     for (i, joint) in tree.joints.iter().enumerate() {
-        // The order of the vendor's client.
+        // Checks both elements in the same order as the vendor's client.
         let braking = Element::child(joint.node, "position_based_velocity_limits", &joint.owner)?;
         let limit = Element::child(joint.node, "limit", &joint.owner)?;
         limits.velocity[i] = limit.number_where("velocity", POSITIVE, |x| x > 0.0)?;
@@ -168,9 +169,8 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
 
 const POSITIVE: &str = "a number above 0";
 
-/// Smallest deceleration of an envelope, `[rad/s²]`. Controllers brake with half of the lowest
-/// deceleration of the vendor's joints (2.585), or with less near the ends of a range. The
-/// deceleration is never zero.
+/// Smallest deceleration of an envelope, `[rad/s²]`. The vendor's smallest value is 2.585.
+/// Controllers brake with half of that value, or with less near the ends of a range.
 const BRAKING_LEAST: f64 = 1.2;
 const BRAKING: &str = "a number of at least 1.2";
 

@@ -1,4 +1,4 @@
-//! Links and joints: the joint that moves each link, and the places of all frames.
+//! Links and joints of the text, the joint that moves each link, and the poses of all frames.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -11,13 +11,13 @@ use super::element::{self, Element};
 use super::{ROTATION_OFF, TRANSLATION_OFF, UrdfError};
 use crate::geometry::{FLANGE, JointOrigin, Lengths};
 
-/// The parts of the robot, checked against the crate's arm.
+/// Joints and links of the text. They have been checked against the crate's geometry.
 pub(super) struct Tree<'a, 'n> {
     /// Joints 1 to 7.
     pub(super) joints: [Joint<'a, 'n>; 7],
     /// Links in the order of the text.
     pub(super) links: Vec<Link<'a, 'n>>,
-    /// The known set of lengths that matches its frames.
+    /// The known set of lengths that matches the frames in the text.
     pub(super) lengths: Lengths,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Link<'a, 'n> {
     pub(super) place: Place,
 }
 
-/// The place of a link, in the frame of the link that a joint moves, or of the base.
+/// The place of a link, relative to the last moving link before it, or to the base.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     /// Number of the last joint that moves the link; 0 for none.
@@ -191,7 +191,7 @@ fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     Ok(numbers)
 }
 
-/// Returns the places of the links, with the known lengths that match every frame.
+/// Returns the places of the links, and the known lengths that match every frame.
 fn known_places(
     links: &[&str],
     joints: &[Joint<'_, '_>],

@@ -1,4 +1,4 @@
-//! Detects the distances within an arm, and from the arm to regions, that are below their minimum.
+//! Detects distances below their minimum, within an arm and from the arm to regions.
 //!
 //! ```text
 //! Spacing (pairs and their minimum distances; made once)
@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Most distances are large at most postures. One pass places the capsules, excludes large
-//! distances by bounding balls and boxes, and measures the rest. The bounds at one posture form its
-//! [`MotionBound`]. At nearby postures, the `MotionBound` excludes most distances, or all, without
-//! another pass.
+//! distances with bounding balls and boxes, and measures the other distances. The bounds at one
+//! posture form its [`MotionBound`]. At nearby postures, the `MotionBound` excludes most or all
+//! distances without another pass.
 
 mod motion_bound;
 mod mounted;
@@ -39,14 +39,15 @@ pub const REGIONS_MAX: usize = 4;
 /// Largest number of pairs of capsules of a shape.
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
-/// Margin, `[m]`, above which a distance is bounded instead of measured, because the arm needs many
-/// cycles to cover it.
+/// Margin, `[m]`, above which a bound on a distance is sufficient, because the arm needs many
+/// cycles to cover this margin.
 const AMPLE: f64 = 0.15;
 
-/// Pairs of capsules within an arm, and capsules and regions, each with a minimum distance.
+/// Pairs to monitor, each with a minimum distance. A pair is two capsules of an arm, or a capsule
+/// and a region.
 ///
-/// The distances are computed as in [`Placed`](super::Placed). The margin of a distance is its
-/// excess over the minimum, `[m]`; negative below the minimum.
+/// The distances are computed as in [`Placed`](super::Placed). The margin of a distance is the
+/// distance minus its minimum, `[m]`.
 #[derive(Debug, Clone)]
 pub struct Spacing {
     lengths: Lengths,
@@ -56,8 +57,8 @@ pub struct Spacing {
     pair_count: usize,
     /// The minimum distance of the pairs, `[m]`.
     apart: f64,
-    /// The capsules that are checked against regions: all except the base, which never moves. Empty
-    /// without regions.
+    /// The capsules whose distances to regions are checked: all except the base, which never moves.
+    /// The list is empty if there are no regions.
     cover: LinkCapsules,
     regions: [Region; REGIONS_MAX],
     region_count: usize,
@@ -66,7 +67,7 @@ pub struct Spacing {
     groups: Groups,
 }
 
-/// One distance of a [`Spacing`].
+/// Identifies one distance of a [`Spacing`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item(Kind);
 
@@ -79,8 +80,8 @@ enum Kind {
 }
 
 impl Item {
-    /// Returns the index of the region to which this distance refers; `None` for a distance within
-    /// the arm.
+    /// Returns the index of the region to which this distance refers, or `None` for a distance
+    /// within the arm.
     pub fn region(self) -> Option<usize> {
         match self.0 {
             Kind::Pair(_) => None,
@@ -143,9 +144,9 @@ impl LinkCapsules {
 }
 
 impl Spacing {
-    /// Creates a spacing with the minimum `distance`, `[m]`, for those pairs of `arm` that can meet
-    /// and are at least `links` links apart along the chain. A tool comes after link 7. Closer
-    /// pairs may touch.
+    /// Creates a spacing with the minimum `distance`, `[m]`, for the pairs of `arm` whose links are
+    /// at least `links` apart along the chain. A tool counts as the link after link 7. Other pairs
+    /// are not checked.
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
             lengths: arm.lengths,
@@ -179,8 +180,8 @@ impl Spacing {
         this
     }
 
-    /// Adds the minimum `distance`, `[m]`, of all moving capsules in `cover` to each of `regions`.
-    /// The arm keeps its lengths.
+    /// Adds the minimum `distance`, `[m]`, between each moving capsule in `cover` and each of
+    /// `regions`. The arm keeps its lengths.
     #[must_use]
     pub fn out_of(
         mut self,
@@ -205,7 +206,7 @@ impl Spacing {
         self
     }
 
-    /// Returns the distances in the groups of `candidates`.
+    /// Returns the distances that belong to the groups in `candidates`.
     #[inline]
     pub fn items(&self, candidates: CandidateMask) -> impl Iterator<Item = Item> + '_ {
         let pairs = self.pairs[..self.pair_count].iter().enumerate();
@@ -242,7 +243,8 @@ pub struct Arrangement<'a> {
 }
 
 impl Arrangement<'_> {
-    /// Returns the margin of `item`, `[m]`, if it is less than `limit` or NaN; `None` otherwise.
+    /// Returns the margin of `item`, `[m]`, if it is less than `limit` or NaN, and `None`
+    /// otherwise.
     #[inline]
     pub fn margin_below(&self, item: Item, limit: f64) -> Option<f64> {
         let margin = match item.0 {

@@ -1,19 +1,19 @@
 //! Bounds on the decrease of distances when joints turn.
 //!
-//! A joint between two bodies changes their distance by at most its angle times its lever. The
-//! lever is the greatest distance of the outer body from the joint's axis. Distances between the
-//! same two bodies depend on the same joints, so they form a group.
+//! If a joint between two bodies turns, their distance changes by at most the angle times the
+//! joint's lever. The lever is the greatest distance of the outer body from the joint's axis.
+//! Distances between the same two bodies depend on the same joints, so they form a group.
 
 use super::mounted::Mounted;
 use crate::JointVector;
 use crate::geometry::Lengths;
 
-/// Bound on the margins of distances around a posture. While the joints have turned by less than
-/// the bound allows, every margin is above the bound's limit.
+/// Bound on how fast margins shrink around a posture. It shows which margins may fall below a limit
+/// when the joints turn.
 #[derive(Debug, Clone)]
 pub struct MotionBound {
     q: JointVector,
-    /// Excess of each group's least margin over the bound's limit, `[m]`.
+    /// Smallest margin of each group minus the bound's limit, `[m]`.
     spare: [f64; GROUPS_MAX],
 }
 
@@ -23,7 +23,7 @@ impl MotionBound {
     }
 
     /// Returns the distances whose margin may be below the limit at some posture within `turns`,
-    /// `[rad]`, of `q`; `turns` must not be negative.
+    /// `[rad]`, of `q`. `turns` must not be negative.
     #[must_use]
     pub fn candidates(
         &self,
@@ -41,7 +41,7 @@ impl MotionBound {
             }
         }
         let all = moved.iter().zip(&self.spare).enumerate();
-        // NaN compares false, so it stays a candidate.
+        // A group with a NaN stays a candidate, because comparisons with NaN are false.
         let clear = all.fold(0, |clear, (i, (moved, spare))| {
             clear | u64::from(moved <= spare) << i
         });
@@ -54,10 +54,10 @@ impl MotionBound {
 pub struct CandidateMask(u64);
 
 impl CandidateMask {
-    /// Every distance.
+    /// Mask of all distances.
     pub const ALL: Self = Self(u64::MAX);
 
-    /// True if no distance must be measured.
+    /// Returns true if no distance must be measured.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
@@ -69,15 +69,15 @@ impl CandidateMask {
     }
 }
 
-/// The groups of distances, by the pair of bodies.
+/// The groups of distances, one for each pair of bodies.
 #[derive(Debug, Clone)]
 pub(super) struct Groups {
     /// Numbers of the two bodies of each group, with the inner body first. Regions do not move and
     /// count as the base, 0.
     numbers: [(u8, u8); GROUPS_MAX],
     count: usize,
-    /// Largest motion of the outer body relative to the inner body per turn, by joint and group,
-    /// `[m/rad]`.
+    /// Largest motion of the outer body relative to the inner body per angle of a joint, by joint
+    /// and group, `[m/rad]`.
     levers: [[f64; GROUPS_MAX]; 7],
 }
 
@@ -93,8 +93,8 @@ impl Groups {
         (1 << self.count) - 1
     }
 
-    /// Returns the group of the distances from `outer` to the body with the number `inner`; adds a
-    /// new group if necessary, and enlarges its levers.
+    /// Returns the group of the distances from `outer` to the body with the number `inner`. If
+    /// necessary, the function adds a new group and enlarges its levers.
     pub(super) fn join(&mut self, lengths: &Lengths, inner: u8, outer: &Mounted) -> usize {
         let numbers = (inner, outer.number);
         let known = self.numbers[..self.count].iter();

@@ -1,4 +1,4 @@
-//! A capsule in the frame of its link: all its data that do not depend on the posture.
+//! A capsule in the frame of its link, with all data that do not depend on the posture.
 
 use nalgebra::Vector3;
 
@@ -13,7 +13,8 @@ use crate::scalar::sqrt;
 pub(super) struct Mounted {
     /// Number of the link, counted from the base; 8 for a tool.
     pub(super) number: u8,
-    /// Middle of the axis, `[m]`, in the frame of its link; for the base, relative to the shoulder.
+    /// Middle of the axis, `[m]`, in the frame of the capsule's link, or relative to the shoulder
+    /// for the base.
     middle: Vector3<f64>,
     /// Vector from the middle to the end of the axis, `[m]`.
     half: Vector3<f64>,
@@ -98,8 +99,8 @@ impl Mounted {
         }
     }
 
-    /// Largest motion of any point of the axis, `[m/rad]`, when joint number `joint` turns, over
-    /// all postures.
+    /// Returns the largest motion of any point of the axis, `[m/rad]`, when joint number `joint`
+    /// turns, over all postures.
     pub(super) fn lever(&self, lengths: &Lengths, joint: usize) -> f64 {
         let ends = [self.middle - self.half, self.middle + self.half];
         let levers = ends.map(|end| lever(lengths, self.joints(), &end, joint));
@@ -108,11 +109,11 @@ impl Mounted {
 }
 
 /// Returns the greatest distance of `point`, in the frame of a link, from the axis of joint number
-/// `joint`: the link's own joint or an earlier one.
+/// `joint`. This joint is the link's own joint or an earlier joint.
 ///
-/// Turning a joint preserves the distances of a point from all points of that joint's axis. So the
-/// distance to an earlier axis is at most the distance to the later axis, plus the distances
-/// between the points where successive axes meet.
+/// Turning a joint preserves the distances of a point from all points of that joint's axis.
+/// Therefore the distance to an earlier axis is at most the distance to a later axis, plus the
+/// distances between the reference points of the axes between them.
 fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     let (upper_arm, forearm) = (lengths.upper_arm, lengths.forearm);
     let aside = length(point.x, point.y);
@@ -131,8 +132,8 @@ fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> 
 }
 
 /// Returns the distance from the reference point of the axis of joint number `joint` to the
-/// reference point of the next axis. The reference point is the shoulder for the first three, the
-/// elbow for the fourth, and the wrist for the fifth and sixth.
+/// reference point of the next axis. The reference point is the shoulder for axes 1 to 3, the elbow
+/// for axis 4, and the wrist for axes 5 and 6.
 fn step(lengths: &Lengths, joint: usize) -> f64 {
     match joint {
         3 => length(lengths.upper_arm, ELBOW),

@@ -9,7 +9,7 @@ use crate::geometry::SHOULDER;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
-/// A region to avoid: relative to the shoulder, in base axes.
+/// A region to avoid, relative to the shoulder and in base axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Region {
     Plane {
@@ -46,7 +46,8 @@ impl Region {
         }
     }
 
-    /// Returns the distance of a capsule, `[m]`; `None` if it is certainly not below `limit`.
+    /// Returns the distance of a capsule, `[m]`, or `None` if the distance is certainly not below
+    /// `limit`.
     #[inline(always)]
     pub(super) fn distance_below(
         &self,
@@ -77,8 +78,8 @@ impl Region {
         }
     }
 
-    /// Returns a lower bound on the distance of a capsule, `[m]`: −∞ if a box around its axis meets
-    /// the region.
+    /// Returns a lower bound on the distance of a capsule, `[m]`. The bound is −∞ if a box around
+    /// the capsule's axis meets the region.
     #[inline(always)]
     pub(super) fn distance_at_least(&self, location: &Location, capsule: &Mounted) -> f64 {
         match self {
@@ -97,14 +98,14 @@ impl Region {
     }
 }
 
-/// Returns the distance to a plane, from the nearer end.
+/// Returns the distance of a capsule to a plane, measured at the nearer end.
 #[inline(always)]
 fn from_plane(normal: &Vector3<f64>, offset: f64, location: &Location, capsule: &Mounted) -> f64 {
     dot(normal, &location.middle) - dot(normal, &location.half).abs() - offset - capsule.radius
 }
 
-/// Returns the square of the distance between two boxes with parallel axes; `gaps` are the gaps
-/// along the axes, negative where the boxes overlap.
+/// Returns the square of the distance between two boxes with parallel axes. `gaps` are the gaps
+/// along the axes, which are negative where the boxes overlap.
 #[inline(always)]
 fn beyond(gaps: &Vector3<f64>) -> f64 {
     let gaps = gaps.map(|x| if x > 0.0 { x } else { 0.0 });

@@ -34,7 +34,7 @@ fn parallel_axes_behind_each_other_are_nearest_at_their_ends() {
 fn near_parallel_segments_keep_an_exact_distance() {
     let mut random = Random::new(98);
     for case in 0..CASES {
-        // From clearly apart to identical in all digits.
+        // The angle ranges from clearly visible to below the last digit.
         let angle = 10.0_f64.powf(random.uniform(-17.0, -2.0));
         let capsule = |start: Vector3<f64>, along: Vector3<f64>| Capsule {
             start,
@@ -62,7 +62,7 @@ fn crossing_axes_have_a_normal_perpendicular_to_both() {
     let nearest = a.nearest(&b);
     assert_eq!(nearest.distance, 0.0);
     assert_eq!(nearest.normal.z.abs(), 1.0);
-    // Segments on one line have no common normal; any perpendicular is right.
+    // Segments on one line have no unique common normal, so any perpendicular direction is valid.
     let nearest = a.nearest(&segment([0.5, 0.0, 0.0], [2.0, 0.0, 0.0]));
     assert_eq!((nearest.distance, nearest.normal.x), (0.0, 0.0));
     assert!((nearest.normal.norm() - 1.0).abs() < 1e-15);
@@ -85,7 +85,8 @@ fn balls_are_capsules_too() {
 fn segment_along_a_box_is_nearest_amid_their_overlap() {
     let tool = [Capsule::new([0.0, 0.0, 0.0], [0.0, 0.0, 0.4], 0.01)];
     let shape = Shape::vendor().with_tool(&tool).expect("a tool");
-    // At zero the flange is at (0.088, 0, 0.926) and the tool hangs down to 0.526.
+    // At joint positions of zero, the flange is at (0.088, 0, 0.926), and the tool extends down to
+    // 0.526.
     let board = Obstacle::Box {
         pose: Isometry3::translation(0.5, 0.0, 0.4),
         half: Vector3::new(0.1, 0.1, 0.3),
@@ -133,7 +134,7 @@ fn nan_position_gives_nan_distance() {
         let mut q = READY;
         q[i] = f64::NAN;
         let placed = Shape::vendor().with_hand().at(&q);
-        // Joint 1 turns everything except the base and itself.
+        // Joint 1 moves all links relative to the base.
         assert!(placed.nearest_pair().distance.is_nan(), "joint {}", i + 1);
         assert!(placed.nearest_to(&Obstacle::floor(0.0)).distance.is_nan());
         let pose = Isometry3::translation(0.5, 0.0, 0.5);

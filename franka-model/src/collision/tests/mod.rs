@@ -1,5 +1,5 @@
-//! Compares distances with independent minimisers, which share only the numbers of the capsules,
-//! and gradients with differences.
+//! Compares distances with independent minimisers that share only the capsules' numbers, and
+//! compares gradients with finite differences.
 
 mod awkward;
 mod obstacles;
@@ -78,7 +78,7 @@ fn placed_by_poses(shape: &Shape<'_>, q: &JointVector) -> Vec<(Body, Capsule)> {
 
 use std::vec::Vec;
 
-/// Compares the gradients of all distances at `q` with differences. Returns the number of
+/// Compares the gradients of all distances at `q` with finite differences. Returns the number of
 /// comparisons and the number of distances within a step of a kink.
 fn compare_gradients<P: PartialEq + core::fmt::Debug>(
     shape: &Shape<'_>,

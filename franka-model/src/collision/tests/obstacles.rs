@@ -3,7 +3,8 @@ use crate::collision::Obstacle;
 use crate::rotation;
 use nalgebra::UnitVector3;
 
-/// Returns the distance of a point from a box; for a point inside, the least depth.
+/// Returns the distance of a point from a box. For a point inside, the distance is minus the
+/// smallest depth.
 fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) -> f64 {
     let local = pose.inverse_transform_point(&(*point).into()).coords;
     let beyond = local.abs() - half;
@@ -11,7 +12,8 @@ fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) ->
     outside + beyond.max().min(0.0)
 }
 
-/// Returns the shift of a capsule's axis along `direction` (length 1) that moves it out of the box.
+/// Returns how far a capsule's axis must be shifted along the unit vector `direction` to leave the
+/// box.
 fn way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,
@@ -23,8 +25,8 @@ fn way_out(
     turned.dot(half) - along(&capsule.start).min(along(&capsule.end))
 }
 
-/// Checks that `shift` separates capsule and box, and that a local search from many directions
-/// finds no shorter shift.
+/// Checks that `shift` separates the capsule and the box, and that a local search from many
+/// directions finds no shorter shift.
 fn assert_is_the_shortest_way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,
@@ -65,7 +67,8 @@ fn random_box(random: &mut Random) -> (Isometry3<f64>, Vector3<f64>) {
         random.vector3(0.8).into(),
         rotation::exp(&random.vector3(3.0)),
     );
-    // Sizes from a board to a cabinet; some are aligned with the base, like a table.
+    // The sizes range from a board to a cabinet. Some boxes are aligned with the base, like a
+    // table.
     let half = random.vector3(0.5).abs();
     if random.uniform(0.0, 1.0) < 0.2 {
         (pose.translation.into(), half)

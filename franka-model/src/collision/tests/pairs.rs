@@ -52,8 +52,7 @@ fn gradients_of_all_pairs_meet_differences() {
     );
 }
 
-/// True for links that do not move relative to each other, or only by one joint, and for links
-/// around the shoulder.
+/// Returns true for neighbouring links, and for links around the shoulder.
 fn is_of_one_piece(inner: u8, outer: u8) -> bool {
     outer - inner < 2 || (inner, outer) == (1, 3)
 }

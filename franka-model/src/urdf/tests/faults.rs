@@ -164,7 +164,7 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
             "Missing <position_based_velocity_limits> element for joint: joint1",
         ),
         (
-            // The vendor's parser does not find it inside either.
+            // The vendor's parser does not find the nested element either.
             with(envelope, &format!("<limits>{envelope}</limits>")),
             "Missing <position_based_velocity_limits> element for joint: joint1",
         ),

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::format;
 use std::vec::Vec;
 
-/// Numbers with all digits, as Rust prints them.
+/// Returns the numbers with all digits, as Rust prints them.
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     let texts: Vec<String> = numbers.into_iter().map(|x| x.to_string()).collect();
     texts.join(" ")
@@ -28,8 +28,8 @@ fn inertial(body: &crate::RigidBody) -> String {
     )
 }
 
-/// Returns the FR3 with the other parts of a vendor's text: a `base` link, meshes, dampings,
-/// accelerometers.
+/// Returns the URDF of the FR3 with the other parts of a vendor's text: a `base` link, meshes,
+/// dampings, accelerometers.
 fn text() -> String {
     let model = Model::fr3();
     let mut text =
@@ -172,7 +172,7 @@ fn numbers_of_the_text_are_those_of_the_model() {
         ),
         (-1.0, 2.0, 1.5)
     );
-    // The same distance from the limits as the documented positions.
+    // The range keeps the same distance from the limits as the documented range.
     assert!((limits.lower[0] + 1.0 - 0.0064).abs() < 1e-15);
     assert!((limits.upper[0] - 2.0 + 0.0064).abs() < 1e-15);
     let (_, upper) = limits.velocity_envelope(&READY, 0.0);
@@ -200,7 +200,8 @@ fn fixed_part_counts_towards_its_link() {
         &format!("<link name=\"link8\">{part}</link>"),
     );
     let model = Model::from_urdf(&text).expect("a model");
-    // A load on the flange, with x and z swapped by the quarter turn about y, is the same body.
+    // The link's load, turned by a quarter turn about y (x and z swapped), is the same body as this
+    // load.
     let load = Load {
         mass: 0.5,
         com: nalgebra::Vector3::new(0.0, 0.0, 0.02),
@@ -219,7 +220,8 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
     for start in (0..text.len() - 40).step_by(7) {
         let mut damaged = text.clone();
         damaged.replace_range(start..start + 1 + start % 37, "");
-        // Damage to white space or a mesh gives the same robot; other damage may change a number.
+        // Damage to white space or to a mesh does not change the robot. Other damage may change a
+        // number.
         let _ = Model::from_urdf(&damaged);
     }
 }
@@ -227,7 +229,7 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
 #[test]
 fn replaced_number_gives_a_finite_model_or_a_refusal() {
     let text = text();
-    // Every passage between quotation marks, and the numbers within.
+    // Visits every passage between quotation marks, and the numbers in it.
     let quoted = text.split('"').skip(1).step_by(2);
     let starts = quoted.map(|passage| passage.as_ptr() as usize - text.as_ptr() as usize);
     let (mut accepted, mut refused) = (0, 0);
