@@ -1,9 +1,9 @@
-//! The commands of a robot, and what the commands of all services have in common.
+//! The commands of a robot, and the trait that the commands of all services implement.
 
 use core::fmt;
 
-/// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each
-/// request. Only this counter matches replies to requests.
+/// Id of a request on one connection: 0 for `Connect`, then one more for each request. A reply
+/// repeats the id of its request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CommandId(pub u32);
 
@@ -13,32 +13,32 @@ impl fmt::Display for CommandId {
     }
 }
 
-/// A command of a service. `Display` is its name.
+/// A command of a service. `Display` prints its name.
 pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
     /// The command `Connect`.
     const CONNECT: Self;
 
-    /// The name of this service with which libfranka's messages begin.
+    /// Name of this service. libfranka's messages begin with this name.
     const SERVICE: &'static str;
 
     /// Writes libfranka's text about a reply with an undefined status.
     ///
     /// # Errors
-    /// The errors of the formatter.
+    /// Returns an error if the formatter fails.
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
         write!(f, "{service}: Unexpected response while handling command!")
     }
 }
 
-/// The commands of all versions. The version table states which versions have a command, and its
-/// number: see [`Version::command_number`](crate::Version::command_number).
+/// The commands of all versions. [`Version::command_number`](crate::Version::command_number)
+/// returns a command's number in a version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
     /// Opens a session.
     Connect,
-    /// Starts a motion. It has two replies.
+    /// Starts a motion. This command has two replies.
     Move,
     /// Stops the motion.
     StopMove,
@@ -88,8 +88,8 @@ impl Command {
         Self::LoadModelLibrary,
     ];
 
-    /// Name of the command in libfranka's messages. `Connect` and `LoadModelLibrary` have no name
-    /// in libfranka, and its messages do not use one.
+    /// Returns the name of the command in libfranka's messages. `Connect` and `LoadModelLibrary`
+    /// have no name in libfranka.
     #[must_use]
     pub fn display_name(self) -> &'static str {
         match self {
@@ -125,7 +125,7 @@ impl ServiceCommand for Command {
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
         match self {
-            // libfranka only checks whether the status of a library is a success.
+            // libfranka only checks if the status of a library is a success.
             Self::LoadModelLibrary => write!(f, "{service}: {NO_LIBRARY}"),
             _ => write!(
                 f,

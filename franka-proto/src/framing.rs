@@ -1,8 +1,8 @@
 //! Splits a byte stream into whole messages.
 //!
 //! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload. The header's
-//! `size` is the length of both. The headers of end effectors have 10 bytes: see
-//! [`gripper::next_message`](crate::gripper::next_message).
+//! `size` is the length of header and payload together. The headers of end effectors have 10 bytes:
+//! see [`gripper::next_message`](crate::gripper::next_message).
 //!
 //! ```
 //! use franka_proto::framing::{Header, next_message};
@@ -24,9 +24,9 @@ use crate::wire::{self, CommandNumber};
 
 /// The longest message that [`next_message`] waits for, in bytes: 8 MiB.
 ///
-/// The long messages are the URDF text of protocol 10 (tens of KiB) and the shared library of
-/// protocol 5 (below a few MiB). Without a bound, four bytes of garbage could make a reader collect
-/// 4 GiB before it detects the error.
+/// The longest messages contain the URDF text of protocol 10 (tens of KiB) or the shared library of
+/// protocol 5 (at most a few MiB). Without a bound, four wrong bytes could make a reader collect 4
+/// GiB before it detects the error.
 pub const MAX_MESSAGE_SIZE: usize = 8 << 20;
 
 /// The longest request that a robot waits for, in bytes.
@@ -38,20 +38,20 @@ pub const MAX_REQUEST_SIZE: usize = 1024;
 /// The header of every message on the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {
-    /// The command's number in the version. A reply repeats this number, and the client does not
-    /// check it.
+    /// Number of the command, which depends on the version. A reply repeats this number, but the
+    /// client does not check it.
     pub command: u32,
-    /// Counter of the client's requests. A reply repeats it.
+    /// Id of the request. A reply repeats this id.
     pub command_id: u32,
-    /// Length of the whole message in bytes, this header included.
+    /// Length of the whole message in bytes, including this header.
     pub size: u32,
 }
 
 impl Header {
-    /// Length of a header on the robot's stream in bytes.
+    /// Length in bytes of a header on the robot's stream.
     pub const SIZE: usize = size_of::<wire::CommandHeader<U32>>();
 
-    /// The id of the request: for a reply, the request that it answers.
+    /// Returns the id of the request. For a reply, this is the request that it answers.
     #[must_use]
     pub fn id(&self) -> CommandId {
         CommandId(self.command_id)
@@ -77,14 +77,14 @@ impl Header {
 /// A whole message, borrowed from the bytes received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// The header; its `size` has been checked.
+    /// The header. Its `size` has been checked.
     pub header: Header,
     /// The bytes after the header.
     pub payload: &'a [u8],
 }
 
 impl Message<'_> {
-    /// Length of the whole message in bytes. Advance the stream by this number.
+    /// Returns the length of the whole message in bytes. Advance the stream by this number.
     #[must_use]
     pub fn size(&self) -> usize {
         self.header.size as usize
@@ -115,12 +115,13 @@ pub enum FrameError {
 ///
 /// # Errors
 /// [`FrameError`] if the message size is smaller than the header or larger than
-/// [`MAX_MESSAGE_SIZE`]. The error occurs as soon as the header has arrived.
+/// [`MAX_MESSAGE_SIZE`]. The function returns the error as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_within(received, MAX_MESSAGE_SIZE)
 }
 
-/// Like [`next_message`], with a bound from the caller, such as [`MAX_REQUEST_SIZE`].
+/// Returns the first message as [`next_message`] does, with the longest allowed size from the
+/// caller, such as [`MAX_REQUEST_SIZE`].
 ///
 /// # Errors
 /// [`FrameError`] if the size is smaller than the header or larger than `limit`.
@@ -131,7 +132,8 @@ pub fn next_message_within(
     next_message_of::<U32>(received, limit)
 }
 
-/// Like [`next_message_within`], for a stream whose headers use `N` for the command number.
+/// Returns the first message as [`next_message_within`] does, for headers with a command number of
+/// type `N`.
 pub(crate) fn next_message_of<N: CommandNumber>(
     received: &[u8],
     limit: usize,

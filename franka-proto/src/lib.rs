@@ -1,10 +1,10 @@
-//! The wire protocol (FCI) of Franka robots as values: this crate decodes and encodes the messages
-//! of both sides.
+//! The wire protocol (FCI) of Franka robots. This crate decodes and encodes the messages of both
+//! sides.
 //!
-//! One crate contains protocol 10 (Franka Research 3) and protocol 5 (Franka Emika Robot). It does
-//! no input or output and has no clock, threads or allocation: it converts bytes to values and
-//! values to bytes. The real-time thread, an asynchronous shell, a simulator and tests use the same
-//! code.
+//! One crate contains protocol 10 (Franka Research 3) and protocol 5 (Franka Emika Robot). It only
+//! converts bytes to values and values to bytes: it does no input or output, allocates nothing, and
+//! has no clock or threads. The real-time thread, an asynchronous shell, a simulator and tests use
+//! the same code.
 //!
 //! ```text
 //!            TCP stream                                    UDP datagrams
@@ -58,19 +58,21 @@
 //!
 //! # Panics and bad bytes
 //!
-//! Decoding never panics on any input. A message that cannot be decoded gives an error with the
-//! received and the expected value. Decoders check lengths before they read data. They refuse a
-//! message that announces more than [`framing::MAX_MESSAGE_SIZE`] before they collect it.
+//! Decoding never panics on any input. For a message that cannot be decoded, they return an error
+//! with the received and the expected value. Decoders check lengths before they read data. They
+//! refuse a message whose header announces more than [`framing::MAX_MESSAGE_SIZE`] before they
+//! collect the message.
 //!
 //! # Features
 //!
-//! `serde` (off by default, needs no allocator): states, modes, commands, statuses and parameters
-//! can be serialised. Fields have the vendor's names; errors are lists of libfranka's names.
+//! The feature `serde` (off by default, needs no allocator) serialises states, modes, commands,
+//! statuses and parameters. Fields have the vendor's names, and sets of errors are lists of
+//! libfranka's names.
 //!
 //! # What is not here
 //!
-//! This crate has no sockets, deadlines, limits or filters. The control cycle, not this crate,
-//! decides which states to accept and when to answer.
+//! This crate has no sockets, deadlines, limits or filters. The caller decides which states to
+//! accept and when to answer.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]

@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Write};
 
-/// A number in the default format of a C++ stream: six significant digits, C's `%g`.
+/// Prints a number in the default format of a C++ stream: six significant digits, as `%g` in C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct General(pub f64);
 
@@ -46,7 +46,7 @@ impl fmt::Display for General {
     }
 }
 
-/// Significant digits of a C++ stream.
+/// Number of significant digits of a C++ stream.
 const DIGITS: usize = 6;
 const DIGITS_I32: i32 = DIGITS as i32;
 

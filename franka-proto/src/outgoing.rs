@@ -1,4 +1,4 @@
-//! A message ready for the stream.
+//! A message that is ready to send.
 
 use core::fmt;
 
@@ -9,10 +9,10 @@ use crate::command::CommandId;
 use crate::framing::Header;
 use crate::wire::{self, CommandNumber};
 
-/// One TCP message, header and payload, to send with one write.
+/// One TCP message (header and payload). Send it with one write.
 ///
-/// The longest message is `SetCollisionBehavior` with 428 bytes. The buffer is inline, so creating
-/// a message allocates nothing. The variable part of a model reply is not included: see
+/// The longest message is `SetCollisionBehavior` with 428 bytes. The buffer is inline, so a message
+/// needs no allocation. A reply with a model contains only its fixed part; see
 /// [`server::Session::model_header`](crate::server::Session::model_header).
 #[derive(Clone, PartialEq, Eq)]
 pub struct Outgoing {
@@ -22,7 +22,7 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// Size of the inline buffer in bytes. It is enough for the longest fixed message.
+    /// Size of the inline buffer in bytes. The buffer fits the longest fixed message.
     pub const CAPACITY: usize = 440;
 
     /// Creates a message of the robot's service: a header followed by `payload`. The header's size
@@ -36,7 +36,7 @@ impl Outgoing {
         Self::with_header::<U32, P>(command, id, payload, extra)
     }
 
-    /// Like [`Outgoing::new`], for a service whose headers use `N` for the command number.
+    /// Creates a message as [`Outgoing::new`] does, for headers with a command number of type `N`.
     pub(crate) fn with_header<N: CommandNumber, P: IntoBytes + Immutable + ?Sized>(
         command: u32,
         id: CommandId,
@@ -58,13 +58,13 @@ impl Outgoing {
         Self { bytes, len, id }
     }
 
-    /// The command id of the message. The replies carry the same id.
+    /// Returns the id of the request. Its replies have the same id.
     #[must_use]
     pub fn id(&self) -> CommandId {
         self.id
     }
 
-    /// The bytes to send.
+    /// Returns the bytes to send.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         &self.bytes[..self.len]

@@ -2,10 +2,10 @@
 
 use crate::command::CommandId;
 
-/// Limit of requests of one session that may wait for replies at the same time.
+/// Largest number of requests of one session that may wait for replies at the same time.
 ///
 /// A client that waits for each reply has at most two pending requests: a motion and one other
-/// request. An asynchronous client may also have a few setters pending. The bound keeps the table
+/// request. An asynchronous client may also have a few setters pending. The limit keeps the table
 /// inline and lookups short.
 pub(crate) const LIMIT: usize = 32;
 
@@ -14,11 +14,11 @@ pub(crate) const LIMIT: usize = 32;
 pub(crate) struct Entry<C> {
     pub(crate) id: CommandId,
     pub(crate) command: C,
-    /// True if the first of two answers has been given.
+    /// True if the first of two answers has been sent or received.
     pub(crate) started: bool,
 }
 
-/// The table: a bounded set of entries without an order.
+/// The requests that wait for a reply, without an order.
 #[derive(Clone, Debug)]
 pub(crate) struct Pending<C> {
     entries: [Option<Entry<C>>; LIMIT],
@@ -55,7 +55,7 @@ impl<C: Copy> Pending<C> {
         self.entries.iter().flatten().find(|e| e.id == id).copied()
     }
 
-    /// Records that the first of two answers has been given.
+    /// Records that the first of two answers has been sent or received.
     pub(crate) fn start(&mut self, id: CommandId) {
         if let Some(entry) = self.entries.iter_mut().flatten().find(|e| e.id == id) {
             entry.started = true;

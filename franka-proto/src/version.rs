@@ -1,10 +1,10 @@
-//! The versions of the robot's protocol. The version table contains their differences.
+//! The versions of the robot's protocol.
 
 use core::fmt;
 
-/// A version of the robot's protocol (FCI) that this crate speaks.
+/// A version of the robot's protocol (FCI) that this crate supports.
 ///
-/// `Display` gives the number.
+/// `Display` prints the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Version {
@@ -38,7 +38,7 @@ impl Version {
             .find(|version| version.number() == number)
     }
 
-    /// The vendor's name of the robot that speaks this version.
+    /// Returns the vendor's name of the robot that uses this version.
     #[must_use]
     pub fn robot(self) -> &'static str {
         match self {

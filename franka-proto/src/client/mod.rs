@@ -7,8 +7,8 @@
 //!     +---- Incompatible ---+
 //! ```
 //!
-//! The driver owns the sockets. It sends what [`Session::connect`] and [`Session::request`] return,
-//! each with one write. It splits the received bytes into messages
+//! The driver owns the sockets. It sends each message that [`Session::connect`] and
+//! [`Session::request`] return with one write. It splits the received bytes into messages
 //! ([`framing::next_message`](crate::framing::next_message)), passes each message to
 //! [`Session::on_message`] and acts on the [`Event`]. The session has no clock. If no reply arrives
 //! in time, the driver calls [`Session::abandon`].

@@ -1,4 +1,4 @@
-//! The session of a client: the handshake, then requests and their replies.
+//! The client's side of a session: the handshake, then requests and their replies.
 
 use crate::command::CommandId;
 use crate::command::ServiceCommand;
@@ -11,8 +11,8 @@ use crate::protocol::{DecodeError, RequestError, Violation};
 use crate::protocol::{Progress, Protocol};
 use crate::version::Version;
 
-/// One connection to a device, from its first byte to its last. The device is a robot, or an end
-/// effector if `P` is its protocol.
+/// State of one connection to a device, from its first byte to its last. The protocol `P`
+/// determines the device: a robot or an end effector.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -37,13 +37,14 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The version of the session.
         version: P,
     },
-    /// The device speaks another version. The connection is no longer usable. Open another
-    /// connection, with the robot's version if [`Version::from_number`] knows it.
+    /// The device uses another version, and the connection is no longer usable. If
+    /// [`Version::from_number`] knows the device's version, open another connection with that
+    /// version.
     Incompatible(IncompatibleVersion<P>),
     /// The answer to a request.
     ///
     /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted) is the first of two answers.
-    /// Every other reply is the last with its id.
+    /// Every other reply is the last reply with its id.
     Reply {
         /// The id of the request.
         id: CommandId,
@@ -52,8 +53,8 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The answer.
         reply: P::Reply<'a>,
     },
-    /// An answer that matches no pending request, such as a late answer to an abandoned request.
-    /// The session does not change.
+    /// An answer to a request that is not pending, for example because the caller abandoned it. The
+    /// session does not change.
     Unmatched {
         /// The id in the message.
         id: CommandId,
@@ -87,16 +88,16 @@ impl<P: Protocol> Session<P> {
         self.phase == ConnectionPhase::Open
     }
 
-    /// Number of requests that wait for a reply. A `Move` counts until its last reply.
+    /// Returns the number of requests that wait for a reply. A `Move` counts until its last reply.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.pending.len()
     }
 
-    /// Returns the handshake, the first message on a fresh connection. `udp_port` is the client's
-    /// port for states.
+    /// Returns the handshake, which is the first message on a new connection. `udp_port` is the
+    /// client's port for states.
     ///
-    /// The handshake resets the session: ids begin at 0 and no request is pending.
+    /// This method resets the session: ids begin at 0, and no request is pending.
     pub fn connect(&mut self, udp_port: u16) -> Outgoing {
         *self = Self::new(self.version);
         self.phase = ConnectionPhase::Connecting;
@@ -131,12 +132,12 @@ impl<P: Protocol> Session<P> {
     }
 
     /// Stops waiting for the replies of a request. Later replies become [`Event::Unmatched`].
-    /// Returns false if no request waited with this `id`.
+    /// Returns false if no request with this `id` was waiting.
     pub fn abandon(&mut self, id: CommandId) -> bool {
         self.pending.remove(id)
     }
 
-    /// Returns the meaning of a message from the device.
+    /// Processes a message from the device and returns its meaning.
     ///
     /// # Errors
     /// [`Violation`] if the device violated the protocol. [`Violation::is_fatal`] is true if the
@@ -195,7 +196,7 @@ impl<P: Protocol> Session<P> {
                     library_version: self.version,
                 }))
             }
-            // libfranka does not check the version here, and fails only at the first datagram.
+            // libfranka does not check the version here, so it fails later, at the first datagram.
             ConnectStatus::Success if reported != announced => Err(Violation::ForeignVersion {
                 announced,
                 reported,

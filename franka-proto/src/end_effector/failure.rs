@@ -6,7 +6,7 @@ use crate::command::ServiceCommand;
 
 /// An action of an end effector that failed or was aborted.
 ///
-/// `Display` is libfranka's text, the same for all commands of a device.
+/// `Display` prints libfranka's text, which is the same for all commands of a device.
 ///
 /// ```
 /// use franka_proto::gripper::{Command, Status};

@@ -1,5 +1,5 @@
 //! Common parts of the protocols of the Franka Hand and of the vacuum gripper: the 10-byte header,
-//! 16-bit statuses, and one reply to each command when its action has ended.
+//! the 16-bit statuses, and the single reply to each command after its action.
 
 mod failure;
 mod service;
@@ -15,11 +15,12 @@ use crate::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_of};
 
 /// Returns the first message in `received`, or `None` while the message is incomplete.
 ///
-/// No message of these services is longer than 50 bytes; the bound is [`MAX_REQUEST_SIZE`].
+/// The longest allowed size is [`MAX_REQUEST_SIZE`]. No message of these services is longer than 50
+/// bytes.
 ///
 /// # Errors
-/// [`FrameError`] if the message size is smaller than the header or larger than the bound. The
-/// error occurs as soon as the header has arrived.
+/// [`FrameError`] if the message size is smaller than the header or larger than
+/// [`MAX_REQUEST_SIZE`]. The function returns the error as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_of::<U16>(received, MAX_REQUEST_SIZE)
 }

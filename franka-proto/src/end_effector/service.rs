@@ -15,8 +15,8 @@ use crate::protocol::{DecodeError, ReplyError, RequestError};
 use crate::protocol::{FieldDevice, Progress, Protocol, sealed};
 use crate::wire;
 
-/// An end effector's protocol, with the differences between the Hand and the vacuum gripper. This
-/// trait is sealed.
+/// The parts of an end effector's protocol that differ between the Hand and the vacuum gripper.
+/// This trait is sealed.
 pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The commands. The number of a command is its position in [`Self::COMMANDS`].
     type Command: ServiceCommand;
@@ -95,7 +95,7 @@ impl<E: EndEffector> Protocol for E {
         E::NUMBER
     }
 
-    /// The advice of libfranka 0.21. It fits both robots, because an end effector has the same
+    /// The advice is libfranka 0.21's. It fits both robots, because an end effector has the same
     /// protocol on both.
     fn incompatible_advice(self) -> [&'static str; 2] {
         crate::Version::V10.incompatible_advice()

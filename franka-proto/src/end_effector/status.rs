@@ -22,7 +22,7 @@ impl Status {
     pub(super) const ALL: [Self; 4] =
         [Self::Success, Self::Fail, Self::Unsuccessful, Self::Aborted];
 
-    /// Converts this answer to `command` to the result of libfranka's method: true if the action
+    /// Returns the result of libfranka's method for this answer to `command`: true if the action
     /// had the requested result.
     ///
     /// # Errors

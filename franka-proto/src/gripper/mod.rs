@@ -1,9 +1,9 @@
-//! The protocol of the Franka Hand: TCP port 1338, version 3, the same on both robots.
+//! The protocol of the Franka Hand: TCP port 1338, version 3. It is the same on both robots.
 //!
 //! A client sends requests over TCP. The hand replies to each request when its action has ended.
-//! The client can send `Stop` while another action runs; the hand then answers this action as
-//! aborted. The hand sends its [`State`] by UDP to the port announced in the handshake. The client
-//! sends no UDP datagrams.
+//! The client can send `Stop` while another action runs. The hand then replies to the other action
+//! with the status "aborted". The hand sends its [`State`] over UDP to the port that the client
+//! announced in the handshake. The client sends no UDP datagrams.
 //!
 //! ```
 //! use franka_proto::gripper::{Client, Command, Request, Server, Status, Version, next_message};
@@ -37,10 +37,10 @@ pub use crate::end_effector::{Failure, Reply, Status, next_message};
 pub use request::{Command, Grasp, Move, Request};
 pub use state::State;
 
-/// A version of the Hand's protocol. Only one exists.
+/// A version of the Hand's protocol. Only one version exists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Version {
-    /// The version of all Hands on protocols 5 and 10 of the robot.
+    /// Version 3, which all Hands use with protocols 5 and 10 of the robot.
     #[default]
     V3,
 }

@@ -12,7 +12,7 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// The commands of the Hand. The Hand replies once to each command, when the action has ended.
+/// The commands of the Hand. The Hand replies once to each command, after the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
@@ -20,7 +20,7 @@ pub enum Command {
     Connect,
     /// Opens and closes the fingers to find their range.
     Homing,
-    /// Grasps an object by closing or opening the fingers.
+    /// Closes or opens the fingers to grasp an object.
     Grasp,
     /// Moves the fingers to a width.
     Move,
@@ -28,25 +28,25 @@ pub enum Command {
     Stop,
 }
 
-/// A request with its parameters. This crate does not check ranges; the Hand does.
+/// A request with its parameters. The Hand, not this crate, checks the ranges of the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port on which it expects states.
+    /// Opens a session.
     Connect {
         /// Protocol version of the client.
         version: u16,
         /// UDP port of the client.
         udp_port: u16,
     },
-    /// Opens and closes the fingers to find their range. This is required after a change of
+    /// Opens and closes the fingers to find their range. The Hand requires homing after a change of
     /// fingers.
     Homing,
     /// Grasps an object.
     Grasp(Grasp),
     /// Moves the fingers.
     Move(Move),
-    /// Stops the fingers. The hand answers the current action as aborted.
+    /// Stops the fingers. The Hand replies to the current action with the status "aborted".
     Stop,
 }
 
@@ -68,7 +68,7 @@ pub struct Grasp {
 }
 
 impl Grasp {
-    /// libfranka's default value of both tolerances `[m]`.
+    /// libfranka's default for both tolerances `[m]`.
     pub const EPSILON: f64 = 0.005;
 
     /// Creates a grasp with libfranka's tolerances: width `[m]`, speed `[m/s]`, force `[N]`.

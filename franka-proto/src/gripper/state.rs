@@ -12,11 +12,11 @@ use crate::wire::gripper::GripperState;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
-    /// The Hand's clock `[ms]`.
+    /// Time of the Hand's clock `[ms]`.
     pub message_id: u32,
-    /// Distance of the fingers `[m]`.
+    /// Distance between the fingers `[m]`.
     pub width: f64,
-    /// Distance of the fully open fingers `[m]`, measured by homing.
+    /// Distance between the fully open fingers `[m]`, measured during homing.
     pub max_width: f64,
     /// True if the hand holds an object of the requested width.
     pub is_grasped: bool,
@@ -57,7 +57,8 @@ impl State {
     }
 }
 
-/// libfranka's text: a JSON object on one line. The time is in seconds; booleans are numbers.
+/// Prints libfranka's text: a JSON object on one line. The time is in seconds, and booleans are
+/// numbers.
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

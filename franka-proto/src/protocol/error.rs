@@ -1,4 +1,5 @@
-//! Errors of bytes, requests, replies and peers, with the received and the expected value.
+//! Errors of received bytes, requests and replies, and violations of the protocol by the other
+//! side.
 
 use core::fmt;
 
@@ -23,7 +24,7 @@ pub enum DecodeError<C: ServiceCommand = Command> {
     /// A message is shorter than its header and struct.
     #[error("libfranka: Incorrect TCP message size.")]
     MessageSize {
-        /// Number of bytes received, with the header.
+        /// Number of bytes received, including the header.
         got: usize,
         /// Smallest number of bytes expected.
         expected: usize,
@@ -70,7 +71,7 @@ impl<C: ServiceCommand> DecodeError<C> {
     }
 }
 
-/// The fixed struct at the start of a message's payload.
+/// Returns the fixed struct at the start of a message's payload.
 pub(crate) fn payload<'a, T: FromBytes + Immutable + KnownLayout + Unaligned, C: ServiceCommand>(
     message: &Message<'a>,
 ) -> Result<&'a T, DecodeError<C>> {
@@ -79,7 +80,7 @@ pub(crate) fn payload<'a, T: FromBytes + Immutable + KnownLayout + Unaligned, C:
     Ok(payload)
 }
 
-/// libfranka's text about a reply to this command with an undefined status.
+/// Prints libfranka's text about a reply to this command with an undefined status.
 struct Unexpected<C>(C);
 
 impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
@@ -108,7 +109,7 @@ pub enum EncodeError {
     },
 }
 
-/// The client session does not send a request. No part of the request has been encoded.
+/// Reason why the client session cannot send a request. No part of the request has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequestError {
@@ -127,7 +128,7 @@ pub enum RequestError {
     /// [`client::Session::connect`](crate::client::Session::connect).
     #[error("got a handshake, expected a request of an open session")]
     Handshake,
-    /// The session cannot track any more requests that wait for replies.
+    /// The largest number of requests already wait for replies.
     #[error(
         "got a request while {limit} wait for replies, expected {limit} at most: await a \
         reply first"
@@ -138,7 +139,7 @@ pub enum RequestError {
     },
 }
 
-/// The server session does not send a reply. No part of the reply has been encoded.
+/// Reason why the server session cannot send a reply. No part of the reply has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplyError<C: ServiceCommand = Command> {
@@ -179,7 +180,8 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     },
 }
 
-/// The other side of the connection violated the protocol. The caller cannot cause this.
+/// The other side of the connection violated the protocol. The caller of this crate cannot cause
+/// this error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation<C: ServiceCommand = Command> {
@@ -197,7 +199,7 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The version that the device reports.
         reported: u16,
     },
-    /// The answer to a request cannot be decoded. The request ends with this error.
+    /// The answer to a request cannot be decoded. The request ends.
     #[error("{error}")]
     Reply {
         /// The id of the request.
@@ -246,8 +248,8 @@ pub enum Violation<C: ServiceCommand = Command> {
 }
 
 impl<C: ServiceCommand> Violation<C> {
-    /// The id of the request to which this violation belongs, if any. The request has ended, except
-    /// after [`Violation::SecondMotionStarted`].
+    /// Returns the id of the request to which this violation belongs, if any. The request has
+    /// ended, except after [`Violation::SecondMotionStarted`].
     #[must_use]
     pub fn id(&self) -> Option<CommandId> {
         match *self {

@@ -1,15 +1,15 @@
-//! A device that speaks another version.
+//! The error for a device that uses another version.
 
 use core::fmt;
 
 use super::Protocol;
 use crate::version::Version;
 
-/// The device speaks another version than the client announced.
+/// The device uses another version than the client announced.
 ///
-/// `Display` gives the text of the libfranka version that speaks the client's version: 0.21 for
-/// protocol 10, 0.9 for protocol 5. [`IncompatibleVersion::explanation`] explains the version
-/// numbers in plain words.
+/// `Display` prints the text of the libfranka release with the client's version: 0.21 for protocol
+/// 10, and 0.9 for protocol 5. [`IncompatibleVersion::explanation`] describes the same problem in
+/// plain words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct IncompatibleVersion<P: Protocol = Version> {
     /// The device's version.
@@ -19,8 +19,8 @@ pub struct IncompatibleVersion<P: Protocol = Version> {
 }
 
 impl<P: Protocol> IncompatibleVersion<P> {
-    /// Returns an explanation: which device and which system image speak the device's version, and
-    /// what the user can do.
+    /// Returns an explanation. It names the device and the system image with the device's version,
+    /// and says what the user can do.
     ///
     /// ```
     /// use franka_proto::{IncompatibleVersion, Version};
@@ -53,7 +53,7 @@ impl<P: Protocol> fmt::Display for IncompatibleVersion<P> {
 
 impl<P: Protocol> core::error::Error for IncompatibleVersion<P> {}
 
-/// The text of [`IncompatibleVersion::explanation`], through `Display`.
+/// Prints the text of [`IncompatibleVersion::explanation`] with `Display`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Explanation<P: Protocol = Version>(IncompatibleVersion<P>);
 

@@ -31,17 +31,17 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Returns the version number for the handshake.
     fn number(self) -> u16;
 
-    /// Returns the name of the device that speaks this protocol, for messages.
+    /// Returns the name of the device with this protocol, for messages.
     fn device(self) -> &'static str;
 
-    /// Returns the real device that speaks the version `number`, if one is known.
+    /// Returns the real device with the version `number`, if one is known.
     fn field(number: u16) -> Option<FieldDevice>;
 
-    /// Returns the versions of this protocol that this crate speaks, in ascending order.
+    /// Returns the versions of this protocol that this crate supports, in ascending order.
     fn spoken() -> &'static [u16];
 
-    /// Returns the sources that libfranka's text about an incompatible version names: for updates,
-    /// and for the table of system images.
+    /// Returns the two sources that libfranka's text about an incompatible version names: one for
+    /// updates, and one for the table of system images.
     fn incompatible_advice(self) -> [&'static str; 2];
 
     /// Returns the command of a request.
@@ -112,7 +112,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
 pub enum ConnectStatus {
     /// The session is open.
     Success,
-    /// The robot speaks another version.
+    /// The robot uses another version.
     IncompatibleLibraryVersion,
 }
 
@@ -127,20 +127,21 @@ impl ConnectStatus {
 pub enum Progress {
     /// The handshake has ended. The second value is the version that the device reports as its own.
     Handshake(ConnectStatus, u16),
-    /// The request has its first of two answers.
+    /// The request has received the first of its two answers.
     Started,
-    /// The request has its last answer.
+    /// The request has received its last answer.
     Ended,
 }
 
-/// A real device that speaks a certain version of a protocol.
+/// A real device with a certain version of a protocol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldDevice {
     /// The vendor's name of the device.
     pub name: &'static str,
-    /// The system images with this version, such as `4.2.1 or later`.
+    /// System images with this version, such as `4.2.1 or later`.
     pub system: &'static str,
-    /// The system to install for compatibility with this crate; `None` if the system is compatible.
+    /// System that the user must install for compatibility with this crate. It is `None` if the
+    /// current system is compatible.
     pub update: Option<&'static str>,
 }
 

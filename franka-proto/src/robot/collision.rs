@@ -18,8 +18,8 @@ macro_rules! for_thresholds {
     };
 }
 
-/// Thresholds of contact (lower) and collision (upper), while accelerating and at constant velocity
-/// (nominal).
+/// Thresholds for contact (lower) and for collision (upper). The robot uses separate thresholds
+/// while it accelerates, and at constant velocity (nominal).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionBehavior {
@@ -42,7 +42,7 @@ pub struct CollisionBehavior {
 }
 
 impl CollisionBehavior {
-    /// Returns the same thresholds for accelerating and for nominal motion.
+    /// Returns thresholds that are the same during acceleration and during nominal motion.
     #[must_use]
     pub fn uniform(
         lower_torque: [f64; 7],
@@ -63,9 +63,9 @@ impl CollisionBehavior {
     }
 
     /// Returns thresholds at which a light push stops the robot: 10 N and 10 N m for contact and
-    /// collision, or 20 while the arm accelerates. They suit motions of the robot's own
-    /// controllers. Compliant control presses harder than this. The values come from the vendor's
-    /// examples.
+    /// for collision, and twice these values while the arm accelerates. Use them for motions with
+    /// the robot's own controllers. Compliant control exceeds them. The values come from the
+    /// vendor's examples.
     #[must_use]
     pub fn careful() -> Self {
         Self {
@@ -78,15 +78,15 @@ impl CollisionBehavior {
     }
 
     /// Returns thresholds with which a person can push an arm under compliant control. The contact
-    /// threshold is 20 N and 20 N m, the collision threshold 60. The collision threshold exceeds
-    /// the driver's default force limit plus the apparent force of friction.
+    /// threshold is 20 N and 20 N m, and the collision threshold is 60 N and 60 N m. This is more
+    /// than the sum of the driver's default force limit and the apparent force of friction.
     #[must_use]
     pub fn compliant() -> Self {
         Self::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6])
     }
 
-    /// Returns thresholds of 100 N and 100 N m, for tasks that press. The values come from the
-    /// vendor's examples of impedance control.
+    /// Returns thresholds of 100 N and 100 N m, for tasks in which the arm presses on something.
+    /// The values come from the vendor's examples of impedance control.
     #[must_use]
     pub fn insensitive() -> Self {
         Self::uniform([100.0; 7], [100.0; 7], [100.0; 6], [100.0; 6])

@@ -7,16 +7,17 @@ use crate::number_text::General;
 
 /// A motion that ended abnormally, with data from the log of its last cycles.
 ///
-/// `Display` gives the message of libfranka's `ControlException`: the refusal's text, and after a
-/// reflex the errors and the success rate.
+/// `Display` prints the message of libfranka's `ControlException`: the refusal's text, and after a
+/// reflex also the errors and the success rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ControlFailure {
-    /// The robot's answer to the `Move`.
+    /// The robot's last answer to the `Move`.
     pub refusal: Refusal,
     /// `reflex_reason` of the state in which the client saw the end of the motion.
     pub reflex_reason: Errors,
-    /// Success rate, from the last two records of the log; `None` if the log has fewer.
+    /// Success rate from the last two records of the log. It is `None` if the log has fewer
+    /// records.
     pub success_rate: Option<SuccessRate>,
 }
 
@@ -37,7 +38,7 @@ impl core::error::Error for ControlFailure {}
 
 /// The command success rate at the end of a motion.
 ///
-/// `Display` gives the last part of libfranka's message, including the preceding line break.
+/// `Display` prints the last part of libfranka's message, including the line break before it.
 ///
 /// ```
 /// use franka_proto::SuccessRate;
@@ -49,17 +50,17 @@ impl core::error::Error for ControlFailure {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SuccessRate {
-    /// Share of commands that arrived, 0 to 1.
+    /// Share of commands that arrived in time, 0 to 1.
     pub rate: f64,
-    /// Consecutive states lost at the end.
+    /// Number of states lost between the last two records.
     pub lost: u64,
 }
 
 impl SuccessRate {
-    /// Computes the success rate as libfranka 0.21 does, from the last two records of its log. The
-    /// result is the rate in the record before the last, minus 0.01 for every state lost between
-    /// the two records. It is at least 0; libfranka's result can be negative. Times are
-    /// `message_id`s `[ms]`.
+    /// Computes the success rate from the last two records of the log, as libfranka 0.21 does. The
+    /// result is the rate in the record before the last, reduced by 1 % of its value for every
+    /// state lost between the two records. It is at least 0; libfranka's result can be negative.
+    /// Times are `message_id`s `[ms]`.
     #[must_use]
     pub fn of_log(success_rate: f64, time: u64, last_time: u64) -> Self {
         let lost = last_time.saturating_sub(time).saturating_sub(1);

@@ -3,8 +3,8 @@
 use crate::wire::service::SetFilters;
 
 /// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz. A value of
-/// 1000 disables a filter. Only protocol 5 has these filters, and they are deprecated: filter on
-/// the client's side instead.
+/// 1000 disables a filter. Only protocol 5 has these filters. They are deprecated; filter in the
+/// client instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filters {
@@ -16,7 +16,7 @@ pub struct Filters {
     pub cartesian_position_filter_frequency: f64,
     /// Cutoff for commanded twists `[Hz]`.
     pub cartesian_velocity_filter_frequency: f64,
-    /// Cutoff for the controller `[Hz]`.
+    /// Cutoff of the controller's filter `[Hz]`.
     pub controller_filter_frequency: f64,
 }
 

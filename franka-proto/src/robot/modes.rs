@@ -4,12 +4,12 @@ use core::fmt;
 
 /// The overall mode of the robot.
 ///
-/// The bytes on the wire are 0 to 6, in this order. Other bytes are read as [`RobotMode::Other`],
-/// as in libfranka 0.21.
+/// The bytes on the wire are 0 to 6, in this order. As in libfranka 0.21, other bytes are decoded
+/// as [`RobotMode::Other`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RobotMode {
-    /// Any other mode. In practice the brakes are closed, or the robot is not ready.
+    /// Any other mode. Usually the brakes are closed, or the robot is not ready.
     #[default]
     Other,
     /// Ready for a motion.
@@ -18,7 +18,7 @@ pub enum RobotMode {
     Move,
     /// A person guides the arm by hand.
     Guiding,
-    /// Stopped by a reflex; only a recovery ends this mode.
+    /// A reflex stopped the robot. Only a recovery ends this mode.
     Reflex,
     /// The user stop or a safety function holds the robot.
     UserStopped,
@@ -38,7 +38,7 @@ impl RobotMode {
         Self::AutomaticErrorRecovery,
     ];
 
-    /// Returns the mode of a wire byte; [`RobotMode::Other`] for an undefined byte.
+    /// Returns the mode of a wire byte, or [`RobotMode::Other`] for an undefined byte.
     #[must_use]
     pub fn from_byte(byte: u8) -> Self {
         Self::ALL
@@ -55,7 +55,7 @@ impl RobotMode {
 }
 
 impl fmt::Display for RobotMode {
-    /// libfranka's text, without the double quotes of its messages.
+    /// Prints libfranka's text, without the double quotes of its messages.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Other => "Other",
@@ -69,10 +69,10 @@ impl fmt::Display for RobotMode {
     }
 }
 
-/// The motion generator that a state reports, in the numbering of states.
+/// The motion generator that a state reports.
 ///
-/// A `Move` request numbers the same generators differently: see
-/// [`MoveGeneratorMode`](crate::MoveGeneratorMode). Its method
+/// A `Move` request uses other numbers for the same generators: see
+/// [`MoveGeneratorMode`](crate::MoveGeneratorMode). The method
 /// [`in_state`](crate::MoveGeneratorMode::in_state) returns the value that states report during the
 /// motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -96,9 +96,10 @@ pub enum MotionGeneratorMode {
 }
 
 impl MotionGeneratorMode {
-    /// True if the client must send motion commands: any mode except `Idle` and `None`.
+    /// Returns true if the client must send motion commands. This is the case in any mode except
+    /// `Idle` and `None`.
     ///
-    /// This rule works for both versions: protocol 5 has no `None`, and its byte 5 decodes as
+    /// The rule holds for both versions, because protocol 5 has no `None`, and decodes byte 5 as
     /// `Unknown`.
     #[must_use]
     pub fn is_running(self) -> bool {
@@ -106,7 +107,7 @@ impl MotionGeneratorMode {
     }
 }
 
-/// The controller that a state reports, in the numbering of states.
+/// The controller that a state reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ControllerMode {

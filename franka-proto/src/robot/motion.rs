@@ -1,4 +1,4 @@
-//! The start of a motion.
+//! The request that starts a motion.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
@@ -24,7 +24,8 @@ pub struct MoveRequest {
     /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
     /// Largest joint velocities `[rad/s]` of an asynchronous motion, in which the robot itself
-    /// plans between sparse joint targets. `None` for one command per cycle. Protocol 10 only.
+    /// plans between sparse joint targets. `None` means one command per cycle. Only protocol 10
+    /// supports asynchronous motions.
     pub asynchronous: Option<[f64; 7]>,
 }
 
@@ -55,8 +56,8 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// The deviations that libfranka 0.9 and 0.21 send with every motion. They are so large that no
-    /// motion exceeds them.
+    /// The deviations that libfranka 0.9 and 0.21 send with every motion. They are larger than any
+    /// motion.
     pub const LIBFRANKA: Self = Self {
         translation: 10.0,
         rotation: 3.12,
@@ -80,7 +81,7 @@ impl Deviation {
     }
 }
 
-/// The controller of a `Move`, in the numbering of requests.
+/// The controller of a `Move` request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveControllerMode {
@@ -110,7 +111,7 @@ impl MoveControllerMode {
     }
 }
 
-/// The motion generator of a `Move`, in the numbering of requests.
+/// The motion generator of a `Move` request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveGeneratorMode {
@@ -122,7 +123,7 @@ pub enum MoveGeneratorMode {
     CartesianPosition,
     /// End-effector twists.
     CartesianVelocity,
-    /// Torques alone; protocol 10 only. See [`Version::torque_generator`].
+    /// Only torques; protocol 10 only. See [`Version::torque_generator`].
     None,
 }
 
@@ -156,7 +157,7 @@ pub(crate) struct MoveCodec {
 }
 
 impl MoveCodec {
-    /// Creates the codec of the layout that ends with `A`.
+    /// Creates the codec for the layout that ends with `A`.
     pub(crate) const fn of<A: AsynchronousPart>() -> Self {
         Self {
             decode: decode::<A>,
@@ -165,8 +166,7 @@ impl MoveCodec {
     }
 }
 
-/// The fields that a version appends to a `Move` for an asynchronous motion, in which the robot
-/// plans between targets.
+/// The fields that a version appends to a `Move` for an asynchronous motion.
 pub(crate) trait AsynchronousPart:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {

@@ -11,9 +11,9 @@ use crate::robot::RobotMode;
 
 /// A command that the robot refused or aborted.
 ///
-/// `Display` gives libfranka's text byte for byte, quirks included (libfranka 0.21,
+/// `Display` prints libfranka's text byte for byte, including its mistakes (libfranka 0.21,
 /// `robot_impl.h`). For example, if a safety function refuses a stop or a recovery, the text names
-/// `Move`. For setters the text ends in a space.
+/// `Move`, and for setters it ends with a space.
 ///
 /// ```
 /// use franka_proto::{Command, Refusal, RobotMode, SetterStatus, Status};
@@ -37,7 +37,7 @@ impl Refusal {
     /// Returns the refusal for `status` as an answer to `command`; `None` if `status` is not a
     /// refusal.
     ///
-    /// `mode` is the robot's mode as the caller knows it, usually from the newest state.
+    /// `mode` is the robot's mode, usually from the newest state.
     #[must_use]
     pub fn new(command: Command, status: Status, mode: RobotMode) -> Option<Self> {
         (!status.is_success()).then_some(Self {
@@ -60,7 +60,7 @@ impl Refusal {
         self.command
     }
 
-    /// The robot's answer. It is never a success.
+    /// Returns the robot's answer. The answer is never a success.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
@@ -72,7 +72,7 @@ impl Refusal {
         self.mode
     }
 
-    /// Returns the name of the refusal's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of the refusal's row in the book's chapter on errors, `errors.md`.
     #[must_use]
     pub fn entry(&self) -> &'static str {
         match self.status {

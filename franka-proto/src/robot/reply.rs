@@ -35,27 +35,27 @@ pub enum Reply<'a> {
     Model {
         /// Result of the request.
         status: ModelStatus,
-        /// URDF, usually UTF-8; empty after a refusal.
+        /// The URDF text, usually in UTF-8. It is empty after a refusal.
         text: &'a [u8],
     },
     /// Answer to `GetCartesianLimit`.
     CartesianLimit {
         /// Result of the request.
         status: SetterStatus,
-        /// The wall; undefined after a refusal.
+        /// The wall. It is undefined after a refusal.
         wall: VirtualWall,
     },
     /// Answer to `LoadModelLibrary`.
     ModelLibrary {
         /// Result of the request.
         status: LibraryStatus,
-        /// A file for the client's loader; empty after a refusal.
+        /// The file of the shared library. It is empty after a refusal.
         library: &'a [u8],
     },
 }
 
 impl<'a> Reply<'a> {
-    /// The status; `None` for `Connect`. A refused `Connect` has a separate text:
+    /// Returns the status, or `None` for `Connect`. A refused `Connect` has a separate error:
     /// [`IncompatibleVersion`](crate::IncompatibleVersion).
     #[must_use]
     pub fn status(&self) -> Option<Status> {
@@ -71,7 +71,7 @@ impl<'a> Reply<'a> {
         }
     }
 
-    /// Returns a robot's answer to a request with an undefined enumerator; `None` for commands
+    /// Returns a robot's answer to a request with an undefined enumerator, or `None` for commands
     /// without enumerators.
     pub(crate) fn to_unknown_value(command: Command) -> Option<(Command, Reply<'static>)> {
         let reply = match command {
@@ -210,7 +210,7 @@ impl<'a> Reply<'a> {
     }
 }
 
-/// Returns the byte of a status: its position among the version's statuses.
+/// Returns the byte of a status, which is its position among the version's statuses.
 fn byte<T: PartialEq>(statuses: &[T], status: T) -> Option<u8> {
     let position = statuses.iter().position(|known| *known == status)?;
     u8::try_from(position).ok()

@@ -11,13 +11,14 @@ use crate::wire::{self, from_wire, to_wire};
 
 /// A request with its parameters.
 ///
-/// This crate does not check ranges. The robot checks them and answers.
-// A box would require an allocator, and only few requests exist at a time.
+/// The robot, not this crate, checks the ranges of the parameters.
+// The large variant is not boxed, because a box requires an allocator, and few requests exist at a
+// time.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port on which it expects states.
+    /// Opens a session.
     Connect {
         /// Protocol version of the client. It may be unknown to this crate.
         version: u16,
@@ -37,9 +38,9 @@ pub enum Request {
     SetCartesianImpedance([f64; 6]),
     /// Sets the axes that can be guided by hand.
     SetGuidingMode {
-        /// The axes x, y, z, roll, pitch, yaw; true is free.
+        /// For each of x, y, z, roll, pitch and yaw, true if the axis is free.
         guiding_mode: [bool; 6],
-        /// The elbow; true is free.
+        /// True if the elbow is free.
         nullspace: bool,
     },
     /// Sets the stiffness frame, `EE_T_K`, column-major `[m]`.
@@ -68,7 +69,7 @@ pub enum Request {
     },
 }
 
-/// The load of the end effector. The end effector itself is configured in Desk.
+/// The load that the end effector holds. The end effector itself is configured in Desk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Load {
@@ -81,7 +82,7 @@ pub struct Load {
 }
 
 impl Request {
-    /// The command of this request.
+    /// Returns the command of this request.
     #[must_use]
     pub fn command(&self) -> Command {
         match self {

@@ -7,11 +7,11 @@ use crate::protocol::{DecodeError, EncodeError};
 use crate::version::Version;
 use crate::wire::{self, from_wire, to_wire};
 
-/// The client's command for one cycle; the field names are the vendor's.
+/// The client's command for one cycle. The field names are the vendor's.
 ///
-/// Only the fields of the active generator and controller count; leave the other fields zero. A
-/// command has two halves, for the generator and the controller. If the robot uses a half, it reads
-/// every field of this half. It ignores a half that it does not use.
+/// Set the fields of the active generator and controller, and leave the other fields zero. A
+/// command has two halves: one for the generator, and one for the controller. The robot reads every
+/// field of a half that it uses, and ignores a half that it does not use.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotCommand {
@@ -25,8 +25,8 @@ pub struct RobotCommand {
     pub O_T_EE_c: [f64; 16],
     /// Twist of the end effector in the base frame, linear then angular `[m/s, rad/s]`.
     pub O_dP_EE_c: [f64; 6],
-    /// Angle of joint 3 `[rad]` and sign of joint 4 (-1, 0 or 1); `None` leaves the redundancy to
-    /// the robot.
+    /// Angle of joint 3 `[rad]` and sign of joint 4 (-1, 0 or 1); with `None`, the robot chooses
+    /// the elbow.
     pub elbow_c: Option<[f64; 2]>,
     /// True if this is the last command of a motion with a generator.
     pub motion_generation_finished: bool,
@@ -41,8 +41,8 @@ impl RobotCommand {
     /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotCommand<u8>>();
 
-    /// Decodes a datagram of a client. Additional bytes are ignored. The kernel truncates real
-    /// datagrams in the same way.
+    /// Decodes a datagram of a client. Additional bytes are ignored, as if the kernel had truncated
+    /// the datagram.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command has.
@@ -53,9 +53,9 @@ impl RobotCommand {
     /// Writes the datagram for the robot into `buffer` and returns its length in bytes.
     ///
     /// # Errors
-    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotCommand::MAX_SIZE`] is always
-    /// sufficient); `EncodeError::Unsupported` if the version does not support
-    /// `torque_command_finished`. `buffer` is then unchanged.
+    /// Returns `EncodeError::Buffer` if `buffer` is too short ([`RobotCommand::MAX_SIZE`] is always
+    /// sufficient). Returns `EncodeError::Unsupported` if the version does not support
+    /// `torque_command_finished`. After an error, `buffer` is unchanged.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().command_codec.encode)(self, buffer)
     }
@@ -79,7 +79,8 @@ impl CommandCodec {
     }
 }
 
-/// The last field of the torque half: a byte in protocol 10, nothing in protocol 5.
+/// The last field of the torque half. It is a byte in protocol 10, and does not exist in protocol
+/// 5.
 pub(crate) trait Finish:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {

@@ -2,10 +2,10 @@
 
 use core::fmt;
 
-/// Declares the errors once: variant and libfranka's text, in wire order.
+/// Declares the errors, each with its variant and libfranka's text, in wire order.
 macro_rules! robot_errors {
     ($($variant:ident = $text:literal,)*) => {
-        /// One of the 41 reasons for which a robot stops itself.
+        /// One of the 41 reasons why a robot stops itself.
         ///
         /// The errors have the order of the wire, which is the same in protocols 5 and 10. The
         /// texts come from libfranka 0.21.
@@ -106,7 +106,7 @@ impl fmt::Display for RobotError {
 
 /// A set of robot errors.
 ///
-/// `Display` gives libfranka's list: `["joint_reflex", "cartesian_reflex"]`, or `[]`.
+/// `Display` prints libfranka's list: `["joint_reflex", "cartesian_reflex"]`, or `[]`.
 #[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Errors(u64);
 
@@ -114,7 +114,7 @@ impl Errors {
     /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// Reads the wire flags: one byte each; any non-zero value is true.
+    /// Reads the flags from the wire. Each flag is one byte, and any non-zero value is true.
     #[must_use]
     pub fn from_flags(flags: &[u8; 41]) -> Self {
         let mut bits = 0;
@@ -124,7 +124,7 @@ impl Errors {
         Self(bits)
     }
 
-    /// Returns the flags for the wire: one byte each, 0 or 1.
+    /// Returns the flags for the wire. Each flag is one byte, 0 or 1.
     #[must_use]
     pub fn to_flags(self) -> [u8; 41] {
         core::array::from_fn(|index| u8::from(self.0 >> index & 1 != 0))
@@ -164,13 +164,13 @@ impl Errors {
         self.0.count_ones() as usize
     }
 
-    /// Returns the set as an integer: bit `n` is the error with index `n`.
+    /// Returns the set as an integer. Bit `n` represents the error with index `n`.
     #[must_use]
     pub fn bits(self) -> u64 {
         self.0
     }
 
-    /// Returns the set with the bits of [`Errors::bits`]; bits above 40 are dropped.
+    /// Returns the set from an integer of [`Errors::bits`]. Bits above 40 are ignored.
     #[must_use]
     pub fn from_bits(bits: u64) -> Self {
         Self(bits & ((1 << RobotError::ALL.len()) - 1))

@@ -100,7 +100,7 @@ impl Protocol for Version {
 
 const SPOKEN: &[u16] = &[5, 10];
 
-/// The robots of each version: the compatibility table of libfranka 0.21.
+/// The robots of each version, from the compatibility table of libfranka 0.21.
 const FIELD: &[(u16, FieldDevice)] = &[
     (3, fer("3.x", Some(FER_UPDATE))),
     (4, fer("4.0", Some(FER_UPDATE))),

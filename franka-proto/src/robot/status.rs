@@ -1,7 +1,8 @@
 //! The robot's answers, independent of the version. The version table contains their bytes.
 
 /// Answer to `Move`. If the motion starts, the first answer is [`MoveStatus::MotionStarted`], and a
-/// second answer follows when the motion ends. Otherwise, another status is the only answer.
+/// second answer follows when the motion ends. Otherwise, the first answer is another status, and
+/// no second answer follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveStatus {
@@ -124,7 +125,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// True if the command succeeded, or its motion started.
+    /// Returns true if the command succeeded, or if its motion started.
     #[must_use]
     pub fn is_success(self) -> bool {
         matches!(

@@ -1,8 +1,8 @@
-//! The version table: one row per version, with all differences between versions.
+//! The version table. It has one row per version, with all differences between versions.
 //!
-//! The number of a command or a status is its position in its list. Sources: libfranka-common,
-//! `research_interface/robot/service_types.h` and `rbk_types.h`, as libfranka 0.9 (protocol 5) and
-//! 0.21 (protocol 10) use them.
+//! The number of a command or a status is its position in its list. The sources are
+//! libfranka-common's `research_interface/robot/service_types.h` and `rbk_types.h`, in the versions
+//! of libfranka 0.9 (protocol 5) and 0.21 (protocol 10).
 
 use super::motion::{AsynchronousPart, MoveCodec};
 use super::robot_command::CommandCodec;
@@ -18,14 +18,14 @@ use crate::wire::{self, F32, F64};
 
 /// Properties that depend on the version.
 impl Version {
-    /// Number of a command; `None` if the version does not have this command.
+    /// Returns the number of a command, or `None` if the version does not have this command.
     #[must_use]
     pub fn command_number(self, command: Command) -> Option<u32> {
         let position = self.table().commands.iter().position(|&c| c == command)?;
         u32::try_from(position).ok()
     }
 
-    /// Command with this number; `None` if the version does not have such a command.
+    /// Returns the command with this number, or `None` if the version does not have such a command.
     #[must_use]
     pub fn command_from_number(self, number: u32) -> Option<Command> {
         let index = usize::try_from(number).ok()?;
@@ -38,44 +38,44 @@ impl Version {
         self.table().commands.contains(&command)
     }
 
-    /// Length in bytes of the datagram of a state.
+    /// Returns the length in bytes of a state's datagram.
     #[must_use]
     pub fn state_size(self) -> usize {
         self.table().state_codec.size
     }
 
-    /// Length in bytes of the datagram of a command.
+    /// Returns the length in bytes of a command's datagram.
     #[must_use]
     pub fn command_size(self) -> usize {
         self.table().command_codec.size
     }
 
-    /// Returns the motion generator to request if the client commands only torques.
+    /// Returns the motion generator that a client must request if it commands only torques.
     ///
-    /// Protocol 10 has `MoveGeneratorMode::None`, and the motion ends with
-    /// `torque_command_finished`. In protocol 5 a joint velocity generator runs in parallel with
-    /// the torques. Send it zeros; `motion_generation_finished` ends the motion.
+    /// In protocol 10, this is `MoveGeneratorMode::None`, and `torque_command_finished` ends the
+    /// motion. In protocol 5, a joint velocity generator runs in parallel with the torques. Send
+    /// zero velocities; `motion_generation_finished` ends the motion.
     #[must_use]
     pub fn torque_generator(self) -> MoveGeneratorMode {
         self.table().torque_generator
     }
 
-    /// True if a robot of this version can itself plan between sparse joint targets:
+    /// Returns true if a robot of this version can plan between sparse joint targets itself:
     /// [`MoveRequest::asynchronous`](crate::MoveRequest::asynchronous).
     #[must_use]
     pub fn has_asynchronous_motion(self) -> bool {
         self.table().asynchronous_motion
     }
 
-    /// True if states carry accelerometers.
+    /// Returns true if states contain accelerometer values.
     #[must_use]
     pub fn has_accelerometers(self) -> bool {
         self.table().accelerometers
     }
 
-    /// True if a control loop with two functions calls the motion generator's function before the
-    /// torque function. Source: `control_loop.cpp` of libfranka 0.9 (protocol 5: true) and 0.21
-    /// (protocol 10: false).
+    /// Returns true if a control loop with two functions calls the motion generator's function
+    /// before the torque function. The value is true in libfranka 0.9 (protocol 5) and false in
+    /// 0.21 (protocol 10); source: `control_loop.cpp`.
     #[must_use]
     pub fn generator_first(self) -> bool {
         self.table().generator_first
@@ -109,10 +109,10 @@ pub(crate) struct Table {
     pub(crate) torque_generator: MoveGeneratorMode,
     pub(crate) asynchronous_motion: bool,
     pub(crate) accelerometers: bool,
-    /// Conventions of the reference client.
+    /// Conventions of libfranka.
     pub(crate) generator_first: bool,
-    /// The sources that the text about an incompatible version names: for updates, and for the
-    /// table of images.
+    /// The sources that the text about an incompatible version names: one for updates, and one for
+    /// the table of system images.
     pub(crate) incompatible_advice: [&'static str; 2],
 }
 

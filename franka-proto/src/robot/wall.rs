@@ -7,7 +7,7 @@ use crate::wire::{from_wire, to_wire};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VirtualWall {
-    /// Corner of the cuboid in the cuboid's frame `[m]`.
+    /// Corner of the cuboid, in the cuboid's frame `[m]`.
     pub object_world_size: [f64; 3],
     /// Pose of the cuboid in the base frame, column-major `[m]` (libfranka's `p_frame`).
     pub object_frame: [f64; 16],

@@ -1,5 +1,4 @@
-//! The device's side of a session: the decision on the handshake, then requests and the order of
-//! their replies.
+//! The device's side of a session: the answer to the handshake, then requests and their replies.
 
 use crate::command::CommandId;
 use crate::command::ServiceCommand;
@@ -12,8 +11,8 @@ use crate::protocol::{Progress, Protocol};
 use crate::robot::{LibraryStatus, ModelStatus, Reply};
 use crate::version::Version;
 
-/// One connection of a client, from its first byte to its last. The device is a robot, or an end
-/// effector if `P` is its protocol.
+/// State of one connection of a client, from its first byte to its last. The protocol `P`
+/// determines the device: a robot or an end effector.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -28,12 +27,13 @@ enum ConnectionPhase {
 }
 
 /// The event that a message of a client causes.
-// The session moves each variant once to the driver, and a box would require an allocator.
+// The large variant is not boxed, because a box requires an allocator, and each event is moved only
+// once.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event<P: Protocol = Version> {
-    /// A client of the same version connected. Send `reply`, then send states to `udp_port`.
+    /// A client with the same version connected. Send `reply`, then send states to `udp_port`.
     Connect {
         /// The id of the handshake.
         id: CommandId,
@@ -42,7 +42,8 @@ pub enum Event<P: Protocol = Version> {
         /// The answer to send.
         reply: Outgoing,
     },
-    /// A client of another version connected. Send `reply`; the client then closes the connection.
+    /// A client with another version connected. Send `reply`; the client then closes the
+    /// connection.
     Incompatible {
         /// The version that the client announces.
         version: u16,
@@ -52,13 +53,13 @@ pub enum Event<P: Protocol = Version> {
     /// A request to process. Answer it with [`Session::reply`], or with `Session::model_header` for
     /// a model.
     Request {
-        /// The id to use in the answer.
+        /// The id of the request. Use it in the answer.
         id: CommandId,
         /// The request.
         request: P::Request,
     },
-    /// A request with an undefined enumerator, such as a `Move` with an unknown mode. As a robot
-    /// does, `reply` reports an invalid argument. Send `reply`; the request is then complete.
+    /// A request with an undefined enumerator, such as a `Move` with an unknown mode. Send `reply`,
+    /// which reports an invalid argument as a robot does. The request is then complete.
     Rejected {
         /// The id of the request.
         id: CommandId,
@@ -98,7 +99,7 @@ impl<P: Protocol> Session<P> {
     /// Processes a message of the client and returns the resulting event.
     ///
     /// # Errors
-    /// [`Violation`] if the client violated the protocol. Disconnect the client.
+    /// Returns [`Violation`] if the client violated the protocol. Disconnect the client then.
     pub fn on_message(&mut self, message: Message<'_>) -> Result<Event<P>, Violation<P::Command>> {
         let id = message.header.id();
         let request = match self.version.decode_request(&message) {
@@ -123,9 +124,9 @@ impl<P: Protocol> Session<P> {
     /// Returns the message that answers a request.
     ///
     /// A robot answers `Move` twice:
-    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then the result. A robot
-    /// answers a refused `Move` once. To send a model, use [`Session::model_header`] or
-    /// [`Session::library_header`] instead; use this method to refuse one.
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then the result. It answers
+    /// a refused `Move` only once. Use this method to refuse a request for a model. To send a
+    /// model, use [`Session::model_header`] or [`Session::library_header`] instead.
     ///
     /// # Errors
     /// [`ReplyError`] if the reply cannot be sent. The session is then unchanged.
@@ -189,8 +190,8 @@ impl<P: Protocol> Session<P> {
         match rejection.filter(|_| unknown_value && self.phase == ConnectionPhase::Open) {
             Some((command, reply)) => {
                 self.remember(id, command)?;
-                // Every version with this command has this status, and the session has recorded
-                // the request.
+                // This cannot fail: every version with this command has this status, and the
+                // session has recorded the request.
                 let reply = self.reply(id, reply);
                 let reply = reply.expect("a pending request can be rejected");
                 Ok(Event::Rejected { id, error, reply })
@@ -221,8 +222,8 @@ impl Session {
     /// `text_len` bytes of text directly afterwards.
     ///
     /// # Errors
-    /// [`ReplyError::TextLength`] if the message would be longer than [`MAX_MESSAGE_SIZE`], and the
-    /// errors of [`Session::reply`]; the session is then unchanged.
+    /// Returns [`ReplyError::TextLength`] if the message would be longer than [`MAX_MESSAGE_SIZE`],
+    /// or an error of [`Session::reply`]. After an error, the session is unchanged.
     pub fn model_header(&mut self, id: CommandId, text_len: usize) -> Result<Outgoing, ReplyError> {
         let reply = Reply::Model {
             status: ModelStatus::Success,
@@ -235,7 +236,7 @@ impl Session {
     /// `len` bytes of the library directly afterwards.
     ///
     /// # Errors
-    /// The errors of [`Session::model_header`].
+    /// Returns the same errors as [`Session::model_header`].
     pub fn library_header(&mut self, id: CommandId, len: usize) -> Result<Outgoing, ReplyError> {
         let reply = Reply::ModelLibrary {
             status: LibraryStatus::Success,

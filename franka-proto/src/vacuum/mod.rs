@@ -1,7 +1,7 @@
-//! The protocol of the vacuum gripper: TCP port 1339, version 1, the same on both robots.
+//! The protocol of the vacuum gripper: TCP port 1339, version 1. It is the same on both robots.
 //!
 //! The protocol works like the protocol of the [Hand](crate::gripper). The gripper replies to each
-//! request when the action has ended, and sends its [`State`] by UDP.
+//! request after the action has ended, and sends its [`State`] over UDP.
 
 mod request;
 mod state;
@@ -12,10 +12,10 @@ pub use crate::end_effector::{Failure, Reply, Status, next_message};
 pub use request::{Command, Profile, Request, UndefinedProfile, Vacuum};
 pub use state::{DeviceStatus, State};
 
-/// A version of the vacuum gripper's protocol. Only one exists.
+/// A version of the vacuum gripper's protocol. Only one version exists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Version {
-    /// The version of all vacuum grippers on protocols 5 and 10 of the robot.
+    /// Version 1, which all vacuum grippers use with protocols 5 and 10 of the robot.
     #[default]
     V1,
 }

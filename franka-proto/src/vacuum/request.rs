@@ -12,7 +12,7 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// The commands of the vacuum gripper. The gripper replies once to each command, when the action
+/// The commands of the vacuum gripper. The gripper replies once to each command, after the action
 /// has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,11 +27,11 @@ pub enum Command {
     Stop,
 }
 
-/// A request with its parameters. This crate does not check ranges; the gripper does.
+/// A request with its parameters. The gripper, not this crate, checks the ranges of the parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Request {
-    /// Opens a session: the client's version and the port on which it expects states.
+    /// Opens a session.
     Connect {
         /// Protocol version of the client.
         version: u16,
@@ -45,7 +45,7 @@ pub enum Request {
         /// Time limit `[ms]`.
         timeout: i64,
     },
-    /// Stops the current action. The gripper answers that action as aborted.
+    /// Stops the current action. The gripper replies to that action with the status "aborted".
     Stop,
 }
 
@@ -61,7 +61,7 @@ pub struct Vacuum {
     pub timeout: i64,
 }
 
-/// A production set-up profile of the device; the first is libfranka's default.
+/// A production set-up profile of the device. libfranka's default is [`P0`](Self::P0).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Profile {
@@ -87,15 +87,15 @@ impl Profile {
         profile.copied().ok_or(UndefinedProfile(byte))
     }
 
-    /// The wire byte of this profile.
+    /// Returns the wire byte of this profile.
     #[must_use]
     pub fn byte(self) -> u8 {
         self as u8
     }
 }
 
-/// Error: the profile is not defined. The text is libfranka's. Like libfranka, the client then
-/// sends no request.
+/// The error for a profile that is not defined. The text is libfranka's. As in libfranka, the
+/// client then sends no request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("Vacuum Gripper: Vacuum profile not defined!")]
 pub struct UndefinedProfile(pub u8);

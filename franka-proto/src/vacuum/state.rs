@@ -12,7 +12,7 @@ use crate::wire::vacuum::VacuumGripperState;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
-    /// The gripper's clock `[ms]`.
+    /// Time of the gripper's clock `[ms]`.
     pub message_id: u32,
     /// True if the vacuum is within its range.
     pub in_control_range: bool,
@@ -22,9 +22,9 @@ pub struct State {
     pub part_present: bool,
     /// Status light of the device.
     pub device_status: DeviceStatus,
-    /// Power of the pump `[%]`. libfranka converts it to 16 bits without a sign.
+    /// Power of the pump `[%]`. libfranka converts this value to an unsigned 16-bit number.
     pub actual_power: i32,
-    /// Vacuum `[mbar]`. libfranka converts it to 16 bits without a sign.
+    /// Vacuum `[mbar]`. libfranka converts this value to an unsigned 16-bit number.
     pub vacuum: i32,
 }
 
@@ -58,7 +58,7 @@ impl DeviceStatus {
         }
     }
 
-    /// The wire byte of this status.
+    /// Returns the wire byte of this status.
     #[must_use]
     pub fn byte(self) -> u8 {
         match self {
@@ -120,7 +120,8 @@ impl State {
     }
 }
 
-/// libfranka's text: a JSON object on one line. The time is in seconds; booleans are numbers.
+/// Prints libfranka's text: a JSON object on one line. The time is in seconds, and booleans are
+/// numbers.
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

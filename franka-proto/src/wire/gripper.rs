@@ -13,7 +13,7 @@ pub struct Grasp {
     pub width: F64,
     /// Tolerances of the final finger distance.
     pub epsilon: GraspEpsilon,
-    /// Speed of closing `[m/s]`.
+    /// Speed of the fingers `[m/s]`.
     pub speed: F64,
     /// Force of the grasp `[N]`.
     pub force: F64,
@@ -45,9 +45,9 @@ pub struct Move {
 pub struct GripperState {
     /// Counter of milliseconds.
     pub message_id: U32,
-    /// Distance of the fingers `[m]`.
+    /// Distance between the fingers `[m]`.
     pub width: F64,
-    /// Distance of the fully open fingers `[m]`, measured by homing.
+    /// Distance between the fully open fingers `[m]`, measured during homing.
     pub max_width: F64,
     /// Non-zero if the hand holds an object.
     pub is_grasped: u8,

@@ -3,29 +3,31 @@
 use zerocopy::byteorder::little_endian::{U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
-/// `CommandHeader` of the vendor's `service_types.h`, for the robot and for its end effectors.
+/// Header of a message: `CommandHeader` of the vendor's `service_types.h`, for the robot and for
+/// its end effectors.
 ///
-/// `N` is the number of the command: [`U32`] for the robot, [`U16`] for the Hand and the vacuum
-/// gripper.
+/// `N` is the type of the command's number: [`U32`] for the robot, [`U16`] for the Hand and the
+/// vacuum gripper.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct CommandHeader<N> {
     /// Number of the command, which depends on the version.
     pub command: N,
-    /// Counter of the client's requests.
+    /// Id of the request.
     pub command_id: U32,
-    /// Length of the message in bytes, header included.
+    /// Length of the message in bytes, including the header.
     pub size: U32,
 }
 
-/// Number of a command in a header. Its width depends on the service.
+/// Type of a command's number in a header. Its width depends on the service.
 pub trait CommandNumber:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
     /// The number as `u32`.
     fn get(self) -> u32;
 
-    /// Creates the wire number. Excess bits are cut off, but no service has such large numbers.
+    /// Converts a number to the wire. Higher bits are cut off, but no service has such large
+    /// numbers.
     fn new(number: u32) -> Self;
 }
 

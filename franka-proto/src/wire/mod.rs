@@ -1,13 +1,14 @@
-//! The wire structs: little-endian, packed, declared once for all versions and services.
+//! The wire structs, which are little-endian and packed. Each struct is declared once for all
+//! versions and services.
 //!
-//! Type parameters cover the differences between the versions. These are the width of a state's
-//! numbers ([`Real`]), and the parts that only protocol 10 has; protocol 5 has `()` in their place.
-//! The field names are the vendor's. Size, alignment and every offset are asserted at compile time.
+//! Type parameters express the differences between the versions: the width of a state's numbers
+//! ([`Real`]), and the parts that only protocol 10 has. Protocol 5 has `()` in their place. The
+//! field names are the vendor's. Size, alignment and every offset are asserted at compile time.
 //!
 //! All types here are plain bytes: `zerocopy` reads them from any sufficiently long slice, and no
-//! accessor can panic. The types outside of this module add meaning: enums, options, `f64`.
+//! accessor can panic. The types outside of this module use enums, options and `f64` instead.
 
-/// Asserts at compile time that a wire struct has no padding and its fields have the expected
+/// Asserts at compile time that a wire struct has no padding, and that its fields have the expected
 /// offsets.
 macro_rules! assert_layout {
     ($type:ty, size: $size:literal, { $($($field:ident).+: $offset:literal),* $(,)? }) => {

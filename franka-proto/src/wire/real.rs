@@ -5,7 +5,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 /// A little-endian `f32`, the number type of states in protocol 10.
 pub type F32 = zerocopy::byteorder::little_endian::F32;
 
-/// A little-endian `f64`: the number type of states in protocol 5, and of commands and requests in
+/// A little-endian `f64`, the number type of states in protocol 5, and of commands and requests in
 /// both versions.
 pub type F64 = zerocopy::byteorder::little_endian::F64;
 
@@ -13,10 +13,10 @@ pub type F64 = zerocopy::byteorder::little_endian::F64;
 pub trait Real:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
-    /// Returns the value as `f64`, without loss.
+    /// Returns the value as `f64`, without loss of precision.
     fn widen(self) -> f64;
 
-    /// Returns the nearest value with the width of the wire.
+    /// Returns the nearest value that the wire type can represent.
     fn narrow(value: f64) -> Self;
 
     /// Returns the sum, rounded to the wire's width.

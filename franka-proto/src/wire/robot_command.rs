@@ -1,4 +1,4 @@
-//! The client's datagram. The client sends one for each state while a motion runs.
+//! The client's datagram. While a motion runs, the client sends one datagram for each state.
 #![allow(non_snake_case)]
 
 use zerocopy::byteorder::little_endian::U64;

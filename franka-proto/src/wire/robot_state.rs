@@ -1,4 +1,4 @@
-//! The robot's datagram. The robot sends one per millisecond.
+//! The robot's datagram. The robot sends one datagram per millisecond.
 #![allow(non_snake_case)]
 
 use zerocopy::byteorder::little_endian::U64;
@@ -94,7 +94,7 @@ pub struct RobotState<R, A> {
     pub theta: [R; 7],
     /// Motor velocities.
     pub dtheta: [R; 7],
-    /// The accelerometers; `()` if the version has none.
+    /// The accelerometers, or `()` if the version has no accelerometers.
     pub accelerometers: A,
     /// Active motion generator, in the numbering of states.
     pub motion_generator_mode: u8,

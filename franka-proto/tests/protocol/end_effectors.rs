@@ -1,4 +1,4 @@
-//! Client and device of the Hand's and the vacuum gripper's protocols in one thread.
+//! The client and the device of both end-effector protocols, in one thread.
 
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE};
 use franka_proto::{
@@ -48,7 +48,7 @@ where
         self.client.on_message(message)
     }
 
-    /// Sends a request and checks that the device reads the same.
+    /// Sends a request and checks that the device decodes the same request.
     fn request(&mut self, request: P::Request) -> CommandId {
         let outgoing = self.client.request(&request).unwrap();
         let id = outgoing.id();
@@ -57,7 +57,7 @@ where
         id
     }
 
-    /// Answers a request and checks that the client reads the same.
+    /// Answers a request and checks that the client decodes the same reply.
     fn reply(&mut self, id: CommandId, status: Status) {
         let outgoing = self.device.reply(id, Reply::Done(status)).unwrap();
         match self.receive(outgoing.as_bytes()).unwrap() {

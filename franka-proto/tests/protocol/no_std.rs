@@ -1,7 +1,7 @@
 //! The library uses neither the standard library nor an allocator.
 //!
-//! Without `extern crate alloc` or `extern crate std`, a `no_std` crate has no name for either.
-//! Checking the sources is therefore sufficient, and requires no target without a standard library.
+//! Without `extern crate alloc` or `extern crate std`, a `no_std` crate cannot name either of them.
+//! The test therefore only checks the sources, and needs no target without a standard library.
 
 use std::fs;
 use std::path::Path;

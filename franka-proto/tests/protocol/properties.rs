@@ -14,7 +14,7 @@ fn version() -> impl Strategy<Value = Version> {
     prop::sample::select(&Version::ALL[..])
 }
 
-/// Any finite number, of any size.
+/// Generates finite numbers of any size.
 fn number() -> impl Strategy<Value = f64> {
     prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO
 }
@@ -115,7 +115,7 @@ fn request() -> impl Strategy<Value = Request> {
     ]
 }
 
-/// The datagram of a state: random finite numbers, any errors, and modes in range.
+/// Generates datagrams of a state, with random finite numbers, any errors, and modes in range.
 fn state_bytes(version: Version) -> impl Strategy<Value = Vec<u8>> {
     let size = version.state_size();
     // The modes and flags lie between the numbers and the success rate.
@@ -200,7 +200,7 @@ proptest! {
         }
     }
 
-    /// Ids and command numbers are small, so that they often match known ones.
+    /// Ids and command numbers are small, so that they often match known numbers.
     #[test]
     fn no_messages_make_a_session_panic(
         version in version(),

@@ -19,7 +19,7 @@ pub(crate) struct StateCodec {
 }
 
 impl StateCodec {
-    /// Creates the codec of the layout with numbers `R` and accelerometers `A`, in a version with
+    /// Creates the codec for the layout with numbers `R` and accelerometers `A`, in a version with
     /// the motion generator modes `G`.
     pub(crate) const fn of<R: Real, A: AccelerometerBlock, G: GeneratorModes>() -> Self {
         Self {
@@ -31,13 +31,13 @@ impl StateCodec {
     }
 }
 
-/// The accelerometers of a layout, or their absence.
+/// The block of accelerometers in a layout. It may be empty.
 pub(crate) trait AccelerometerBlock:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
     /// True if the layout has accelerometers.
     const EXISTS: bool;
-    /// Readings of the upper and the lower sensors; zero without accelerometers.
+    /// Returns the readings of the upper and the lower sensors, or zeros without accelerometers.
     fn values(&self) -> [[[f32; 3]; 6]; 2];
     fn of(top: &[[f32; 3]; 6], bottom: &[[f32; 3]; 6]) -> Self;
 }

@@ -15,11 +15,11 @@ use crate::robot::{ControllerMode, MotionGeneratorMode, RobotMode};
 use crate::version::Version;
 use crate::wire;
 
-/// All values of one datagram of the robot, as `f64`; the field names are the vendor's.
+/// All values of one datagram of the robot. The field names are the vendor's.
 ///
-/// The frames are the vendor's: O base, F flange, NE nominal end effector, EE end effector, K
-/// stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major
-/// (index `4 * column + row`). Inertia matrices are 3x3, column-major.
+/// The names of frames are the vendor's: O is the base, F the flange, NE the nominal end effector,
+/// EE the end effector, and K the stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix,
+/// column-major (index `4 * column + row`). Inertia matrices are 3x3, column-major.
 ///
 /// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,12 +82,12 @@ pub struct RobotState {
     /// Estimated external joint torques, low-passed; `[N m]`.
     pub tau_ext_hat_filtered: [f64; 7],
     /// Estimated external wrench in the base frame; force then torque about the origin of the base,
-    /// positive when the robot pushes the environment, `[N, N m]`. All zeros near a singularity.
-    /// [`wrench_at_stiffness_frame`](Self::wrench_at_stiffness_frame) returns the torque about the
-    /// origin of the stiffness frame.
+    /// positive when the robot pushes the environment, `[N, N m]`. The values are zero near a
+    /// singularity. [`wrench_at_stiffness_frame`](Self::wrench_at_stiffness_frame) returns the
+    /// torque about the origin of the stiffness frame.
     pub O_F_ext_hat_K: [f64; 6],
-    /// Estimated external wrench on the stiffness frame, in the stiffness frame; force then
-    /// torque, positive when the robot pushes the environment, `[N, N m]`. All zeros near a
+    /// Estimated external wrench on the stiffness frame, in the stiffness frame; force then torque,
+    /// positive when the robot pushes the environment, `[N, N m]`. The values are zero near a
     /// singularity.
     pub K_F_ext_hat_K: [f64; 6],
     /// Desired twist of the end effector in the base frame; linear then angular, `[m/s,
@@ -95,15 +95,16 @@ pub struct RobotState {
     pub O_dP_EE_d: [f64; 6],
     /// Acceleration of the base, gravity included; `[m/s^2]`.
     pub O_ddP_O: [f64; 3],
-    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. Zero while the client
-    /// commands joint motions: see [`commanded_elbow`](Self::commanded_elbow).
+    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. The values are zero
+    /// while the client commands joint motions; see [`commanded_elbow`](Self::commanded_elbow).
     pub elbow_c: [f64; 2],
     /// Velocity of the commanded elbow: velocity of joint 3 `[rad/s]`, then 0.
     pub delbow_c: [f64; 2],
     /// Acceleration of the commanded elbow: acceleration of joint 3 `[rad/s^2]`, then 0.
     pub ddelbow_c: [f64; 2],
-    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. Zero while
-    /// the client commands joint motions: see [`commanded_pose`](Self::commanded_pose).
+    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. The values
+    /// are zero while the client commands joint motions; see
+    /// [`commanded_pose`](Self::commanded_pose).
     pub O_T_EE_c: [f64; 16],
     /// Last commanded twist of the end effector in the base frame; linear then angular, `[m/s,
     /// rad/s]`.
@@ -124,13 +125,13 @@ pub struct RobotState {
     pub motion_generator_mode: MotionGeneratorMode,
     /// Active controller.
     pub controller_mode: ControllerMode,
-    /// Errors that block the robot at present (libfranka's `current_errors`).
+    /// Errors that currently block the robot (libfranka's `current_errors`).
     pub errors: Errors,
     /// Errors that ended the last motion (libfranka's `last_motion_errors`).
     pub reflex_reason: Errors,
     /// The overall mode of the robot.
     pub robot_mode: RobotMode,
-    /// Share of the last 100 commands that arrived in time, 0 to 1; 0 while no control runs.
+    /// Share of the last 100 commands that arrived in time, 0 to 1. It is 0 while no control runs.
     pub control_command_success_rate: f64,
 }
 
@@ -139,8 +140,8 @@ impl RobotState {
     /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotState<wire::F64, ()>>();
 
-    /// Decodes a datagram of the robot. Additional bytes are ignored. The kernel truncates
-    /// datagrams in the same way for a client with a buffer of the struct's size.
+    /// Decodes a datagram of the robot. Additional bytes are ignored, as if the kernel had
+    /// truncated the datagram.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
@@ -155,19 +156,19 @@ impl RobotState {
     /// they are omitted.
     ///
     /// # Errors
-    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] is always
-    /// sufficient); `EncodeError::Unsupported` if the version lacks the motion generator mode.
-    /// `buffer` is then unchanged.
+    /// Returns `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] is always
+    /// sufficient). Returns `EncodeError::Unsupported` if the version lacks the motion generator
+    /// mode. After an error, `buffer` is unchanged.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().state_codec.encode)(self, buffer)
     }
 
-    /// Last commanded pose of the end effector, column-major: the first of `O_T_EE_c` and
-    /// `O_T_EE_d` that is a rigid transformation, or else `O_T_EE`.
+    /// Returns the last commanded pose of the end effector, column-major `[m]`. This is `O_T_EE_c`
+    /// or else `O_T_EE_d`, if it is a rigid transformation, and otherwise `O_T_EE`.
     ///
     /// Robots leave `O_T_EE_c` at zero while the client commands joint motions (recorded on a
-    /// Franka Research 3), and a zero matrix is not a pose. A matrix with a non-finite number is
-    /// returned unchanged, so that no caller continues from a broken state.
+    /// Franka Research 3), and a zero matrix is not a pose. If a matrix contains a number that is
+    /// not finite, it is returned unchanged, so the caller can detect the invalid state.
     #[must_use]
     pub fn commanded_pose(&self) -> &[f64; 16] {
         let poses = [&self.O_T_EE_c, &self.O_T_EE_d];
@@ -178,8 +179,8 @@ impl RobotState {
         found.unwrap_or(&self.O_T_EE)
     }
 
-    /// Last commanded elbow: `elbow_c` if it is set, otherwise `elbow_d` if it is set, otherwise
-    /// `elbow`. Robots leave `elbow_c` at zero whenever `O_T_EE_c` is zero.
+    /// Returns the last commanded elbow: `elbow_c` if it is set, otherwise `elbow_d` if it is set,
+    /// otherwise `elbow`. Robots leave `elbow_c` at zero whenever `O_T_EE_c` is zero.
     #[must_use]
     pub fn commanded_elbow(&self) -> [f64; 2] {
         let elbows = [self.elbow_c, self.elbow_d];
@@ -199,19 +200,19 @@ impl RobotState {
         self.controller_mode.is_running()
     }
 
-    /// True if a motion of the client runs: [`generator_running`](Self::generator_running) or
-    /// [`controller_running`](Self::controller_running). A motion has ended when the value becomes
-    /// false, regardless of [`RobotState::robot_mode`] (libfranka 0.21).
+    /// Returns true if a motion of the client runs: [`generator_running`](Self::generator_running)
+    /// or [`controller_running`](Self::controller_running). A motion has ended when the value
+    /// becomes false, regardless of [`RobotState::robot_mode`] (libfranka 0.21).
     #[must_use]
     pub fn motion_running(&self) -> bool {
         self.generator_running() || self.controller_running()
     }
 
-    /// The estimated external wrench in the axes of the base, with the torque about the origin of
-    /// the stiffness frame; positive when the robot pushes the environment, `[N, N m]`.
+    /// Returns the estimated external wrench in base axes, with the torque about the origin of the
+    /// stiffness frame, `[N, N m]`. Values are positive when the robot pushes the environment.
     ///
-    /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) has the torque about the origin of the base: a force
-    /// of 10 N at a distance of half a metre adds 5 N m.
+    /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) contains the torque about the origin of the base, to
+    /// which a force of 10 N at a distance of half a metre contributes 5 N m.
     #[must_use]
     pub fn wrench_at_stiffness_frame(&self) -> [f64; 6] {
         let [x, y, z, ..] = self.O_F_ext_hat_K;
@@ -220,8 +221,8 @@ impl RobotState {
         [x, y, z, a, b, c]
     }
 
-    /// Returns end effector and load as one body. The result is bit-identical to libfranka's result
-    /// for a state of this version.
+    /// Returns the end effector and the load as one body. The result is bit-identical to
+    /// libfranka's result for a state of this version.
     ///
     /// As in libfranka, the masses are added with the precision of the version's numbers.
     /// Everything else is computed as `f64`.
@@ -237,8 +238,8 @@ fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|i| pose[i] * x + pose[4 + i] * y + pose[8 + i] * z)
 }
 
-/// True if a column-major matrix is a rigid transformation, within the rounding of the vendor's
-/// constants. Every matrix that passes is also valid for `franka_model::transform`.
+/// Returns true if a column-major matrix is a rigid transformation, within the rounding of the
+/// vendor's constants. `franka_model::transform` accepts every such matrix.
 fn is_rigid(pose: &[f64; 16]) -> bool {
     let [x, y, z] = [0, 4, 8].map(|i| [pose[i], pose[i + 1], pose[i + 2]]);
     if (pose[3], pose[7], pose[11], pose[15]) != (0.0, 0.0, 0.0, 1.0) {
@@ -366,7 +367,7 @@ mod tests {
         };
         assert_eq!(infinite.commanded_pose(), &moved_by(f64::INFINITY));
         let mut rounded = moved_by(0.1);
-        // A rotation by thirty degrees, rounded to four digits.
+        // The block is a rotation by thirty degrees, rounded to four digits.
         (rounded[0], rounded[1], rounded[4], rounded[5]) = (0.8660, -0.5, 0.5, 0.8660);
         let state = RobotState {
             O_T_EE_c: rounded,

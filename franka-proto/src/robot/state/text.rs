@@ -16,8 +16,8 @@ pub struct StateText<'a> {
 }
 
 impl RobotState {
-    /// Returns libfranka's text of a state of this version: libfranka 0.9 for protocol 5, which has
-    /// no accelerometers, and 0.21 for protocol 10.
+    /// Returns libfranka's text of a state of this version. Protocol 5 has the text of libfranka
+    /// 0.9, without accelerometers. Protocol 10 has the text of libfranka 0.21.
     #[must_use]
     pub fn text(&self, version: Version) -> StateText<'_> {
         StateText {
@@ -40,7 +40,7 @@ impl fmt::Display for StateText<'_> {
                 )*
             };
         }
-        // The order is libfranka's; `total` is computed from end effector and load.
+        // The order is libfranka's; `total` is computed from the end effector and the load.
         write_fields! {
             state O_T_EE, state O_T_EE_d, state F_T_NE, state NE_T_EE, state F_T_EE, state EE_T_K,
             state m_ee, state F_x_Cee, state I_ee, state m_load, state F_x_Cload, state I_load,

@@ -1,27 +1,27 @@
-//! End effector and load as one body.
+//! The end effector and the load as one body.
 #![allow(non_snake_case)]
 
 use super::RobotState;
 
-/// Mass, centre of mass and inertia of end effector and load together.
+/// Mass, centre of mass and inertia of the end effector and the load together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TotalLoad {
     /// Mass `[kg]`.
     pub m_total: f64,
-    /// Centre of mass in the flange frame `[m]`; zero without mass.
+    /// Centre of mass in the flange frame `[m]`. It is zero if the mass is zero.
     pub F_x_Ctotal: [f64; 3],
-    /// Inertia about the common centre of mass, in the flange frame, column-major `[kg m^2]`; zero
-    /// without mass.
+    /// Inertia about the common centre of mass, in the flange frame, column-major `[kg m^2]`. It is
+    /// zero if the mass is zero.
     pub I_total: [f64; 9],
 }
 
 impl TotalLoad {
-    /// Computes the sums of libfranka 0.21, `load_calculations.cpp`, in its order of operations.
-    /// The centre of mass is the weighted mean of both bodies. The parallel axis theorem moves each
-    /// inertia to this mean. A body without mass has no inertia.
+    /// Computes the sums of libfranka 0.21 (`load_calculations.cpp`), in the same order of
+    /// operations. The centre of mass is the weighted mean of both bodies. The parallel axis
+    /// theorem moves each inertia to this mean. A body without mass has no inertia.
     pub(super) fn of(state: &RobotState, m_total: f64) -> Self {
-        // The sum as `f64`; in protocol 10, `m_total` has single precision.
+        // This sum is an `f64`; in protocol 10, `m_total` has single precision.
         let mass = state.m_ee + state.m_load;
         let F_x_Ctotal = core::array::from_fn(|axis| {
             if mass > 0.0 {
@@ -48,7 +48,7 @@ impl TotalLoad {
     }
 }
 
-/// The inertia of a body about the origin of the flange: `inertia - mass * S(centre)^2`.
+/// Returns the inertia of a body about the origin of the flange: `inertia - mass * S(centre)^2`.
 fn about_flange(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> [f64; 9] {
     let moved = skew_squared(mass, centre);
     core::array::from_fn(|i| {

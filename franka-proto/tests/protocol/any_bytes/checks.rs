@@ -2,7 +2,7 @@
 //!
 //! The targets in `fuzz/` and the test in `mod.rs` call the same functions. A finding is a panic of
 //! the crate, or a failed assertion in this file.
-// Public in the library of `fuzz/`, which also compiles this file.
+// The items are public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
 use franka_proto::framing::{
@@ -48,7 +48,7 @@ pub fn stream(bytes: &[u8]) {
     }
 }
 
-/// Reads a state in every version and writes it again.
+/// Decodes the bytes as a state of every version, and encodes the state again.
 pub fn robot_state(bytes: &[u8]) {
     for version in Version::ALL {
         let state = RobotState::decode(version, bytes);
@@ -67,7 +67,7 @@ pub fn robot_state(bytes: &[u8]) {
     }
 }
 
-/// Reads a command in every version and writes it again.
+/// Decodes the bytes as a command of every version, and encodes the command again.
 pub fn robot_command(bytes: &[u8]) {
     for version in Version::ALL {
         let command = RobotCommand::decode(version, bytes);
@@ -170,7 +170,7 @@ fn requests(version: Version) -> Vec<Request> {
     requests
 }
 
-/// Returns client and device after the handshake.
+/// Returns a client and a device after the handshake.
 fn connected<P: Protocol>(version: P, cut: Cut) -> (client::Session<P>, server::Session<P>) {
     let mut client = client::Session::new(version);
     let mut device = server::Session::new(version);
@@ -188,7 +188,8 @@ fn whole(cut: Cut, outgoing: &Outgoing) -> Message<'_> {
     message.expect("sent whole")
 }
 
-/// Feeds a client that waits for its handshake, and a client that waits for answers to `requests`.
+/// Feeds the stream to a client that waits for its handshake, and to a client that waits for
+/// answers to `requests`.
 fn client<P: Protocol>(version: P, requests: &[P::Request], cut: Cut, stream: &[u8]) {
     let mut connecting = client::Session::new(version);
     connecting.connect(1);
@@ -210,8 +211,8 @@ fn client<P: Protocol>(version: P, requests: &[P::Request], cut: Cut, stream: &[
     }
 }
 
-/// Feeds a device before its handshake, and a device after it. Every request is answered with each
-/// of `replies`, matching or not.
+/// Feeds the stream to a device before its handshake, and to a device after its handshake. Every
+/// request is answered with each of `replies`, matching or not.
 fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &[u8]) {
     let (_, open) = connected(version, cut);
     for mut session in [server::Session::new(version), open] {
@@ -236,8 +237,8 @@ fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &
     }
 }
 
-/// Checks that a decoded request can be encoded, and decodes to the same bytes again. Values cannot
-/// be compared: some are NaN.
+/// Checks that a decoded request can be encoded, and that a second round trip yields the same
+/// bytes. The test cannot compare values, because some are NaN.
 fn comes_back<P: Protocol>(version: P, request: &P::Request, id: CommandId, cut: Cut) {
     let once = version.encode_request(request, id).expect("it was read");
     let again = version.decode_request(&whole(cut, &once));

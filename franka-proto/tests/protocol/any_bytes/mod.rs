@@ -1,5 +1,5 @@
-//! Runs the fuzz targets on mutated golden messages: the same inputs every time, in a second or
-//! two.
+//! Runs the fuzz targets on mutated golden messages. The inputs are the same in every run, and a
+//! run takes a second or two.
 //!
 //! `fuzz/` runs the same targets under libFuzzer, which searches for new code paths; this test
 //! requires only `cargo test`.
@@ -11,7 +11,7 @@ use std::path::Path;
 
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 
-/// Inputs per target. All targets take a second or two together.
+/// Number of inputs per target. All targets together take a second or two.
 const INPUTS: u64 = 100_000;
 
 #[test]
@@ -62,7 +62,8 @@ fn mutate(random: &mut SmallRng, bytes: &mut Vec<u8>, other: &[u8]) {
     match random.random_range(0..7) {
         0 => bytes[at] ^= 1 << random.random_range(0..8),
         1 => bytes[at] = value,
-        // Command, id and size are in the first bytes: small numbers there reach more code.
+        // The first bytes contain the command, the id and the size. Small numbers there reach more
+        // code.
         2 => {
             let at = random.random_range(0..bytes.len().min(14));
             bytes[at] = value % 16;

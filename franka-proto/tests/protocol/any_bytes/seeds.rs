@@ -1,5 +1,5 @@
 //! The golden messages as inputs of the targets.
-// Public in the library of `fuzz/`, which also compiles this file.
+// The items are public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
 use std::path::Path;

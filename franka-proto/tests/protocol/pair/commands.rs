@@ -1,4 +1,4 @@
-//! The other commands, and the commands that a version does not have.
+//! Commands other than `Move`, and commands that a version does not have.
 
 use franka_proto::framing::next_message;
 use franka_proto::{

@@ -1,4 +1,4 @@
-//! The reaction of either side to errors of the other.
+//! Reaction of each side to errors of the other side.
 
 use franka_proto::{
     Command, CommandId, DecodeError, RecoveryStatus, Reply, ReplyError, Request, RequestError,

@@ -61,7 +61,7 @@ impl Pair {
             .on_message(next_message(bytes).unwrap().unwrap())
     }
 
-    /// Sends a request and checks that the robot decodes the same.
+    /// Sends a request and checks that the robot decodes the same request.
     fn request(&mut self, request: &Request) -> CommandId {
         let outgoing = self.client.request(request).unwrap();
         let id = outgoing.id();
@@ -71,7 +71,7 @@ impl Pair {
         id
     }
 
-    /// Answers a request and checks that the client decodes the same.
+    /// Answers a request and checks that the client decodes the same reply.
     fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let outgoing = self.server.reply(id, reply).unwrap();
         match self.client.on_message(message(&outgoing)).unwrap() {
@@ -98,7 +98,8 @@ fn joint_motion() -> Request {
     ))
 }
 
-/// Returns a robot's reply as bytes, without a session that would refuse to create it.
+/// Returns a robot's reply as bytes, without a session, because a session would refuse to create
+/// it.
 fn raw_reply(id: u32, payload: &[u8]) -> Vec<u8> {
     let size = 12 + payload.len() as u32;
     let mut bytes: Vec<u8> = [1, id, size].iter().flat_map(|n| n.to_le_bytes()).collect();

@@ -1,4 +1,4 @@
-//! Replies with a tail: the description of protocol 10, the library of protocol 5.
+//! Replies of variable length: the description of protocol 10, and the library of protocol 5.
 
 use franka_proto::framing::next_message;
 use franka_proto::{

@@ -1,4 +1,4 @@
-//! libfranka's texts, each against the string that it prints, byte for byte.
+//! Compares the texts with libfranka's texts, byte for byte.
 
 mod names;
 mod refusals;

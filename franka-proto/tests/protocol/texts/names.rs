@@ -29,7 +29,7 @@ fn errors_by_index() {
     assert_eq!(Errors::NONE.to_string(), "[]");
 }
 
-/// The order of the state's flags, the same in both versions.
+/// The errors in the order of the state's flags, which is the same in both versions.
 const NAMES: [&str; 41] = [
     "joint_position_limits_violation",
     "cartesian_position_limits_violation",

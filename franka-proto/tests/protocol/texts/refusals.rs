@@ -1,9 +1,10 @@
-//! The text for the status byte of a reply: every byte of every command of both versions.
+//! The text for every status byte of every command, in both versions.
 
 use franka_proto::framing::{Header, Message};
 use franka_proto::{Command, MoveStatus, Refusal, Reply, RobotMode, Status, Version};
 
-/// The texts after `libfranka: `, by status byte; empty for a success. The next byte is undefined.
+/// The texts after `libfranka: `, by status byte. The text of a success is empty. The byte after
+/// the last text is undefined.
 type Texts = &'static [&'static str];
 
 /// Returns a reply that is long enough for every command.
@@ -83,7 +84,7 @@ fn setter_statuses_have_their_texts() {
 fn model_statuses_have_their_texts() {
     let unknown = "Unexpected response while handling Get Robot Model command!";
     check(Version::V10, Command::GetRobotModel, MODEL, unknown);
-    // Every status except success gives this error, including an undefined byte.
+    // Every status except success causes this error, including an undefined byte.
     let error = LIBRARY[1];
     check(Version::V5, Command::LoadModelLibrary, LIBRARY, error);
 }
@@ -137,7 +138,7 @@ const MOVE_V5: Texts = &[
     "Move command aborted!",
 ];
 
-/// Aborted has the same text as not possible, and the text of a safety function names `Move`.
+/// "Aborted" has the same text as "not possible", and the text of a safety function names `Move`.
 const STOP_V10: Texts = &[
     "",
     "Stop Move command rejected: command not possible in the current mode (\"Guiding\")!",
