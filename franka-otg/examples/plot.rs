@@ -1,5 +1,5 @@
 //! Plots the response of the trajectory generator as an SVG. The target moves in steps, then in
-//! bursts, then its updates stop.
+//! bursts, and then its updates stop.
 //!
 //! `cargo run --release -p franka-otg --example plot [FILE]`
 
@@ -33,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Returns the new target in a cycle, if any. Targets are first steps, then bursts of noisy
-/// targets, then a moving target whose updates stop.
+/// Returns the new target in a cycle, if any. The targets are first steps, then bursts of noisy
+/// values, and finally a moving target whose updates stop.
 fn target(cycle: usize) -> Option<State<1>> {
     let t = cycle as f64 * CYCLE;
     let at = |position: f64, velocity: f64| State {

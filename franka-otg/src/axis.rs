@@ -1,5 +1,5 @@
-//! One axis from its state to its target: brake, least time, given duration, and the resulting
-//! profile.
+//! One axis from its state to its target: braking into the limits, the least time, a given
+//! duration, and the resulting profile.
 
 use crate::brake::{Pieces, into_limits};
 use crate::cycle::CYCLE;
@@ -20,10 +20,10 @@ pub(crate) struct Axis {
     start: AxisState,
     target: AxisState,
     limits: AxisLimits,
-    /// Unit of time of the axis, in seconds.
+    /// Time unit of the axis, in seconds.
     unit: f64,
     brake: Pieces,
-    /// Duration of the brake, in units of time of the axis.
+    /// Duration of the brake, in time units of the axis.
     braking: f64,
     motion: ToTarget,
 }
@@ -92,8 +92,8 @@ impl Axis {
         self.unit * (self.braking + least)
     }
 
-    /// Returns the least feasible duration that is at least `duration`. `duration` must be at least
-    /// the least duration of the axis.
+    /// Returns the smallest feasible duration that is not below `duration`. `duration` must not be
+    /// below the least duration of the axis.
     pub(crate) fn from(&self, duration: f64) -> f64 {
         let ToTarget::Moving(moving) = &self.motion else {
             return duration;
@@ -125,7 +125,7 @@ impl Axis {
         }
     }
 
-    /// Replaces a motion to rest whose duration exceeds `duration` only by rounding.
+    /// Replaces a motion to rest if its duration exceeds `duration` only by rounding.
     pub(crate) fn round_to(&mut self, duration: f64) {
         let left = duration / self.unit - self.braking;
         if let ToTarget::AtRest(least) = &mut self.motion
@@ -136,10 +136,11 @@ impl Axis {
         }
     }
 
-    /// Lays out the profile of `duration` seconds. If the least-time profile takes longer, lays out
-    /// the least-time profile.
+    /// Writes the profile of `duration` seconds to `profile`. If the least-time profile takes
+    /// longer, this is the least-time profile.
     ///
-    /// Behind a target in motion, the axis continues for a cycle and then stops in the least time.
+    /// After it passes a target in motion, the axis continues for a cycle and then stops in the
+    /// least time.
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -198,10 +199,10 @@ impl Axis {
 }
 
 /// Returns the least-time motion to a position that differs from the target only by rounding.
-/// `None` if this motion takes longer than `duration`, within rounding.
+/// Returns `None` if this motion takes clearly longer than `duration`.
 ///
-/// Near the end of a motion, the least duration is uncertain by the cube root of the rounding of
-/// positions: microseconds, which are micrometres of an axis in motion.
+/// Near the end of a motion, the least duration is uncertain by microseconds (the cube root of the
+/// rounding of positions). In that time, a moving axis covers micrometres.
 fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
     let feasible = FeasibleDurations::new(&least.task, 0.0, 0.0);
     let d = least.task.d - feasible.drift(least.duration);
@@ -221,19 +222,19 @@ pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }
 
-/// Lays out the least-time stop. The state must pass [`can_stop`], or lie on a plan from such a
-/// state.
+/// Writes the least-time stop to `profile`. The state must pass [`can_stop`], or be on a plan that
+/// starts from such a state.
 pub(crate) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
     profile.begin(start);
     append_stop(limits, profile);
 }
 
-/// Appends the motion behind a target in motion. The acceleration continues for a cycle plus the
-/// tolerance for simultaneous arrival, if the limits allow it. The least-time stop follows.
+/// Appends the motion beyond a target in motion. If the limits allow it, the acceleration continues
+/// for a cycle plus the tolerance for simultaneous arrival. The least-time stop follows.
 ///
-/// The first command that counts as at the target is sent up to one cycle after the last axis
-/// arrives. A new target that is set then finds the axis still moving as the old target, before the
-/// axis slows down.
+/// The first command at the target is sent up to one cycle after the last axis arrives. If the
+/// caller then sets a new target, the axis still moves like the old target and has not slowed down
+/// yet.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {
         velocity,
@@ -254,7 +255,8 @@ fn append_stop(limits: AxisLimits, profile: &mut Profile) {
     profile.finish_here();
 }
 
-/// Returns the position at which the least-time stop from `start` ends, without a plan.
+/// Returns the position at which the least-time stop from `start` ends. The function creates no
+/// plan.
 #[must_use]
 pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     if start.is_at_rest() {
@@ -274,8 +276,8 @@ pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     start.position + way.position
 }
 
-/// Returns the jerks of the least-time stop and their durations, in seconds. The first piece brings
-/// the acceleration back to its limit.
+/// Returns the jerks of the least-time stop and their durations, in seconds. The first piece
+/// reduces an excessive acceleration to its limit.
 fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;

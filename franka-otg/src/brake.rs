@@ -1,11 +1,11 @@
 //! Brings a state outside the limits back into them.
 //!
-//! States outside the limits come from measurements and from lowered limits. The rule is "inside
-//! again as early as possible". The brake uses full jerk, then the acceleration limit, until the
-//! velocity is at its limit and will stay there. The rule is a convention, not part of the optimum.
-//! A rule that only makes the velocity converge to its limit can be shorter, but then the velocity
-//! exceeds its limit for longer. The state is never clamped, because a clamp is a step in the
-//! command to the robot.
+//! States outside the limits come from measurements and from lowered limits. The brake returns such
+//! a state into the limits as early as possible. It uses full jerk, then the acceleration limit,
+//! until the velocity is at its limit and will stay there. This rule is a convention and does not
+//! always yield the shortest motion. Other rules may be shorter, but the velocity then exceeds its
+//! limit for longer. The state is never clamped, because a clamp would be a step in the command to
+//! the robot.
 
 use crate::scalar::sqrt;
 use crate::task::Task;
@@ -34,7 +34,7 @@ impl Pieces {
 
     /// Appends a piece and returns the remaining task.
     pub(crate) fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
-        // Only positive durations are pieces; NaN cannot occur here.
+        // Pieces have positive durations; NaN cannot occur here.
         if t > 0.0 && self.len < self.list.len() {
             self.list[self.len] = (jerk, t);
             self.len += 1;
@@ -45,7 +45,8 @@ impl Pieces {
     }
 }
 
-/// Brakes the task into its limits. Does nothing if the task is inside them and can stay there.
+/// Brakes the task into its limits. Does nothing if the task is within its limits and can stay
+/// there.
 pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     let mut pieces = Pieces::NONE;
     let mut task = task;
@@ -71,13 +72,13 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     (pieces, task)
 }
 
-/// Brings a velocity that exceeds the limit, or will exceed it, back to the limit. In this frame
-/// the velocity is positive.
+/// Reduces a velocity that exceeds the limit, or will exceed it, to the limit. The velocity is
+/// positive in the mirrored frame.
 fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     let Task { v, a, top, .. } = task.mirrored(sign);
     let to_acceleration_limit = a + 1.0;
     let to_top = a + sqrt((a * a + 2.0 * (v - top)).max(0.0));
-    // If the deceleration were reduced later, the velocity would undershoot the lower limit.
+    // The deceleration must be reduced by then, or the velocity would fall below the lower limit.
     let to_undershoot = a + sqrt((0.5 * a * a + v + top).max(0.0));
     let ramp = to_top.min(to_undershoot);
     if to_acceleration_limit >= ramp {
@@ -89,7 +90,7 @@ fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     pieces.push(task, 0.0, hold)
 }
 
-/// Excess over a limit up to which a state counts as at the limit, because of rounding.
+/// Largest excess over a limit that counts as rounding.
 const TOLERANCE: f64 = 1e-12;
 
 #[cfg(test)]
@@ -138,8 +139,8 @@ mod tests {
 
     #[test]
     fn braking_ends_as_soon_as_the_velocity_is_back() {
-        // The cases: ramp only; ramp and hold; and a hold that is shortened, because undoing it
-        // would undershoot.
+        // The cases: ramp only; ramp and hold; and a hold that is shortened, because the velocity
+        // would otherwise fall below the lower limit.
         for (v, top, expected) in [(10.2, 10.0, 10.0), (12.0, 10.0, 10.0), (3.0, 0.1, 0.4)] {
             let (_, after) = into_limits(task(v, 0.0, top));
             assert!((after.v - expected).abs() < 1e-14, "{v} {top}: {after:?}");

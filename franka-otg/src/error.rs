@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Reason why no plan was made. The current motion continues.
+/// Reason why the generator created no plan. The current motion continues.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
@@ -11,7 +11,7 @@ pub enum PlanError {
     NotFinite {
         /// The quantity with this value.
         quantity: Quantity,
-        /// Axis, from 1.
+        /// Number of the axis, from 1.
         axis: usize,
     },
     /// A limit is not positive and finite.
@@ -19,7 +19,7 @@ pub enum PlanError {
     Limit {
         /// The limited quantity.
         quantity: Quantity,
-        /// Axis, from 1.
+        /// Number of the axis, from 1.
         axis: usize,
         /// The given limit.
         value: f64,
@@ -32,18 +32,19 @@ pub enum PlanError {
          and |velocity| + acceleration^2 / (2 jerk limit) within the limits"
     )]
     TargetMotion {
-        /// Axis, from 1; 1 for a straight line, which is planned as one axis.
+        /// Number of the axis, from 1. It is 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
-    /// Distance or velocity and the limits differ by too many orders of magnitude: `f64` cannot
-    /// represent the powers in the solution. The bound is 100 decades, in units of `A^3/J^2` or
-    /// `A^2/J`.
+    /// The distance or the velocity differs from the limits by too many orders of magnitude, so
+    /// `f64` cannot represent the powers in the solution. The bound is 100 decades, in units of
+    /// `A^3/J^2` for the distance and `A^2/J` for the velocity (`A`: acceleration limit, `J`: jerk
+    /// limit).
     #[error(
         "state, target and limits of axis {axis} differ by too many orders of magnitude to \
         plan with, expected comparable magnitudes"
     )]
     OutOfRange {
-        /// Axis, from 1; 1 for a straight line, which is planned as one axis.
+        /// Number of the axis, from 1. It is 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
 }

@@ -1,10 +1,11 @@
-//! The extremal profile: the motion with the farthest end in a given time, for a given final
+//! The extremal profile: the motion that gets farthest in a given time, and ends with a given
 //! velocity and acceleration.
 //!
-//! In the frame in which "far" is upwards, the motion is a push and a stop to the end's velocity,
-//! with jerks `+ 0 - 0 - 0 +`. The costate of the acceleration is a parabola in time that opens
-//! upwards, so the jerk changes its sign at most twice. An acceleration or velocity is held while
-//! it is at its limit. No other motion is optimal, and each duration has exactly one such motion.
+//! In the frame in which "far" is upwards, the motion is a push, followed by a slow-down to the
+//! final velocity, with jerks `+ 0 - 0 - 0 +`. The costate of the acceleration is a parabola in
+//! time that opens upwards, so the jerk changes its sign at most twice. The acceleration or the
+//! velocity is constant while it is at its limit. No other motion is optimal, and each duration has
+//! exactly one such motion.
 //!
 //! Both ends are extended by their jerk to the instant with zero acceleration, as in `least_time`:
 //!
@@ -16,16 +17,16 @@
 //! last positive jerk. Let `w` be the velocity between them at zero acceleration, `e = cf - c0`,
 //! and `T` the duration counted from the extended ends. The integral of the acceleration requires
 //! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. If only the
-//! larger of `x` and `y` reaches the limit, the other follows from `(1 + y)^2 = T - e` or `(1 +
-//! x)^2 = T + e`. If both reach the limit, `w` follows from `2 w = T - 2 + c0 + cf`. At the
-//! velocity limit, the remaining time is a cruise. All cases have closed forms and are continuous
-//! across their boundaries, so no search is needed and no root must be rejected. A negative `x` or
-//! `y` means that the acceleration never changes its sign.
+//! larger of `x` and `y` reaches the limit, the smaller follows from `(1 + y)^2 = T - e` or `(1 +
+//! x)^2 = T + e`. If both reach the limit, `w` follows from `2 w = T - 2 + c0 + cf`. If `w` is at
+//! the velocity limit, the motion cruises for the remaining time. All cases have closed forms and
+//! are continuous across their boundaries. Therefore no search is needed, and no root must be
+//! rejected. A negative `x` or `y` means that the acceleration never changes its sign.
 //!
 //! As the duration grows, the end moves at the rate `w + x y/2` (or the velocity limit, in a
-//! cruise). The rate may be negative: a motion that must end with a negative velocity gets less far
-//! with more time, until the time is long enough to move upwards in between. The zeros of the rate
-//! have closed forms too: see [`ExtremalProblem::turning_points`].
+//! cruise). The rate may be negative: with more time, a motion that must end with a negative
+//! velocity first gets less far, until it has enough time to move upwards in between. The zeros of
+//! the rate also have closed forms; see [`ExtremalProblem::turning_points`].
 
 use crate::scalar::sqrt;
 use crate::shape::Shape;
@@ -74,7 +75,7 @@ impl ExtremalProblem {
         }
     }
 
-    /// Returns the extremal motion of duration `t`. The end's velocity must be reachable in this
+    /// Returns the extremal motion of duration `t`. The final velocity must be reachable in this
     /// time.
     pub(crate) fn profile(&self, t: f64) -> ExtremalProfile {
         let Self { a0, af, c0, cf, .. } = *self;
@@ -82,8 +83,8 @@ impl ExtremalProblem {
         let e = cf - c0;
         let q = 0.5 * whole;
         let difference = if q > 0.0 { e / q } else { 0.0 };
-        // Rounding may give slightly less than the accelerations at the ends. The sum of both is
-        // the time, which must not change.
+        // Because of rounding, `x` and `y` may be slightly below the accelerations at the ends.
+        // Their sum is the time and must not change.
         let x = (0.5 * (q + difference)).max(a0).min(q + af);
         let y = q - x;
         let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
@@ -123,8 +124,8 @@ impl ExtremalProblem {
     /// Returns the motion that reaches the velocity limit.
     fn cruising(&self, whole: f64) -> ExtremalProfile {
         let (c0, cf, w) = (self.c0, self.cf, self.top);
-        // The ramps must not be shorter than the ends require; rounding of the velocities could
-        // shorten them. The cruise must be the remaining time.
+        // Rounding of the velocities must not make the ramps shorter than the ends require. The
+        // cruise is the remaining time.
         let (x, first_hold) = ramp_and_hold((w - c0).max(change_of_ramp(self.a0)));
         let (y, second_hold) = ramp_and_hold((w - cf).max(change_of_ramp(-self.af)));
         let cruise = (whole - 2.0 * (x + y) - first_hold - second_hold).max(0.0);
@@ -139,13 +140,13 @@ impl ExtremalProblem {
     }
 
     /// Returns the durations between which the end moves monotonically as the duration grows. They
-    /// are unordered, and some may be superfluous. The last is the duration at which the cruise
-    /// begins.
+    /// are not sorted, and some may be superfluous. The last entry is the duration at which a
+    /// cruise becomes possible.
     ///
     /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with `s =
-    /// (x + y)^2`. With one hold it is zero where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, and
-    /// with both where `w = -1/2`. A root outside of its case only divides a monotone piece in two,
-    /// which has no effect.
+    /// (x + y)^2`. With one hold, the rate is zero where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 =
+    /// 0`. With two holds, it is zero where `w = -1/2`. A root outside of its case only divides a
+    /// monotone piece in two, which has no effect.
     pub(crate) fn turning_points(&self) -> [Option<f64>; 6] {
         let Self {
             a0,
@@ -163,7 +164,7 @@ impl ExtremalProblem {
             wholes[0] = Some(2.0 * sqrt(s));
             wholes[1] = Some(2.0 * sqrt(e * e / (3.0 * s)));
         }
-        // The end with the smaller change of velocity does not hold.
+        // The half with the smaller change of velocity has no hold.
         let c = if e > 0.0 { cf } else { c0 };
         if c <= 1.0 / 16.0 {
             let root = sqrt(1.0 / 16.0 - c);
@@ -175,8 +176,8 @@ impl ExtremalProblem {
         wholes.map(|whole| whole.map(|whole| whole - a0 + af))
     }
 
-    /// Returns the time at which a motion reaches the target if it continues to cruise. At time `t`
-    /// it cruises and is `short` of the target.
+    /// Returns the duration at which the motion reaches the target if its cruise is extended. With
+    /// duration `t`, the motion ends `short` of the target.
     pub(crate) fn cruise_on(&self, t: f64, short: f64) -> f64 {
         t + short / self.top
     }
@@ -213,8 +214,8 @@ impl ExtremalProfile {
 }
 
 /// Returns the displacement of the transfer between velocity `c` and the velocity that follows from
-/// the peak acceleration `x` and its hold; the acceleration is zero at both. For a negative `x`,
-/// returns the excess of the other half.
+/// the peak acceleration `x` and its hold. The acceleration is zero at both ends. For a negative
+/// `x`, the result is the excess of the other half.
 fn half(c: f64, x: f64, hold: f64) -> f64 {
     let change = x * x + x * hold;
     (c + 0.5 * change) * (2.0 * x + hold)

@@ -6,7 +6,7 @@ use crate::task::{ROUNDING, Task};
 use crate::times::Times;
 use crate::velocity_change::{DRIFT, TIGHT, VelocityChange, typical_velocity};
 
-/// Decision whether a duration is feasible.
+/// Decides if a duration is feasible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FeasibleDurations {
     pub(crate) up: ExtremalProblem,
@@ -22,7 +22,7 @@ pub(crate) struct FeasibleDurations {
 pub(crate) type Candidates = Times<CANDIDATES>;
 
 impl FeasibleDurations {
-    /// Creates the decision for a task inside its limits and a target with velocity `vf` and
+    /// Prepares the decision for a task inside its limits, and for a target with velocity `vf` and
     /// acceleration `af`.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
@@ -35,8 +35,8 @@ impl FeasibleDurations {
         }
     }
 
-    /// True if an axis that is at its target after `other` is also there after `t`, within the
-    /// rounding of its position and velocity.
+    /// Returns true if an axis that is at its target after `other` is also at the target after `t`,
+    /// within the rounding of its position and velocity.
     pub(crate) fn are_same(&self, t: f64, other: f64) -> bool {
         let apart = (t - other).abs();
         let (speed, bend) = (self.vf.abs(), self.af.abs());
@@ -71,9 +71,9 @@ impl FeasibleDurations {
         let mut breaks = Times::<BREAKS>::NONE;
         for (t, rounding) in self.change.crossings().into_iter().flatten() {
             breaks.insert(t);
-            // On the last part of a plan, both sides end at the target within rounding. Removing
-            // this rounding could cost a detour. The rounding of the velocity is larger, so the
-            // time is chosen to meet the position.
+            // On the last part of a plan, both extremal motions end at the target within rounding.
+            // The plan must not make a detour to remove this rounding. The rounding of the velocity
+            // is larger, so the time is chosen to match the position.
             let up = self.up.profile(t);
             let later = -up.beyond / up.rate();
             if later.abs() <= rounding && t + later >= 0.0 {
@@ -96,7 +96,7 @@ impl FeasibleDurations {
         let mut left: Option<(f64, [ExtremalProfile; 2])> = None;
         for right in breaks.iter() {
             let reaches = [self.up.profile(right), self.down.profile(right)];
-            // The target may be at a turning point, except for rounding.
+            // Within rounding, the target may be at a turning point.
             if reaches
                 .iter()
                 .any(|reach| reach.beyond.abs() <= TIGHT * self.size.at(right, reach.w))
@@ -117,8 +117,8 @@ impl FeasibleDurations {
             }
             left = Some((right, reaches));
         }
-        // After the last break, both sides cruise. They reach the target if they have not passed
-        // it.
+        // After the last break, both extremal motions cruise. They reach the target if they have
+        // not passed it yet.
         let mut latest = 0.0_f64;
         if let Some((last, reaches)) = left {
             latest = last;
@@ -142,7 +142,7 @@ impl FeasibleDurations {
     }
 }
 
-/// Returns the duration between two others at which the end of the extremal motion crosses the
+/// Returns the duration, between two durations, at which the end of the extremal motion crosses the
 /// target.
 fn crossing(
     side: &ExtremalProblem,
@@ -158,7 +158,7 @@ fn crossing(
     })
 }
 
-/// Magnitude relative to which the distance between a motion's end and the target is rounded.
+/// Magnitude that determines the rounding of the distance between a motion's end and the target.
 #[derive(Debug, Clone, Copy)]
 struct Size {
     fixed: f64,
@@ -182,19 +182,19 @@ impl Size {
     }
 }
 
-/// Share of the drift of a chain of plans by which a duration may differ from a feasible duration.
-/// With the whole drift, two of ten million plans had a relative landing error above 1e-12, just
-/// after the beginning of blocked durations. With a quarter of the drift, one of ten million plans
-/// that were renewed in each cycle made a detour.
+/// Share of the drift by which a duration may differ from a feasible duration. If the share was 1,
+/// two of ten million plans had a relative error above 1e-12 at the target, just after the
+/// beginning of blocked durations. If it was a quarter, one of ten million plans that were renewed
+/// in each cycle made a detour.
 const NEAR: f64 = 0.5;
 
 /// Largest number of breaks: four of the velocity, and six turning points of each side.
 const BREAKS: usize = 16;
 
 /// Largest number of candidates found. Each break may be a candidate. Between two breaks, and after
-/// the last break, each side may cross once.
+/// the last break, the end of each extremal motion may cross the target once.
 const FOUND: usize = 48;
 
-/// Largest number of candidates kept. Feasible durations form at most three intervals; the
-/// remaining places are for ends that are found twice because of rounding.
+/// Largest number of candidates kept. Feasible durations form at most three intervals. The other
+/// entries are for ends that are found twice because of rounding.
 pub(crate) const CANDIDATES: usize = 8;

@@ -1,4 +1,4 @@
-//! The generator: a plan, and the current cycle of the plan.
+//! The generator, which consists of a plan and the current cycle of the plan.
 
 use crate::axis::can_stop;
 use crate::cycle::CYCLE;
@@ -18,8 +18,8 @@ use crate::state::{AxisState, State, check_finite};
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
 ///   [`is_done`](Self::is_done).
 ///
-/// All methods take bounded time without allocation, so they suit the real-time thread. After an
-/// error the generator is unchanged.
+/// All methods take bounded time and do not allocate, so a real-time thread may call them. After an
+/// error, the generator is unchanged.
 ///
 /// ```
 /// use franka_otg::{Generator, Limits, State};
@@ -45,7 +45,7 @@ pub struct Generator<const N: usize> {
     state: State<N>,
 }
 
-/// The end of the plan.
+/// The destination of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Heading<const N: usize> {
     /// The target state.
@@ -55,22 +55,22 @@ enum Heading<const N: usize> {
 }
 
 impl<const N: usize> Generator<N> {
-    /// Creates a generator at `state` without a target. If the state moves, the generator stops in
+    /// Creates a generator at `state` without a target. If the state is in motion, the axes stop in
     /// the least time.
     ///
     /// The synchronisation is [`Synchronisation::Straight`].
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] for the state. [`PlanError::OutOfRange`] if state and limits differ
-    /// by more than 100 decades.
+    /// Returns [`PlanError::NotFinite`] if a value of the state is not finite, and
+    /// [`PlanError::OutOfRange`] if the state and the limits differ by more than 100 decades.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         Self::towards(state, limits, None)
     }
 
-    /// Like [`new`](Self::new), with an optional target at rest.
+    /// Creates a generator at `state` with an optional target at rest.
     ///
     /// # Errors
-    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target).
+    /// Returns the same errors as [`new`](Self::new) and [`set_target`](Self::set_target).
     pub fn towards(
         state: State<N>,
         limits: Limits<N>,
@@ -88,13 +88,13 @@ impl<const N: usize> Generator<N> {
         Ok(generator)
     }
 
-    /// Replaces state, limits and target. The new motion leads to rest at `target`, or without a
-    /// target to rest in the least time. This is equivalent to a new generator, but works in place,
-    /// because a generator has some kilobytes.
+    /// Replaces the state, the limits and the target. The new motion ends at rest at `target`;
+    /// without a target, it stops in the least time. This method is equivalent to a new generator,
+    /// but needs no copy of the generator, whose size is a few kilobytes.
     ///
     /// # Errors
-    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target). After an error, the
-    /// current motion continues.
+    /// Returns the same errors as [`new`](Self::new) and [`set_target`](Self::set_target). After an
+    /// error, the current motion continues.
     pub fn restart(
         &mut self,
         state: State<N>,
@@ -135,19 +135,19 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Sets the synchronisation of the axes, from the next plan on.
+    /// Sets the synchronisation of the axes for the next plan and all later plans.
     #[must_use]
     pub fn with_synchronisation(mut self, synchronisation: Synchronisation) -> Self {
         self.synchronisation = synchronisation;
         self
     }
 
-    /// Moves from the current state to rest at `target`. A call with the current target does not
-    /// create a new plan.
+    /// Moves from the current state to rest at `target`. A call with the current target has no
+    /// effect.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. After an error, the current motion
-    /// continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. After an error, the current motion continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
             && now.position == *target
@@ -159,23 +159,23 @@ impl<const N: usize> Generator<N> {
         self.plan_target(&State::at_rest(*target))
     }
 
-    /// Moves to `target` and arrives with its velocity and acceleration, in the least time that is
-    /// feasible for all axes. A call with the current target does not create a new plan.
+    /// Moves to `target` and arrives with the target's velocity and acceleration, in the least time
+    /// that is feasible for all axes. A call with the current target has no effect.
     ///
-    /// Use this to follow an object in motion, with a new target before each arrival, or to pass
-    /// through points with a velocity. Without a new target, the motion continues for one cycle
-    /// past the old target, and then stops in the least time. Therefore an arm does not keep moving
-    /// if the program stalls.
+    /// Use this method to follow a moving object, with a new target before each arrival, or to pass
+    /// through points without a stop. If no new target is set, the motion continues for one cycle
+    /// past the old target and then stops in the least time, so an arm does not keep moving if the
+    /// program stalls.
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
     /// be early cannot wait at a moving target. It moves back and approaches again, possibly after
     /// it has passed the target, and the other axes wait for it.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. [`PlanError::TargetMotion`] if the
-    /// limits do not allow the target's motion. This is the case if `|velocity| + acceleration^2 /
-    /// (2 jerk limit)` exceeds the velocity limit, or the acceleration exceeds its limit. The
-    /// current motion continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. Returns [`PlanError::TargetMotion`] if `|velocity| +
+    /// acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or if the acceleration exceeds
+    /// its limit. After an error, the current motion continues.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
@@ -189,14 +189,16 @@ impl<const N: usize> Generator<N> {
         self.plan_target(target)
     }
 
-    /// Changes the limits of the current motion, which keeps its target. Limits equal to the
-    /// current limits change nothing.
+    /// Changes the limits of the current motion, which keeps its target. A call with the current
+    /// limits has no effect.
     ///
-    /// A state outside the new limits brakes back into them.
+    /// If the current state is outside the new limits, the axes brake until they are within the
+    /// limits.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than
-    /// the new limits allow. After an error, the previous limits stay in force.
+    /// Returns [`PlanError::OutOfRange`] if the magnitudes differ too much, and
+    /// [`PlanError::TargetMotion`] if the target moves faster than the new limits allow. After an
+    /// error, the previous limits still apply.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -216,24 +218,26 @@ impl<const N: usize> Generator<N> {
 
     /// Drops the target and stops in the least time.
     ///
-    /// On a straight line, the stop stays on the line. If all axes have the same ratio of
-    /// acceleration to jerk, this takes no longer than separate stops. Otherwise it takes longer by
-    /// about the difference of these ratios. If the motion is not on a line, each axis stops
-    /// separately. Braking cannot fail, because state and limits were checked when they were set.
+    /// A motion on a straight line stops on this line. If all axes have the same ratio of
+    /// acceleration limit to jerk limit, such a stop takes no longer than separate stops. Otherwise
+    /// it takes longer by about the difference between these ratios. If the motion is not on a
+    /// line, each axis stops separately. This method cannot fail, because the state and the limits
+    /// were checked when they were set.
     pub fn brake(&mut self) {
         if self.heading != Heading::Rest {
             self.plan_stop();
         }
     }
 
-    /// Multiplies the velocity by `share`, from 0 to 1, and creates a new plan to the target, or to
-    /// rest without a target. A motion on a straight line stays on it.
+    /// Multiplies the velocity by `share`, from 0 to 1, and creates a new plan to the target, or a
+    /// stop if no target is set. A motion on a straight line stays on this line.
     ///
     /// The velocity of the output jumps, so the caller must ensure that `share` is close to 1.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]. After an error, the current motion
-    /// continues.
+    /// Returns [`PlanError::OutOfRange`] if the magnitudes differ too much, and
+    /// [`PlanError::TargetMotion`] if the limits do not allow the target's motion. After an error,
+    /// the current motion continues.
     pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         let state = State {
             velocity: self.state.velocity.map(|velocity| share * velocity),
@@ -257,15 +261,15 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Sets the current state to `state` and creates a new plan from it: to the target, or without
-    /// a target to rest in the least time.
+    /// Sets the current state to `state`, and creates a new plan from there to the target, or a
+    /// least-time stop if no target is set.
     ///
     /// The output jumps to `state`, so the caller must ensure that `state` is close to the last
     /// output.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]. After an error, the current motion
-    /// continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. After an error, the current motion continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
     }
@@ -273,7 +277,7 @@ impl<const N: usize> Generator<N> {
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
     /// The cycle in which the motion ends, and all later cycles, return exactly the target with
-    /// zero velocity and acceleration. For a moving target they return the position behind the
+    /// zero velocity and acceleration. For a moving target, they return the position beyond the
     /// target at which the motion stops.
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
@@ -281,8 +285,8 @@ impl<const N: usize> Generator<N> {
         &self.state
     }
 
-    /// Returns the state `t` seconds from now if target and limits do not change. A negative `t`
-    /// means now.
+    /// Returns the state `t` seconds from now if the target and the limits do not change. If `t` is
+    /// negative, returns the current state.
     #[must_use]
     pub fn sample(&self, t: f64) -> State<N> {
         if t > 0.0 {
@@ -292,13 +296,14 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// The current state.
+    /// Returns the current state.
     #[must_use]
     pub const fn state(&self) -> &State<N> {
         &self.state
     }
 
-    /// Position of the target. Without a target, the position at which braking ends.
+    /// Returns the position of the target. Without a target, this is the position at which the stop
+    /// ends.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
         match &self.heading {
@@ -307,27 +312,27 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Position at which the current motion stops if target and limits do not change: the target, a
-    /// position behind a moving target, or the end of braking.
+    /// Returns the position at which the current motion stops if the target and the limits do not
+    /// change: the target, a position beyond a moving target, or the end of the stop.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
     }
 
-    /// The limits in force.
+    /// Returns the current limits.
     #[must_use]
     pub const fn limits(&self) -> &Limits<N> {
         &self.limits
     }
 
-    /// Duration of the current motion from the creation of its plan, in seconds.
+    /// Returns the duration of the current motion from the creation of its plan, in seconds.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.plan.duration()
     }
 
-    /// Time in seconds until the motion is at the target, or without a target until rest; zero
-    /// afterwards.
+    /// Returns the time in seconds until the motion is at the target, or until rest if no target is
+    /// set. The time is zero afterwards.
     #[must_use]
     pub fn time_to_target(&self) -> f64 {
         if self.is_done() {
@@ -337,8 +342,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Time until rest, in seconds; zero at rest. The output is at rest from the first whole cycle
-    /// after this time.
+    /// Returns the time until rest, in seconds, or zero at rest. The first whole cycle after this
+    /// time returns a state at rest.
     #[must_use]
     pub fn remaining(&self) -> f64 {
         if self.is_done() {
@@ -382,7 +387,8 @@ impl<const N: usize> Generator<N> {
     }
 }
 
-/// Refuses a state if state and limits differ by too many orders of magnitude to plan a stop.
+/// Returns an error if the state and the limits differ by too many orders of magnitude to plan a
+/// stop.
 fn check_range<const N: usize>(state: &State<N>, limits: &Limits<N>) -> Result<(), PlanError> {
     match (0..N).find(|&i| !can_stop(state.axis(i), limits.axis(i))) {
         Some(index) => Err(PlanError::OutOfRange { axis: index + 1 }),

@@ -1,28 +1,29 @@
-//! Step two: a profile of exactly a given duration. This duration is at least the least duration.
+//! Step two: a profile with exactly a given duration, which is not below the least duration.
 //!
 //! For targets at rest, two families with one parameter each are enough.
 //!
-//! **Velocity cap.** The motion is a transfer to a velocity `w`, a cruise and a stop. Without the
-//! cruise, the equations of time and distance give one equation, which needs no division by `w`. In
-//! the upward case, `w` is at or above the velocity that remains when the acceleration is ramped to
-//! zero. With `c, pi` the start extended to zero acceleration as in step one and `A(d)` the area of
-//! [`stop_distance`](crate::transfer::stop_distance), the equation is
+//! **Velocity cap.** The motion is a transfer to a velocity `w`, a cruise and a stop. Eliminating
+//! the cruise from the equations of time and distance leaves one equation for `w`, without a
+//! division by `w`. Let `c, pi` be the start, extended to zero acceleration as in step one, and let
+//! `A(d)` be the area of [`stop_distance`](crate::transfer::stop_distance). In the upward case, `w`
+//! is at or above the velocity that remains when the acceleration is ramped to zero. The equation
+//! is then
 //!
 //! ```text
 //! g(w) = A(w - c) + A(w) - (T + a) w + d - pi = 0
 //! ```
 //!
-//! and in the downward case `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative
-//! first jerk. `g` is convex or monotone as long as the cruise is not negative. If both transfers
-//! hold their acceleration, the equation is quadratic or linear. The cruise follows from the time
-//! equation. So the duration is exact, and rounding affects the position, where its effect is
-//! smallest.
+//! In the downward case, it is `A(w) - A(c - w) - (T - a) w + d - pi = 0`, where `c, pi` belong to
+//! a negative first jerk. `g` is convex or monotone as long as the cruise is not negative. If both
+//! transfers hold their acceleration, the equation is quadratic or linear. The cruise follows from
+//! the equation of time. Therefore the duration is exact, and rounding affects only the position,
+//! where its effect is smallest.
 //!
-//! **Stop, then go.** This applies if no cruise fits: see [`crate::stop_then_go`].
+//! **Stop, then go.** This family applies if no cruise fits; see [`crate::stop_then_go`].
 //!
-//! Two other methods are not suitable. Slowing down time, by one factor for the whole profile,
-//! would change the velocity at the start. Lowering all three limits together makes the duration
-//! discontinuous where the start is no longer inside them.
+//! Two other methods are not suitable. Scaling the time of the whole profile would change the
+//! velocity at the start. Lowering all three limits together makes the duration discontinuous where
+//! the start leaves the limits.
 
 use crate::least_time::LeastTime;
 use crate::scalar::sqrt;
@@ -43,7 +44,7 @@ pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     }
 }
 
-/// Returns transfer, cruise and stop; `None` if no cruise fits.
+/// Returns a transfer, a cruise and a stop, or `None` if no cruise fits.
 fn velocity_cap(task: &Task, peak: f64, duration: f64) -> Option<Shape> {
     let coasting = task.coasting_velocity();
     let low = coasting.max(0.0);
@@ -79,8 +80,8 @@ impl Cap {
         }
     }
 
-    /// Returns the distance that is still missing after `time` with cruise velocity `w`, and its
-    /// derivative.
+    /// Returns the distance that is still missing after `time` with cruise velocity `w`, and the
+    /// derivative of this distance.
     fn excess(&self, w: f64) -> (f64, f64) {
         let (first, first_slope) = stop_distance_and_slope((self.sign * (w - self.c)).max(0.0));
         let (second, second_slope) = stop_distance_and_slope(w);
@@ -126,8 +127,8 @@ impl Cap {
         w
     }
 
-    /// Returns the root if both transfers hold their acceleration. The equation is quadratic in the
-    /// upward case and linear in the downward case.
+    /// Returns the root for the case that both transfers hold their acceleration. The equation is
+    /// quadratic in the upward case and linear in the downward case.
     fn with_holds(&self) -> f64 {
         let c = self.c;
         if self.sign > 0.0 {
@@ -139,7 +140,7 @@ impl Cap {
         }
     }
 
-    /// Returns the profile with cruise velocity `w`; `None` if its cruise would be negative.
+    /// Returns the profile with cruise velocity `w`, or `None` if its cruise would be negative.
     fn shape(&self, a: f64, w: f64) -> Option<Shape> {
         let first = (self.sign * (w - self.c)).max(0.0);
         let cruise = self.time - transfer_time(first) - transfer_time(w);
@@ -159,7 +160,7 @@ impl Cap {
     }
 }
 
-/// Bound of the search. Bisection alone needs about 53 steps.
+/// Largest number of steps of the search. Bisection alone needs about 53 steps.
 const MAX_STEPS: usize = 60;
 
 #[cfg(test)]
@@ -186,8 +187,8 @@ mod tests {
         for (i, (jerk, t)) in before.iter().chain(segments).enumerate() {
             assert!(t >= 0.0);
             if i == cruise && t > 0.0 {
-                // As in profiles, a remaining rounding error would grow with the square of the
-                // cruise.
+                // As in profiles, a rounding error that remains would grow with the square of the
+                // cruise's duration.
                 left.v = sign * shape.cruise;
                 left.a = 0.0;
             }
@@ -236,7 +237,8 @@ mod tests {
             let solution = stretched(&least, duration);
             let (lasts, left, a, v, beyond) = follow(&least.task, &solution);
             let size = task.d.abs() + task.top * duration;
-            // Near a stop point, the rounding of a position costs its square root in time.
+            // Near a stop point, a rounding error of the position changes the time by its square
+            // root.
             let rounding = f64::EPSILON * size;
             let slack = 1e-13 * duration + 2.0 * rounding.sqrt();
             let waits = duration - lasts;

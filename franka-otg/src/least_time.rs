@@ -1,13 +1,13 @@
 //! Step one: the least-time profile of one axis.
 //!
-//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` is an
-//! interval that grows with `T`. The optimum is therefore "push in one direction, then stop". The
-//! direction is that from the end of an immediate stop to the target. A target inside the braking
+//! The axis may wait at rest, so the positions at which it can rest at time `T` form an interval
+//! that grows with `T`. The fastest motion is therefore "push in one direction, then stop". The
+//! push points from the end of an immediate stop to the target. A target inside the braking
 //! distance needs no special case.
 //!
-//! In the frame in which the push is upwards, the jerks are `+ 0 - 0 - 0 +` (seven durations).
-//! Extending the first jerk to the instant with zero acceleration turns the start `(v, a)` into
-//! `(c, 0)` with
+//! In the frame in which the push is upwards, the jerks are `+ 0 - 0 - 0 +` (seven durations). The
+//! first jerk, extended to the instant with zero acceleration, moves the start `(v, a)` to `(c, 0)`
+//! with
 //!
 //! ```text
 //! c = v - a^2/2      at      pi = a (a^2/3 - v)
@@ -16,17 +16,17 @@
 //! Let `x` be the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the
 //! velocity between the two halves. The motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`,
 //! which grows with `w`. A comparison of the target with this value at the breakpoints determines
-//! the case. A cruise and an acceleration hold have closed forms. Without either, the monotone and
-//! convex equation
+//! the case. The cases with a cruise or an acceleration hold have closed forms. In the remaining
+//! case, Newton steps solve the monotone and convex equation
 //!
 //! ```text
 //! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
 //! ```
 //!
-//! is solved by Newton steps from the right, which cannot leave the interval. `x` is negative if
-//! the axis already brakes and only needs to brake less. A search over peak velocities does not
-//! find this profile; its result takes up to 28 % longer. The usual method tries all families and
-//! tests each result. It fails on the common boundaries of the families because of rounding.
+//! from the right, so they cannot leave the interval. `x` is negative if the axis already brakes
+//! and only needs to brake less. A search over peak velocities misses this profile, and its result
+//! takes up to 28 % longer. The usual method computes all families of profiles and tests each
+//! result. Because of rounding, that method fails where two families meet.
 
 use crate::scalar::{cbrt, sqrt};
 use crate::shape::Shape;
@@ -52,7 +52,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
     let (stop, rounding) = task.stop_point();
     let fuzz = task.fuzz + if task.fuzz > 0.0 { rounding } else { 0.0 };
     let (sign, mut task, is_stop) = if (task.d - stop).abs() <= fuzz {
-        // Removing the last rounding error would cost its square root in time.
+        // A motion that removes the last rounding error would take a time of its square root.
         let sign = 1_f64.copysign(task.coasting_velocity());
         let stopping = Task { d: stop, ..task };
         (sign, stopping.mirrored(sign), true)
@@ -116,8 +116,8 @@ impl ExtendedStart {
     }
 
     /// Returns the shape whose first transfer holds its acceleration. The distance contains the
-    /// areas of both transfers. While the second transfer does not reach the acceleration limit,
-    /// the distance is a perfect square in `sqrt(w)`. Above, it is quadratic in `w`.
+    /// areas of both transfers. It is a perfect square in `sqrt(w)` if the second transfer does not
+    /// reach the acceleration limit. Otherwise it is quadratic in `w`.
     fn with_hold(&self, d: f64) -> Shape {
         let Self { a, c, pi, .. } = *self;
         let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
@@ -133,14 +133,15 @@ impl ExtendedStart {
         Shape::two_transfers(a, up, (w, 0.0), down)
     }
 
-    /// Returns the profile without cruise and first hold whose acceleration turns at `x`.
+    /// Returns the profile whose acceleration turns at `x`, without a cruise and without a first
+    /// hold.
     fn turning_at(&self, x: f64) -> Shape {
         let w = (self.c + x * x).max(0.0);
         Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
     }
 
-    /// Returns the smallest acceleration at which the motion may turn. It belongs to an immediate
-    /// stop.
+    /// Returns the smallest acceleration at which the motion may turn, which is the value of an
+    /// immediate stop.
     fn least_ramp(&self) -> f64 {
         if self.c < 0.0 {
             self.a.max(sqrt(-self.c))
@@ -172,8 +173,8 @@ impl ExtendedStart {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Upper bounds: the tangent at the left end, because F is convex; and from F' >= 6 x^2 for
-        // c >= 0, F' >= x^2 otherwise.
+        // Two upper bounds of the root: one from the tangent at the left end, because F is convex,
+        // and one from F' >= 6 x^2 for c >= 0, or F' >= x^2 otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;
@@ -192,7 +193,7 @@ impl ExtendedStart {
         for _ in 0..MAX_NEWTON {
             let (value, slope) = self.end(x);
             let step = (value - d) / slope;
-            // From the right, all steps lead down, until rounding reverses a step.
+            // Steps from the right reduce x, until rounding reverses a step.
             if step > 2.0 * f64::EPSILON * x.abs() {
                 x = (x - step).max(least);
             } else {
@@ -204,5 +205,5 @@ impl ExtendedStart {
 }
 
 /// Largest number of Newton steps of a convex search. Three to five steps are usual. Near a double
-/// root, each step only halves the remainder.
+/// root, each step only halves the error.
 const MAX_NEWTON: usize = 60;

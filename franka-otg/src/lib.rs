@@ -1,10 +1,10 @@
 //! Jerk-limited online trajectory generation for any machine with axes.
 //!
-//! [`Generator`] moves `N` axes from any state to a target inside limits of velocity, acceleration
-//! and jerk, in the least time in which all axes arrive together. Targets are at rest or in motion.
-//! Target and limits may change in any cycle. The generator creates a plan when one of them
-//! changes, and then follows this plan. Planning in every cycle would add a rounding error per
-//! cycle, whereas a plan that is kept ends exactly at the target.
+//! [`Generator`] moves `N` axes from any state to a target, within limits of velocity, acceleration
+//! and jerk. All axes arrive together, in the least possible time. A target may be at rest or in
+//! motion. The target and the limits may change in any cycle. The generator creates a new plan only
+//! when one of them changes. A new plan in every cycle would add a rounding error per cycle,
+//! whereas a plan that does not change ends exactly at the target.
 //!
 //! ```text
 //! state, target, limits -> plan          a straight line if the motion so far allows one, else each axis on its own
@@ -33,9 +33,9 @@
 //! # Ok::<(), franka_otg::PlanError>(())
 //! ```
 //!
-//! `cargo run --release -p franka-otg --example plot` draws a stepped, bursty and stalling target
-//! and the smooth command (the picture in the book's page on the generator). `cargo bench -p
-//! franka-otg` measures a new target for axes in motion.
+//! `cargo run --release -p franka-otg --example plot` draws an irregular target and the smooth
+//! command (the picture on the book's page on the generator). `cargo bench -p franka-otg` measures
+//! how long the plan to a new target takes.
 //!
 //! # Modules
 //!
@@ -58,34 +58,36 @@
 //!
 //! # Targets at rest
 //!
-//! An axis may wait at rest, so the positions at which it can rest at time `T` form an interval
-//! that only grows with `T`. This has three consequences. Every duration from the least duration on
-//! is feasible, so the common duration is the longest of the axes' least durations. The optimum is
-//! "push at the limits, then stop", in the direction from the end of an immediate stop to the
-//! target. The end of the motion is a monotone function of the duration of the push. So a
-//! comparison of the target with the breakpoints determines the case: a closed form or one short
-//! convex search (`least_time`).
+//! An axis may wait at rest. The positions at which it can rest at time `T` therefore form an
+//! interval that only grows with `T`. This has three consequences. First, every duration above the
+//! least duration is feasible, so the common duration is the longest of the axes' least durations.
+//! Second, the fastest motion is "push at the limits, then stop", in the direction from the end of
+//! an immediate stop to the target. Third, the end of the motion is a monotone function of the
+//! duration of the push. A comparison of the target with a few breakpoints therefore selects either
+//! a closed form or one short convex search (`least_time`).
 //!
 //! # Targets in motion
 //!
-//! At a target in motion an axis cannot wait, and *blocked* durations may exist between feasible
-//! durations. For one duration, however, the reachable positions are still an interval. The ends of
-//! this interval have closed forms, and the mean of two admissible motions is admissible. So two
-//! evaluations decide whether a duration is feasible, and a profile for it is a weighted mean. One
-//! short search per axis finds the beginnings of the feasible durations (`moving_target`).
+//! An axis cannot wait at a target in motion, so infeasible (*blocked*) durations may exist between
+//! feasible durations. For one duration, however, the reachable positions still form an interval.
+//! The ends of this interval have closed forms, so two evaluations show if a duration is feasible.
+//! The mean of two admissible motions is admissible, so each feasible duration has a weighted mean
+//! as its profile. One short search per axis finds where the feasible durations begin
+//! (`moving_target`).
 //!
 //! # Guarantees
 //!
-//! - Velocity, acceleration and jerk keep their limits within rounding, from every state that can
-//!   stay inside them. The generator brings other states back inside under the jerk limit, as early
-//!   as possible. It never clamps the state (`brake`).
-//! - All axes are at the target at the same time, within rounding. A longer duration of another
-//!   axis never causes an axis to overshoot a target at rest, if the axis can reach the target
-//!   without overshoot. The one exception is an axis whose stop ends exactly at its target. It
-//!   cannot arrive later without overshooting, so it waits at the target (`stop_then_go`).
-//! - From rest, and while new targets stay on the line, the path is straight (`straight_line`).
-//! - No allocation and no panic, for all finite inputs; input that is out of range for `f64` is an
-//!   error.
+//! - Velocity, acceleration and jerk stay within their limits, except for rounding, if the start
+//!   state can stay within them. The generator brings other states back inside under the jerk
+//!   limit, as early as possible. It never clamps the state (`brake`).
+//! - All axes are at the target at the same time, within rounding. If an axis can reach a target at
+//!   rest without overshoot, it does not overshoot when it waits for slower axes. One case is
+//!   special: an axis whose stop ends exactly at its target cannot arrive later without overshoot,
+//!   so it arrives early and waits there (`stop_then_go`).
+//! - The path is straight if the motion starts at rest, and stays straight while new targets are on
+//!   the same line (`straight_line`).
+//! - The generator does not allocate or panic for finite inputs. It returns an error for inputs
+//!   that are out of range for `f64`.
 //!
 //! # What it does not do
 //!
@@ -93,15 +95,15 @@
 //!   responsibility.
 //! - It reads no clock: [`Generator::step`] advances by [`CYCLE`], one millisecond. A machine with
 //!   another cycle calls [`Generator::sample`].
-//! - Limits are symmetric and apply to each axis separately; a limit of a norm is the caller's
-//!   responsibility.
+//! - Limits are symmetric and apply to each axis separately. The caller is responsible for a limit
+//!   on a norm.
 //! - It plans to one target at a time. For a path through waypoints the caller sets a sequence of
 //!   targets.
 //!
 //! # Termination
 //!
 //! No function calls itself, directly or through others: the modules call each other in the order
-//! of the diagram. So the work is bounded if each loop is bounded. Each loop has a bound:
+//! of the diagram. The work is therefore bounded, because each loop has a bound:
 //!
 //! | loop | passes at most |
 //! |---|---|
@@ -116,20 +118,20 @@
 //! | `profile`, segments laid out, merged or skipped | 20, 40, 20 |
 //!
 //! Each search counts its passes, so it ends regardless of rounding, infinities or NaN. Accuracy is
-//! a separate question. The bracketed searches fall back to bisection, which halves the bracket in
-//! each step and has at most 53 bits to halve. On a grid over states, targets and limits, including
-//! flat and double roots, `root` never takes 80 % of its passes (`tests/bounds.rs`). Newton steps
-//! may take all their passes at a double root, where each step halves the remainder.
+//! a separate question. The bracketed searches fall back to bisection, which resolves one of at
+//! most 53 bits in each step. On a grid over states, targets and limits, including flat and double
+//! roots, `root` always needs less than 80 % of its passes (`tests/bounds.rs`). At a double root,
+//! Newton's method may use all of its passes, because each step only halves the error.
 //!
 //! # Sources
 //!
-//! The problem, its time-optimal profiles and the two steps: L. Berscheid, T. Kröger, *Jerk-limited
-//! Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021, arXiv:2105.04830; T.
-//! Kröger, F. Wahl, *Online Trajectory Generation: Basic Concepts for Instantaneous Reactions to
-//! Unforeseen Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer, H. Ritter, *On-Line
-//! Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision by breakpoints and
-//! the two families of step two are derived in these files. The tests compare them with plain
-//! bisection, and with vectors computed by Ruckig 0.19.4.
+//! The problem, its time-optimal profiles and the two steps come from L. Berscheid, T. Kröger,
+//! *Jerk-limited Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021,
+//! arXiv:2105.04830; T. Kröger, F. Wahl, *Online Trajectory Generation: Basic Concepts for
+//! Instantaneous Reactions to Unforeseen Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer,
+//! H. Ritter, *On-Line Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. These files
+//! derive the case decision with breakpoints, and the two families of profiles in step two. The
+//! tests compare the results with plain bisection, and with vectors from Ruckig 0.19.4.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]

@@ -33,7 +33,7 @@ impl AxisLimits {
     }
 }
 
-/// Checked limits of `N` axes: positive and finite.
+/// Limits of `N` axes, which have been checked to be positive and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<const N: usize>([AxisLimits; N]);
 
@@ -41,7 +41,7 @@ impl<const N: usize> Limits<N> {
     /// Creates limits from one entry per axis.
     ///
     /// # Errors
-    /// [`PlanError::Limit`] for a limit that is not a positive finite number.
+    /// Returns [`PlanError::Limit`] if a limit is not a positive finite number.
     pub fn per_axis(limits: [AxisLimits; N]) -> Result<Self, PlanError> {
         for (axis, limit) in (1..).zip(&limits) {
             limit.check(axis)?;
@@ -52,7 +52,7 @@ impl<const N: usize> Limits<N> {
     /// Creates limits from one array per quantity, as in data sheets.
     ///
     /// # Errors
-    /// [`PlanError::Limit`] for a limit that is not a positive finite number.
+    /// Returns [`PlanError::Limit`] if a limit is not a positive finite number.
     pub fn from_arrays(
         velocity: [f64; N],
         acceleration: [f64; N],
@@ -68,14 +68,14 @@ impl<const N: usize> Limits<N> {
     /// Returns the limits of one axis.
     ///
     /// # Panics
-    /// If the axis does not exist.
+    /// Panics if the axis does not exist.
     #[must_use]
     pub const fn axis(&self, axis: usize) -> AxisLimits {
         self.0[axis]
     }
 
-    /// Returns limits of the parameter `s` of a straight line `origin + s * direction` that keep
-    /// every axis inside its own limits.
+    /// Returns limits for the parameter `s` of a straight line `origin + s * direction`. They keep
+    /// every axis within its own limits.
     ///
     /// A zero component does not limit `s`, so its bound is infinite.
     pub(crate) fn along(&self, direction: &[f64; N]) -> AxisLimits {

@@ -1,26 +1,28 @@
 //! Targets in motion: the feasible durations, and a profile for each.
 //!
-//! At a target with a velocity an axis cannot wait. An axis that would be early must move back and
-//! approach again. So infeasible (*blocked*) durations may exist between feasible durations. For
-//! one duration the reachable positions are still an interval, because the dynamics are linear and
-//! the limits convex. The extremal motions up and down give the ends of the interval, in closed
-//! form (`extremal_profile`). Therefore:
+//! An axis cannot wait at a target that moves. An axis that would be early must move back and
+//! approach again, so infeasible (*blocked*) durations may exist between feasible durations. For
+//! one duration, the reachable positions still form an interval, because the dynamics are linear
+//! and the limits convex. The ends of the interval are the ends of the extremal motions up and
+//! down, in closed form (`extremal_profile`). Therefore:
 //!
-//! - a duration is feasible if its interval contains the target, which takes two evaluations;
-//! - the ends of the interval pass the target only a few times, and between these durations
-//!   feasibility does not change. Each end is monotone between its turning points, which have
-//!   closed forms too. So one bracketed search per piece finds the least duration and the ends of
+//! - two evaluations show if the interval of a duration contains the target, and the duration is
+//!   feasible if it does;
+//! - as the duration grows, the ends of the interval pass the target only a few times, and only
+//!   there can feasibility change. Each end is monotone between its turning points, which also have
+//!   closed forms. One bracketed search per monotone piece finds the least duration and the ends of
 //!   the blocked intervals (`feasible_durations`);
 //! - each feasible duration has a profile: the mean of the two extremal motions, weighted so that
-//!   it ends at the target. A mean of motions inside convex limits is inside these limits, so such
-//!   a profile always exists. If a motion through a constant velocity fits, it is the better
-//!   profile ([`Plateau`]).
+//!   it ends at the target. A mean of motions within convex limits is also within these limits, so
+//!   such a profile always exists. If a motion through a constant velocity fits, that motion is
+//!   used instead ([`Plateau`]).
 //!
-//! The velocity of the target must be reachable as well. This is the same problem one derivative
-//! lower. If the target accelerates, it has a separate blocked interval (`velocity_change`).
+//! The velocity of the target must also be reachable. This is the same problem, with velocity and
+//! acceleration in place of position and velocity. If the target accelerates, this problem may have
+//! its own blocked interval (`velocity_change`).
 //!
-//! The usual solution searches for all profiles that fit. It solves quartic and sixth-order
-//! equations in eleven families per direction, half of which fail by rounding where two families
+//! The usual solution computes all profiles that fit. It solves quartic and sixth-order equations
+//! in eleven families per direction. Half of these fail because of rounding where two families
 //! meet.
 
 use crate::feasible_durations::{Candidates, FeasibleDurations};
@@ -30,8 +32,8 @@ use crate::task::Task;
 
 /// One axis and a target that moves, in units of the axis.
 ///
-/// The struct does not store quantities that follow from the task in a few operations. Each axis of
-/// a plan contains this struct, although most axes of most plans move to rest.
+/// The struct does not store quantities that a few operations can compute from the task. Each axis
+/// of a plan contains this struct, even if the axis moves to rest, so it should be small.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovingTarget {
     task: Task,
@@ -43,7 +45,7 @@ pub(crate) struct MovingTarget {
 /// The motion for one duration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Solution {
-    /// One shape in a direction, 1 or -1.
+    /// One shape and its direction, 1 or -1.
     Shape(f64, Shape),
     /// The mean of two shapes.
     Mean {
@@ -78,7 +80,7 @@ impl MovingTarget {
         self.candidates.iter().next().unwrap_or(0.0)
     }
 
-    /// Returns the least feasible duration that is at least `t`, within rounding.
+    /// Returns the smallest feasible duration that is not below `t`, within rounding.
     pub(crate) fn from(&self, t: f64) -> f64 {
         if self.can_take(t) {
             return t;
@@ -150,8 +152,8 @@ mod tests {
     proptest! {
         #![proptest_config(cases(3000))]
 
-        /// Rest is also a motion. The other solution, which shares no equation with this one, must
-        /// give the same duration.
+        /// A target at rest is a special case of a target in motion. The solution for targets at
+        /// rest shares no equation with this solution, and must yield the same duration.
         #[test]
         fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
             exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),
@@ -169,8 +171,8 @@ mod tests {
 
     #[test]
     fn early_axis_at_a_moving_target_has_blocked_durations() {
-        // The axis has the target's velocity, slightly short of the target. To arrive later, it
-        // must first move back.
+        // The axis has the target's velocity and is slightly short of the target. To arrive later,
+        // it must first move back.
         let task = Task {
             d: 1e-3,
             v: 0.5,

@@ -11,11 +11,11 @@ use crate::straight_line::StraightLine;
 /// Synchronisation of the axes in a motion to a target. All axes always arrive at the same instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
-    /// The axes move in phase, on a straight line, if the current motion allows it. From rest this
-    /// is always possible. Otherwise, as [`Time`](Self::Time).
+    /// The axes move in phase on a straight line if the current motion allows it, which is always
+    /// the case from rest. Otherwise the axes move as with [`Time`](Self::Time).
     #[default]
     Straight,
-    /// The axes only arrive together, as early as the slowest axis can, on a curved path.
+    /// The axes move on a curved path, and arrive as early as the slowest axis can.
     Time,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Plan<const N: usize> {
     axes: [Profile; N],
     /// Time at which the axes are at the target, in seconds from the start.
     arrival: f64,
-    /// Position of rest: the target, or a position behind a moving target.
+    /// Position of rest: the target, or a position beyond a moving target.
     end: [f64; N],
     duration: f64,
 }
@@ -38,7 +38,7 @@ pub(crate) struct Plan<const N: usize> {
 enum Path<const N: usize> {
     /// The axes move separately.
     PerAxis,
-    /// On a straight line.
+    /// The axes move on a straight line.
     Straight(StraightLine<N>),
 }
 
@@ -63,11 +63,12 @@ impl<const N: usize> Plan<N> {
         }
     }
 
-    /// Replaces the plan with the motion to `target`. For a moving target, the plan continues to
-    /// rest behind it.
+    /// Replaces the plan with the motion to `target`. For a moving target, the plan continues and
+    /// ends at rest beyond the target.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]. The plan is then unchanged.
+    /// Returns [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`] if an axis has no plan. The
+    /// plan is then unchanged.
     pub(crate) fn go_to(
         &mut self,
         target: &State<N>,
@@ -118,8 +119,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes. All axes arrive together with the slowest axis, or as soon afterwards as
-    /// all can.
+    /// Writes the motion of all axes. They arrive together with the slowest axis, or at the next
+    /// duration that is feasible for all axes.
     fn move_axes(
         &mut self,
         state: &State<N>,
@@ -160,7 +161,7 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Replaces the plan with the least-time stop: along the line of the state, or separately for
+    /// Replaces the plan with the least-time stop, along the line of the state or separately for
     /// each axis.
     pub(crate) fn stop(&mut self, start: &PlanStart<'_, N>) {
         if let Some((line, along)) = &start.line {
@@ -201,8 +202,8 @@ impl<const N: usize> Plan<N> {
         self.duration
     }
 
-    /// Returns the state `t >= 0` seconds after the start of the plan. From the duration on, it is
-    /// exactly at rest at the end.
+    /// Returns the state `t >= 0` seconds after the start of the plan. After the plan's duration,
+    /// the state is exactly at rest at the end.
     pub(crate) fn sample(&self, t: f64) -> State<N> {
         if t >= self.duration - SLACK {
             return State::at_rest(self.end);
@@ -221,7 +222,8 @@ impl<const N: usize> Plan<N> {
         state
     }
 
-    /// Returns the straight line of the motion at `t`, and the state along it; `None` at rest.
+    /// Returns the straight line of the motion at `t`, and the state along this line, or `None` at
+    /// rest.
     pub(crate) fn line_at(&self, t: f64) -> Option<(StraightLine<N>, AxisState)> {
         match &self.path {
             Path::Straight(line) if t < self.duration - SLACK => {
@@ -232,12 +234,13 @@ impl<const N: usize> Plan<N> {
     }
 }
 
-/// Returns the least duration, at least `at_least`, that is feasible for all axes.
+/// Returns the smallest duration, not below `at_least`, that is feasible for all axes.
 ///
 /// If a duration is infeasible for an axis, the axis requests its next feasible duration, which is
-/// one of its candidates. The duration only grows, so each candidate is requested at most once.
+/// one of its candidates. The duration only grows, so each axis requests each candidate at most
+/// once.
 ///
-/// Rounding alone must not cause a detour. The feasible durations of one axis may end just before a
+/// Rounding alone must not cause a detour: the feasible durations of one axis may end just before a
 /// duration that another axis knows with less precision.
 fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
     let axes = || axes.iter().flatten();
@@ -267,9 +270,9 @@ impl Refusal {
     }
 }
 
-/// Time before the end, in seconds, at which a motion counts as ended. Without it, rounding of a
-/// duration could cost a cycle.
+/// Time before the end, in seconds, at which a motion counts as ended. Without this tolerance,
+/// rounding of the duration could add a cycle.
 ///
-/// The value is a millionth of a cycle. The remaining distance is then its third power times a
-/// sixth of the jerk limit.
+/// The value is a millionth of a cycle. The distance that remains is its third power times a sixth
+/// of the jerk limit.
 const SLACK: f64 = 1e-9;

@@ -1,9 +1,9 @@
 //! A motion of a given duration to a target in motion, through a constant velocity.
 //!
 //! The motion is a transfer to a velocity `w`, a cruise, and a transfer to the end's velocity. The
-//! first transfer has the direction `s`, the second the direction `u`. With both ends extended by
-//! their jerks to zero acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the remaining
-//! time and distance are
+//! first transfer has the direction `s`, and the second has the direction `u`. Both ends are
+//! extended by their jerks to zero acceleration: `c0 = v0 - s a0^2/2` and `cf = vf + u af^2/2`. The
+//! duration of the cruise, and the distance of the motion's end beyond the target, are
 //!
 //! ```text
 //! cruise(w) = T + s a0 + u af - time(w - c0) - time(cf - w)
@@ -12,14 +12,13 @@
 //!
 //! with `M` the displacement of a transfer. The extremal motions up and down are the two ends of
 //! this family. As long as the cruise is not negative, the excess grows with `w`, so exactly one
-//! `w` between the velocities of the extremal motions is right. The cruise is negative only if the
-//! duration is so close to the duration of the velocity change that no plateau fits. The mean of
-//! the two extremal motions is then used.
+//! `w` between the velocities of the extremal motions makes it zero. If the duration is close to
+//! the duration of the velocity change, the cruise may be negative, and no plateau fits. The mean
+//! of the two extremal motions is then used.
 //!
-//! The mean would be valid for every duration, without a search. But a new plan from a state on a
-//! plateau motion continues with the same velocity, whereas the mean of the extremal motions
-//! differs with each new plan. With a new plan in each cycle, the mean would swing from one end of
-//! the interval to the other.
+//! The mean is valid for every duration and needs no search. However, it differs with each new
+//! plan: if a plan is created in each cycle, the motion would swing from one end of the interval to
+//! the other. A new plan from a plateau motion continues with the same velocity.
 
 use crate::root::{Point, root};
 use crate::shape::Shape;
@@ -45,8 +44,8 @@ impl Plateau {
         }
     }
 
-    /// Returns the direction and the shape of the motion, if its velocity is between `low` and
-    /// `high`.
+    /// Returns the direction and the shape of the motion, or `None` if its velocity is not between
+    /// `low` and `high`.
     pub(crate) fn between(&self, low: f64, high: f64) -> Option<(f64, Shape)> {
         let point = |at| Point {
             at,
@@ -94,7 +93,7 @@ impl Plateau {
         let ((x, first_hold), (y, second_hold)) =
             (ramp_and_hold(changes.0), ramp_and_hold(changes.1));
         let (t1, t7) = ((x - s * self.task.a).max(0.0), (y - u * self.af).max(0.0));
-        // In the frame in which the second transfer is downwards.
+        // The shape is in the frame in which the second transfer is downwards.
         let sign = -u;
         let shape = Shape {
             first: sign * s,

@@ -1,13 +1,13 @@
-//! One axis over time: segments of constant jerk.
+//! The motion of one axis over time, as segments of constant jerk.
 
 use crate::brake::Pieces;
 use crate::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
-/// Positions are relative to the start. A large offset thus rounds the result only once, not in
-/// each segment. The last three segments of a motion to a target are laid out backwards from the
-/// target. The motion then ends exactly at the target, and the remaining rounding error occurs at
+/// Positions are relative to the start, so a large offset rounds the result only once, and not in
+/// each segment. The last three segments of a motion to a target are computed backwards from the
+/// target. Therefore the motion ends exactly at the target. The remaining rounding error occurs at
 /// full speed, where it is relatively smallest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Profile {
@@ -16,7 +16,7 @@ pub(crate) struct Profile {
     segments: [Segment; MAX_SEGMENTS],
     len: usize,
     duration: f64,
-    /// State after the last segment laid out forwards, relative to the origin.
+    /// State after the last segment that was computed forwards, relative to the origin.
     front: AxisState,
 }
 
@@ -72,11 +72,11 @@ impl Profile {
         }
     }
 
-    /// Appends `t` seconds of exactly constant `velocity`. The previous segments lead to this
-    /// velocity within rounding.
+    /// Appends `t` seconds of exactly constant `velocity`. The previous segments must end at this
+    /// velocity, within rounding.
     ///
     /// A cruise may last millions of times longer than the ramps around it. Without an exact
-    /// velocity, the last bit of a remaining acceleration would grow into a distance.
+    /// velocity, a rounding error of the acceleration would grow into a distance.
     pub(crate) fn cruise(&mut self, velocity: f64, t: f64) {
         if t > 0.0 {
             self.front.velocity = velocity;
@@ -85,15 +85,16 @@ impl Profile {
         }
     }
 
-    /// Appends pieces in units of the axis: `jerk` in the unit of jerk, times in `unit` of time.
+    /// Appends pieces that are in units of the axis. `jerk` is the axis's unit of jerk, and `unit`
+    /// is its unit of time.
     pub(crate) fn push_pieces(&mut self, pieces: &Pieces, jerk: f64, unit: f64) {
         for (sign, t) in pieces.iter() {
             self.push(sign * jerk, t * unit);
         }
     }
 
-    /// Appends the jerks `jerk, 0, -jerk` for the times `t`. They lead to `target`, or to a point
-    /// `beyond` it.
+    /// Appends the jerks `jerk, 0, -jerk` for the times `t`. They end at `target`, or `beyond` the
+    /// target.
     pub(crate) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
         self.end = target.position;
         self.front = AxisState {
@@ -117,11 +118,13 @@ impl Profile {
         self.end = self.origin + self.front.position;
     }
 
-    /// Sets the profile to the mean of two motions from one state with the same duration, the first
-    /// with `weight`, the other with `1 - weight`. The mean leads to `target`.
+    /// Sets the profile to the weighted mean of two motions that have the same start and the same
+    /// duration. The first motion has the weight `weight`, and the second has `1 - weight`. The
+    /// mean ends at `target`.
     ///
-    /// The states of the segments are means of the states of the two motions, not sums over the
-    /// previous segments. So they are equally exact at the start, at the end, and after a cruise.
+    /// The states of the segments are means of the states of the two motions, and not sums over the
+    /// previous segments. They are therefore equally exact at the start, at the end, and after a
+    /// cruise.
     pub(crate) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         self.begin(AxisState {
@@ -169,23 +172,23 @@ impl Profile {
         }
     }
 
-    /// The state after the segments laid out forwards, relative to the origin.
+    /// Returns the state after the segments that were computed forwards, relative to the origin.
     pub(crate) const fn front(&self) -> AxisState {
         self.front
     }
 
-    /// Final position.
+    /// Returns the final position.
     pub(crate) const fn end(&self) -> f64 {
         self.end
     }
 
-    /// Duration of the profile, in seconds.
+    /// Returns the duration of the profile, in seconds.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// Returns the state `t >= 0` seconds after the start. From the duration on, it is exactly the
-    /// end.
+    /// Returns the state `t >= 0` seconds after the start. After the profile's duration, the state
+    /// is exactly the end.
     pub(crate) fn sample(&self, t: f64) -> AxisState {
         if t >= self.duration {
             return AxisState::at_rest(self.end);
@@ -203,8 +206,8 @@ impl Profile {
     }
 }
 
-/// Largest number of segments: three to brake into the limits, thirteen of the mean of two shapes,
-/// and four to stop behind a target in motion. A motion that begins with part of a stop has at most
+/// Largest number of segments: three to brake into the limits, thirteen for the mean of two shapes,
+/// and four to stop beyond a target in motion. A motion that begins with part of a stop has at most
 /// thirteen segments in total.
 const MAX_SEGMENTS: usize = 20;
 

@@ -30,7 +30,8 @@ pub(crate) fn root(
         let best = nearer(a, b);
         let width = (b.at - a.at).abs();
         let resolution = 2.0 * f64::EPSILON * best.at.abs() / width;
-        // If the width is zero, the resolution is infinite, or NaN if the root is zero, too.
+        // If the width is zero, the resolution is infinite. If the root is also zero, the
+        // resolution is NaN.
         if best.value.abs() <= close || resolution >= 0.5 || resolution.is_nan() {
             return best.at;
         }
@@ -55,7 +56,7 @@ fn nearer(a: Point, b: Point) -> Point {
 }
 
 /// Returns the position of the root between `a` and `b`, as a fraction, from the parabola through
-/// three points, if this parabola is monotone between them.
+/// three points. Returns `None` if this parabola is not monotone between them.
 fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     let (fa, fb, fc) = (a.value, b.value, c.value);
     let xi = (a.at - b.at) / (c.at - b.at);
@@ -68,8 +69,9 @@ fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     }
 }
 
-/// Bound of a search. Ten steps are usual. If interpolation does not help, the method falls back to
-/// bisection. Bisection alone needs 53 steps from any bracket within a factor of two of the root.
+/// Largest number of steps of a search. Ten steps are usual. If interpolation does not help, the
+/// method falls back to bisection. Bisection alone needs 53 steps from any bracket within a factor
+/// of two of the root.
 const MAX_STEPS: usize = 100;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Square and cube root: from the standard library with `std` and from `libm` without.
+//! Square and cube root: from the standard library if `std` is available, and from `libm`
+//! otherwise.
 //!
 //! The crate uses only these two elementary functions, and `core` has neither.
 

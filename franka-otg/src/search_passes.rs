@@ -1,5 +1,5 @@
-//! Counts the passes of the searches, for the test that compares them with their bounds. Empty
-//! outside of tests.
+//! Counts the passes of the searches, for the test that compares them with their bounds. Outside of
+//! tests, the functions do nothing.
 
 #[cfg(test)]
 use core::cell::Cell;
@@ -9,7 +9,7 @@ std::thread_local! {
     static MOST: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Records that a search with the bound `ceiling` is in its pass number `pass`, counted from zero.
+/// Records that a search of at most `ceiling` passes is in pass number `pass`, counted from zero.
 #[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
 pub(crate) fn count(pass: usize, ceiling: usize) {
     #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The common order of jerks of all motions, and the pieces before it.
+//! The sequence of jerks that all motions share, and the pieces before this sequence.
 
 use crate::brake::Pieces;
 
@@ -8,7 +8,7 @@ use crate::brake::Pieces;
 pub(crate) struct Shape {
     /// Sign of the first jerk.
     pub(crate) first: f64,
-    /// The seven durations, none negative.
+    /// The seven durations, which are never negative.
     pub(crate) t: [f64; 7],
     /// Velocity between the two halves. If the fourth piece has a duration, this is the velocity of
     /// the fourth piece.
@@ -22,7 +22,7 @@ impl Shape {
     }
 
     /// Returns the transfer from acceleration `a` to the velocity `cruise`, a cruise of duration
-    /// `time`, and the transfer to rest. Both transfers are given as ramp and hold.
+    /// `time`, and the transfer to rest. Each transfer is given as its ramp time and its hold time.
     pub(crate) fn two_transfers(
         a: f64,
         to_cruise: (f64, f64),

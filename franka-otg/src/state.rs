@@ -72,7 +72,7 @@ impl<const N: usize> State<N> {
     /// Returns the state of one axis.
     ///
     /// # Panics
-    /// If the axis does not exist.
+    /// Panics if the axis does not exist.
     #[must_use]
     pub const fn axis(&self, axis: usize) -> AxisState {
         AxisState {
@@ -94,7 +94,7 @@ impl<const N: usize> State<N> {
         self.acceleration[axis] = state.acceleration;
     }
 
-    /// Refuses non-finite values.
+    /// Returns an error if a value is not finite.
     pub(crate) fn check(&self) -> Result<(), PlanError> {
         check_finite(&self.position, Quantity::Position)?;
         check_finite(&self.velocity, Quantity::Velocity)?;
@@ -102,7 +102,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-/// Refuses the first non-finite value of `values`.
+/// Returns an error for the first value that is not finite.
 pub(crate) fn check_finite(values: &[f64], quantity: Quantity) -> Result<(), PlanError> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(index) => Err(PlanError::NotFinite {

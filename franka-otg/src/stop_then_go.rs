@@ -1,20 +1,20 @@
-//! Step two if no cruise fits: follow the stop for a while, then move to the target.
+//! Step two if no cruise fits: the axis follows its stop for a while, and then moves to the target.
 //!
-//! This applies to an axis that slows down towards a target just past its stop point, and that must
-//! arrive slightly later, by up to a fifth of the duration. The axis follows its least-time stop
-//! for some time, and then takes the least-time profile to the target. The total duration grows
-//! continuously with this time. It begins with the least duration, because a profile with a longer
-//! fixed first piece cannot be faster. It ends with the duration of stopping and then moving from
-//! rest. For a still longer duration, the axis waits at rest. So every duration has a profile. No
-//! profile overshoots: during a stop the stop point is constant and short of the target, and the
-//! rest of the motion is a push and a stop.
+//! This case occurs if an axis slows down towards a target just past its stop point, and must
+//! arrive slightly later than it could (by up to a fifth of the duration). The axis follows its
+//! least-time stop for some time, and then takes the least-time profile to the target. The total
+//! duration grows continuously with the time on the stop, because a profile with a longer fixed
+//! first piece cannot be faster. It begins with the least duration, and ends with the duration of a
+//! complete stop and a motion from rest. For a still longer duration, the axis waits at rest.
+//! Therefore every duration has a profile. No profile overshoots: during the stop, the stop point
+//! is constant and short of the target, and the rest of the motion is a push and a stop.
 //!
-//! An axis cannot reach a target exactly at its stop point later without overshooting. The result
-//! is then the stop and a wait at the target.
+//! If the target is exactly at the stop point, the axis cannot arrive later without overshoot. The
+//! result is then the stop, followed by a wait at the target.
 //!
-//! A lower acceleration limit would slow down the axis more gently. However, this method has no
-//! solution for durations beyond the gentlest stop that ends at the target. The axis would be
-//! early, or overshoot.
+//! A lower acceleration limit would slow down the axis more gently. However, the gentlest stop that
+//! ends at the target has a certain duration. For longer durations, such an axis would be early or
+//! overshoot.
 
 use crate::brake::Pieces;
 use crate::least_time::{LeastTime, least_time};

@@ -1,13 +1,14 @@
 //! Straight lines: all axes as one axis.
 //!
-//! The motion is a straight line if the displacement to the target, and all velocities and
-//! accelerations now and at the target, are multiples of one vector. One scalar problem along this
-//! line then moves the axes in phase. From rest, this is always possible. The duration equals the
-//! duration of time-synchronised axes if the same axis determines all three limits. Otherwise it is
-//! longer.
+//! The motion is a straight line if these vectors are all multiples of one vector: the displacement
+//! to the target, and the velocities and accelerations now and at the target. One scalar problem
+//! along this line then moves the axes in phase. From rest, this is always possible. If the same
+//! axis determines all three limits, the motion takes as long as a motion with
+//! [`Time`](crate::Synchronisation::Time). Otherwise it takes longer.
 //!
-//! Rounding makes the axes of a moving line slightly non-parallel. So the scalar state is continued
-//! while targets stay on the line, and not derived from the axes again.
+//! Because of rounding, the velocities and accelerations of a motion are not exactly parallel to
+//! its line. While targets stay on the line, the scalar state therefore continues, and is not
+//! derived from the axes again.
 
 use crate::state::{AxisState, State};
 
@@ -21,7 +22,8 @@ pub(crate) struct StraightLine<const N: usize> {
 }
 
 impl<const N: usize> StraightLine<N> {
-    /// Returns the line along which `state` moves and `target` lies, with the state along it.
+    /// Returns the line along which `state` moves and on which `target` lies, and the state along
+    /// this line.
     ///
     /// `None` if no such line exists, or if the state and the target are the same at rest.
     pub(crate) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
@@ -63,8 +65,8 @@ impl<const N: usize> StraightLine<N> {
             })
     }
 
-    /// Compares each component separately. The unit or limit of one axis thus does not affect
-    /// another axis.
+    /// Returns true if `vector` is parallel to the line. Each component is compared separately, so
+    /// the unit of one axis does not affect another axis.
     fn is_parallel(&self, vector: &[f64; N]) -> bool {
         (0..N).all(|i| {
             let expected = vector[self.main] * self.direction[i];
@@ -72,7 +74,8 @@ impl<const N: usize> StraightLine<N> {
         })
     }
 
-    /// Returns the state along the line for a `target` that lies on the line and moves along it.
+    /// Returns the state along the line for a `target` that is on the line and moves along the
+    /// line.
     pub(crate) fn state_of(&self, target: &State<N>) -> Option<AxisState> {
         let to = target.axis(self.main);
         let s = to.position - self.origin[self.main];

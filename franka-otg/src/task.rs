@@ -8,7 +8,7 @@ use crate::limits::AxisLimits;
 use crate::state::AxisState;
 use crate::transfer::stop_distance;
 
-/// A motion to rest in units in which the acceleration limit and the jerk are one.
+/// A motion to rest, in units in which the acceleration limit and the jerk limit are one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Task {
     /// Distance to the target.
@@ -19,13 +19,14 @@ pub(crate) struct Task {
     pub(crate) a: f64,
     /// Velocity limit.
     pub(crate) top: f64,
-    /// Expected rounding error of `d`; zero for a state at rest, because from rest even the
+    /// Expected rounding error of `d`. It is zero for a state at rest, because from rest even the
     /// smallest distance counts.
     pub(crate) fuzz: f64,
 }
 
 impl Task {
-    /// Returns the task in units of the limits, and the unit of time, `A/J`.
+    /// Returns the task in units of the limits, and the unit of time `A/J` (`A`: acceleration
+    /// limit, `J`: jerk limit).
     ///
     /// `None` if the quantities differ by more than 100 decades, because their squares could
     /// overflow.
@@ -42,7 +43,8 @@ impl Task {
         representable.then_some((task, unit))
     }
 
-    /// Like [`Task::new`], for quantities that are known to differ by fewer decades.
+    /// Returns the task and the unit of time as [`Task::new`] does, for quantities that are known
+    /// to differ by fewer decades.
     pub(crate) fn unchecked(state: AxisState, target: f64, limits: AxisLimits) -> (Self, f64) {
         let unit = limits.acceleration / limits.jerk;
         let per_velocity = 1.0 / (limits.acceleration * unit);

@@ -1,6 +1,6 @@
 //! Short sorted lists of durations.
 
-/// Up to `C` times in ascending order. If the list is full, a new time replaces the last.
+/// Up to `C` times in ascending order. If the list is full, a new time replaces the last time.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Times<const C: usize> {
     list: [f64; C],
@@ -28,7 +28,7 @@ impl<const C: usize> Times<C> {
         self.len = (self.len + 1).min(C);
     }
 
-    /// Returns the times, the shortest first.
+    /// Returns the times in ascending order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         self.list[..self.len].iter().copied()
     }

@@ -1,28 +1,30 @@
 //! Transfers from one velocity to another, the building blocks of every profile.
 //!
-//! All quantities are in units in which the acceleration limit and the jerk are one: times in
+//! All quantities are in units in which the acceleration limit and the jerk limit are one: times in
 //! `A/J`, velocities in `A^2/J`, positions in `A^3/J^2`. A transfer that begins and ends without
 //! acceleration is point-symmetric, so its displacement is its mean velocity times its duration.
 
 use crate::scalar::sqrt;
 
-/// Duration of the transfer over a velocity difference `d >= 0`, from and to zero acceleration.
+/// Returns the duration of the transfer over a velocity difference `d >= 0`, from and to zero
+/// acceleration.
 pub(crate) fn transfer_time(d: f64) -> f64 {
     if d <= 1.0 { 2.0 * sqrt(d) } else { d + 1.0 }
 }
 
-/// Displacement of the transfer from velocity `u` to velocity `w`, from and to zero acceleration.
+/// Returns the displacement of the transfer from velocity `u` to velocity `w`, from and to zero
+/// acceleration.
 pub(crate) fn transfer_distance(u: f64, w: f64) -> f64 {
     0.5 * (u + w) * transfer_time((w - u).abs())
 }
 
-/// Displacement of the stop from velocity `w >= 0`. Also the area `|w - c| * time / 2` of any
-/// transfer over `|w - c|`.
+/// Returns the displacement of the stop from velocity `w >= 0`. This is also the area `|w - c| *
+/// time / 2` of any transfer over `|w - c|`.
 pub(crate) fn stop_distance(w: f64) -> f64 {
     stop_distance_and_slope(w).0
 }
 
-/// Like [`stop_distance`], with its derivative, which is continuous across `w = 1`.
+/// Returns [`stop_distance`] and its derivative, which is continuous across `w = 1`.
 pub(crate) fn stop_distance_and_slope(w: f64) -> (f64, f64) {
     if w <= 1.0 {
         let root = sqrt(w);
@@ -32,8 +34,8 @@ pub(crate) fn stop_distance_and_slope(w: f64) -> (f64, f64) {
     }
 }
 
-/// Returns ramp time and hold time of the transfer over `d >= 0`: the acceleration rises, stays at
-/// one, and falls.
+/// Returns the ramp time and the hold time of the transfer over `d >= 0`: the acceleration rises,
+/// stays at one, and falls.
 pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     if d <= 1.0 {
         (sqrt(d.max(0.0)), 0.0)
@@ -43,7 +45,7 @@ pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
 }
 
 /// Returns the change of velocity of a transfer, from and to zero acceleration, whose acceleration
-/// rises to `a` and immediately falls; zero if `a` is not positive.
+/// rises to `a` and immediately falls. The change is zero if `a` is not positive.
 ///
 /// A transfer that begins or ends with the acceleration `a` changes the velocity by at least this
 /// value.
@@ -60,8 +62,8 @@ pub(crate) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };
     let (b, d) = (sign * a, -sign * v);
-    // Peak of the acceleration without a hold. It is at least |b|, because the missing velocity
-    // has this sign.
+    // Peak of the acceleration without a hold. The peak is at least |b|, because the missing
+    // velocity has the same sign.
     let square = (d + 0.5 * b * b).max(0.0);
     if square <= 1.0 {
         let peak = sqrt(square);

@@ -1,10 +1,11 @@
-//! The durations in which the velocity and the acceleration of a target can be reached, at any
+//! The durations in which an axis can reach the velocity and the acceleration of a target, at any
 //! position.
 //!
-//! This is the problem of the position, one derivative lower. The velocities that are reachable in
-//! one duration form an interval. The ends of the interval are "acceleration up, then down" and the
-//! reverse. The areas under these accelerations give the equations. An axis cannot wait at the
-//! acceleration of the target either, so a blocked interval may exist here, too.
+//! This is the problem of the position, with one derivative less. The velocities that are reachable
+//! in one duration form an interval. At its ends, the acceleration first rises and then falls, or
+//! first falls and then rises. The equations follow from the areas under these accelerations. An
+//! axis cannot wait at the acceleration of the target either, so a blocked interval may also exist
+//! here.
 
 use crate::scalar::sqrt;
 use crate::task::{ROUNDING, Task};
@@ -14,11 +15,11 @@ use crate::task::{ROUNDING, Task};
 pub(crate) struct VelocityChange {
     a0: f64,
     af: f64,
-    /// Square of the peak acceleration that leads to the end's velocity (with a hold: twice the
+    /// Square of the peak acceleration that leads to the final velocity (with a hold: twice the
     /// area), for the highest and for the lowest acceleration.
     peak: f64,
     valley: f64,
-    /// Magnitude relative to which the change is rounded.
+    /// Magnitude that determines the rounding of the change.
     size: f64,
 }
 
@@ -35,7 +36,7 @@ impl VelocityChange {
         }
     }
 
-    /// Magnitude relative to which velocities are rounded.
+    /// Returns the magnitude that determines the rounding of velocities.
     pub(crate) const fn size(&self) -> f64 {
         self.size
     }
@@ -54,8 +55,8 @@ impl VelocityChange {
             && area(lowest) >= self.valley - tolerance
     }
 
-    /// Returns the durations at which feasible intervals begin or end, without an order. Each has
-    /// its uncertainty from the rounding of velocities.
+    /// Returns the durations at which feasible intervals begin or end, in no order. Each duration
+    /// comes with its uncertainty from the rounding of velocities.
     pub(crate) fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
@@ -86,7 +87,7 @@ impl VelocityChange {
 }
 
 /// Returns twice the area under an acceleration ramp to `x`. If `x` exceeds one, the ramp ends at
-/// one and is held there for the excess.
+/// one, and the acceleration is held for the excess.
 fn area(x: f64) -> f64 {
     let x = x.abs();
     if x <= 1.0 { x * x } else { 2.0 * x - 1.0 }
@@ -100,8 +101,8 @@ pub(crate) fn typical_velocity(task: &Task) -> f64 {
 
 /// Relative rounding of a state after some thousand plans, each from the state of the previous
 /// plan. Equal steps are rounded in the same way, so their errors add up. This value applies to
-/// durations at which both extremal motions end at the target. From some point on, a motion stays
-/// in this situation and must remain feasible.
+/// durations at which both extremal motions end at the target. The last part of a motion is always
+/// in this situation, and must remain feasible.
 pub(crate) const DRIFT: f64 = 1024.0 * ROUNDING;
 
 /// Relative rounding of one plan, for all other durations. An error that is accepted here remains

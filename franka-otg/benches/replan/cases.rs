@@ -2,8 +2,8 @@
 //!
 //! States come from random motions. Each sweep measures every state once, so that the branch
 //! predictor cannot learn a state. The result of a state is its shortest time over the sweeps,
-//! because longer times include interruptions. The time to read the clock is subtracted; for one
-//! axis it would be a third of the result.
+//! because longer times include interruptions. The time to read the clock is subtracted, because
+//! for one axis it would be a third of the result.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use std::time::Instant;
 use franka_otg::{AxisLimits, Generator, Limits, State, Synchronisation};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 
-/// Returns the shortest time of each case over the sweeps, `[ns]`.
+/// Returns the shortest time of each case over all sweeps, `[ns]`.
 pub(crate) fn shortest<const N: usize>(cases: &[Case<N>], sweeps: usize) -> Vec<u64> {
     let clock = clock();
     let mut shortest = vec![u64::MAX; cases.len()];
@@ -30,7 +30,7 @@ pub(crate) struct Case<const N: usize> {
 }
 
 impl<const N: usize> Case<N> {
-    /// Returns the nanoseconds of planning, minus the time to read the `clock`.
+    /// Returns the planning time in nanoseconds, minus the time to read the `clock`.
     pub(crate) fn measure(&self, clock: u64) -> u64 {
         let mut generator = self.generator.clone();
         let start = Instant::now();
@@ -45,7 +45,7 @@ impl<const N: usize> Case<N> {
     }
 }
 
-/// Returns the median nanoseconds between two consecutive readings of the clock.
+/// Returns the median time between two consecutive readings of the clock, in nanoseconds.
 pub(crate) fn clock() -> u64 {
     let mut readings = [0; 1001].map(|_: u64| {
         let start = Instant::now();
@@ -56,7 +56,7 @@ pub(crate) fn clock() -> u64 {
 }
 
 /// States of motions to a sequence of targets, at random times of each motion: before, in and after
-/// the phase of constant velocity. From time to time, the limits of another arm are used.
+/// the phase of constant velocity. From time to time, the limits change to those of another arm.
 pub(crate) struct Cases<const N: usize, L> {
     random: SmallRng,
     limits: L,

@@ -14,7 +14,7 @@ fn main() {
     replan::<7>();
 }
 
-/// Prints median, 99th percentile and largest of the nanoseconds per state.
+/// Prints the median, the 99th percentile and the maximum of the nanoseconds per state.
 fn replan<const N: usize>() {
     let cases: Vec<Case<N>> = Cases::new(|_, _| LIMITS).take(STATES).collect();
     let mut shortest = shortest(&cases, SWEEPS);

@@ -8,7 +8,7 @@ use super::{AxisLimits, AxisState, Limits, State};
 pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
     let sign = 1_f64.copysign(bend);
     let coasting = limits.velocity * coasting;
-    // The velocity on the way to zero acceleration must not start outside either.
+    // The velocity from which the acceleration came must not be outside either.
     let room = (2.0 * limits.jerk * (limits.velocity + sign * coasting)).sqrt();
     let acceleration = bend * limits.acceleration.min(room);
     let lost = 0.5 * acceleration * acceleration.abs() / limits.jerk;
@@ -19,14 +19,16 @@ pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64
     }
 }
 
-/// Returns a motion of a target that an axis can meet, and leave, inside `limits`.
+/// Returns a velocity and an acceleration of a target that an axis can reach and leave within
+/// `limits`.
 pub(crate) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
     let velocity = speed * limits.velocity;
     let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
     (velocity, bend * limits.acceleration.min(room.sqrt()))
 }
 
-/// Returns the distance in which an axis moves from rest to about its velocity limit and back.
+/// Returns the distance in which an axis accelerates from rest to about its velocity limit and
+/// stops again.
 pub(crate) fn way_to_speed(limits: AxisLimits) -> f64 {
     let AxisLimits {
         velocity,
@@ -44,7 +46,8 @@ pub(crate) fn beside_one_that_takes(
     state: AxisState,
     target: AxisState,
 ) -> (Limits<2>, State<2>, State<2>) {
-    // Four ramps of the jerk, not limited by velocity or acceleration: distance 2 ramp^3.
+    // The motion has four ramps of the jerk and does not reach the other limits. Its distance is 2
+    // ramp^3.
     let ramp = 0.25 * duration;
     let beside = AxisLimits {
         velocity: 2.0 * ramp * ramp,

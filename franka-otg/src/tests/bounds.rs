@@ -1,11 +1,11 @@
-//! Distance of the searches from the bounds on their passes.
+//! Compares the passes of the searches with their bounds.
 
 use super::allowed::beside_one_that_takes;
 use super::random::stop_point;
 use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, search_passes};
 
-/// Returns the largest number of passes, in percent of the bound, over the motions from one state
-/// to a target together with an axis that takes `stretch` times as long.
+/// Returns the largest number of passes, in percent of the bound, for motions from `state` to
+/// `target` together with an axis that takes `stretch` times as long.
 fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64) -> usize {
     let alone = Limits::per_axis([limits]).unwrap();
     let mut generator = Generator::new(super::random::one(state), alone).unwrap();

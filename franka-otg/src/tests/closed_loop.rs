@@ -146,7 +146,7 @@ proptest! {
     }
 }
 
-/// Time that a motion needs near its end to correct a rounding error of the position. It is the
-/// cube root of this error divided by the jerk: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2
-/// and jerks from 100. Fifty times that is one cycle.
+/// Time that a motion needs near its end to correct a rounding error of the position, a fiftieth of
+/// a cycle. It is about the cube root of the error divided by the jerk: `4 * cbrt(16 eps * 2 /
+/// 100)` for positions up to 2 and jerks of 100 and more.
 const ROOT_OF_ROUNDING: f64 = 2e-5;

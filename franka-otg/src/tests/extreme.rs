@@ -7,8 +7,8 @@ use super::random::{cases, extreme_limits, many, many_moving, problems};
 use super::walk::check_motion;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// Checks a motion, unless it ends within a thousandth of a cycle, because the end of a motion is
-/// brought forward by a millionth of a cycle.
+/// Checks a motion. Motions that end within a thousandth of a cycle are not checked, because every
+/// motion ends a millionth of a cycle early.
 fn check_visible<const N: usize>(generator: &Generator<N>) {
     if generator.remaining() > 1e-3 * CYCLE {
         check_motion(generator, 100);
@@ -84,7 +84,7 @@ fn a_target_that_is_met_already_is_passed() {
     let mut generator = Generator::new(state, limits).unwrap();
     generator.set_moving_target(&state).unwrap();
     assert_eq!(generator.time_to_target(), 0.0);
-    // It continues with the target for a cycle.
+    // The axis continues with the target's velocity for a cycle.
     assert_eq!(generator.step().velocity, [0.5]);
     assert!((generator.state().position[0] - 0.3 - 0.5 * CYCLE).abs() < 1e-15);
     while !generator.is_done() {

@@ -29,7 +29,7 @@ fn alone<const N: usize>(
     towards(limits, one(state), &one(target))
 }
 
-/// Checks that a motion keeps its limits and is at its target at the announced time.
+/// Checks that a motion stays within its limits, and is at its target at the announced time.
 fn check<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, State<N>),
 ) -> Result<(), TestCaseError> {
@@ -44,7 +44,7 @@ fn check<const N: usize>(
             "axis {i} takes {slowest}, not {arrival}"
         );
         let (got, to) = (met.axis(i), target.axis(i));
-        // Effect of a rounding of the duration on a velocity and an acceleration.
+        // Effect of a rounded duration on the velocity and the acceleration.
         let rounding = 64.0 * f64::EPSILON;
         let limits = limits.axis(i);
         let size = to.position.abs() + state.position[i].abs() + limits.velocity * arrival;
@@ -57,7 +57,7 @@ fn check<const N: usize>(
             (got.velocity - to.velocity).abs() <= rounding * size,
             "{got:?} {to:?}"
         );
-        // The target's acceleration is met to a few picoseconds.
+        // The target's acceleration is reached within a few picoseconds.
         let size = limits.acceleration + limits.jerk * (arrival + 1e3);
         prop_assert!(
             (got.acceleration - to.acceleration).abs() <= rounding * size,
@@ -67,8 +67,8 @@ fn check<const N: usize>(
     Ok(())
 }
 
-/// Follows any motion within the limits for a while, and takes its end as the target. The plan must
-/// not take longer than this motion, and the motion's duration must be feasible.
+/// Follows a random motion within the limits for a while, and uses its end as the target. The plan
+/// must not take longer than this motion, and the motion's duration must be feasible.
 fn certify(
     (limits, state, _): (Limits<1>, State<1>, [f64; 1]),
     legs: &[(f64, f64)],
@@ -87,7 +87,7 @@ fn certify(
     }
     let target = now.axis(0);
     let change = 0.5 * target.acceleration * target.acceleration / top.jerk;
-    // Motions inside the limits may not lead to the start, nor to the states after it.
+    // A motion within the limits may be unable to reach the target, so such cases are skipped.
     prop_assume!(target.velocity.abs() + change <= top.velocity);
     let least = towards(limits, state, &now).time_to_target();
     prop_assert!(least <= took * (1.0 + 1e-9), "{least} instead of {took}");
@@ -101,7 +101,7 @@ fn certify(
     Ok(())
 }
 
-/// Creates a new plan in each cycle: the arrival must not move.
+/// Creates a new plan in each cycle. The time of arrival must not change.
 fn replan<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, State<N>),
 ) -> Result<(), TestCaseError> {
@@ -121,8 +121,8 @@ fn replan<const N: usize>(
     Ok(())
 }
 
-/// A number of cycles, and for each axis the position and speed set before them, and a flag for
-/// motion.
+/// A number of cycles, and the target that is set before them. For each axis, the target is a
+/// position, a speed, and a flag for motion.
 type Change = (usize, Vec<(f64, f64, bool)>);
 
 /// Follows a sequence of moving and resting targets, with gaps and bursts, to the end.
@@ -240,7 +240,7 @@ proptest! {
     }
 }
 
-/// Time for a rounding of the position near the end, as for targets at rest.
+/// Time to correct a rounding error of the position near the end, as for targets at rest.
 const ROOT_OF_ROUNDING: f64 = 2e-5;
 
 /// This axis can be at its target until 0.11403 s and again from 0.36 s on.
@@ -278,8 +278,8 @@ fn axis_early_by_less_than_a_cycle_is_not_early() {
     }
 }
 
-/// The start is at the velocity limit, except for an acceleration that can just be removed in time:
-/// its first ramp has no duration, and rounding must not make the duration negative.
+/// At the start, the acceleration can just be removed before the velocity exceeds its limit. The
+/// first ramp therefore has no duration, and rounding must not make this duration negative.
 #[test]
 fn start_whose_ramp_ends_at_velocity_limit_is_on_time() {
     for (limits, from, to) in [

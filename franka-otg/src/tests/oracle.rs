@@ -1,5 +1,5 @@
-//! The slow plain version of step one: push for a while, then stop, and find the duration of the
-//! push by bisection.
+//! A slow, simple version of step one: the axis pushes for a while and then stops. Bisection finds
+//! the duration of the push.
 
 use crate::{AxisLimits, AxisState};
 
@@ -34,8 +34,8 @@ pub(super) fn least_duration(start: AxisState, target: f64, limits: AxisLimits) 
     ahead(high, side).1
 }
 
-/// Returns the position and time of rest of an axis that pushes towards `velocity` for `theta` and
-/// then stops.
+/// Returns the position and the time of rest of an axis that pushes towards `velocity` for `theta`
+/// and then stops.
 fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) -> (f64, f64) {
     let mut state = start;
     let mut left = theta;
@@ -46,7 +46,7 @@ fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) 
         left -= t;
     }
     if left > 0.0 {
-        // The transfer is complete. A remaining rounding error would grow over a long cruise.
+        // The transfer is complete. A rounding error that remains would grow over a long cruise.
         state.velocity = velocity;
         state.acceleration = 0.0;
         state = state.after(0.0, left);

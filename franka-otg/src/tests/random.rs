@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::allowed::{inside, target_motion, way_to_speed};
 use crate::{AxisLimits, AxisState, Generator, Limits, State};
 
-/// A number whose logarithm is uniform over `10^low..10^high`.
+/// Generates numbers between `10^low` and `10^high` whose logarithm is uniform.
 fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> {
     (low..high).prop_map(|exponent| 10_f64.powf(exponent))
 }
@@ -30,7 +30,8 @@ pub(super) fn arm_limits() -> impl Strategy<Value = AxisLimits> {
     limits((-1.0, 0.7), (0.0, 1.3), (2.0, 4.0))
 }
 
-/// Limits that are all reached in some cases and not in others: every family of profiles occurs.
+/// Limits that are reached in some cases and not in others, so that every family of profiles
+/// occurs.
 pub(super) fn mixed_limits() -> impl Strategy<Value = AxisLimits> {
     limits((-1.0, 1.0), (-1.0, 1.5), (0.0, 4.0))
 }
@@ -71,8 +72,8 @@ pub(super) fn stop_point(limits: AxisLimits, state: AxisState) -> f64 {
     Generator::new(one(state), limits).unwrap().target()[0]
 }
 
-/// Generates states inside the limits, with targets from far away to within a millionth of the stop
-/// point.
+/// Generates states within the limits. The targets' distances from the stop point range from large
+/// values to a millionth.
 pub(super) fn problems(limits: impl Strategy<Value = AxisLimits>) -> impl Strategy<Value = Case> {
     let fraction = || prop_oneof![4 => -1.0..1.0, 1 => Just(1.0), 1 => Just(0.0)];
     let distance = (prop_oneof![3 => -1.0..1.5, 2 => -6.0..-1.0], any::<bool>());
@@ -106,7 +107,7 @@ pub(super) fn many<const N: usize>(
 }
 
 /// Generates limits, states and targets in motion of `N` axes; some targets move with constant
-/// velocity, some rest.
+/// velocity, and some rest.
 pub(super) fn many_moving<const N: usize>(
     limits: impl Strategy<Value = AxisLimits>,
 ) -> impl Strategy<Value = (Limits<N>, State<N>, State<N>)> {
@@ -126,8 +127,8 @@ pub(super) fn many_moving<const N: usize>(
     )
 }
 
-/// Runs `count` cases without a seed file next to the source: a failing case is printed, and
-/// becomes a separate test.
+/// Runs `count` cases without a seed file next to the source. A failing case is printed, and should
+/// become a separate test.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,

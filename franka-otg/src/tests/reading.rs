@@ -57,8 +57,8 @@ fn targets_that_the_limits_do_not_allow_are_refused() {
     let refused = Err(PlanError::TargetMotion { axis: 2 });
     assert_eq!(generator.set_moving_target(&motion(0.81, 0.0)), refused);
     assert_eq!(generator.set_moving_target(&motion(0.0, -4.1)), refused);
-    // At its limit the velocity cannot have an acceleration: it would come from beyond the limit,
-    // or exceed it.
+    // A target at its velocity limit must not accelerate, because its velocity would exceed the
+    // limit shortly before or afterwards.
     assert_eq!(generator.set_moving_target(&motion(0.8, 1.0)), refused);
     assert_eq!(
         generator.set_moving_target(&motion(f64::NAN, 0.0)),

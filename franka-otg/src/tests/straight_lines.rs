@@ -1,4 +1,4 @@
-//! Straight lines.
+//! Motions on straight lines.
 
 use proptest::prelude::*;
 

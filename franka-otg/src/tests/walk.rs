@@ -6,13 +6,13 @@ use crate::{Generator, Limits, State};
 /// Relative excess over a limit that counts as rounding.
 pub(super) const EXACT: f64 = 1e-9;
 
-/// Relative error of a position that counts as rounding, including the instants at which a plan
-/// changes course. Seen: 2e-13, with limits from 1e-3 to 1e6.
+/// Relative error of a position that counts as rounding, including the instants at which the jerk
+/// changes. The largest error seen was 2e-13, with limits from 1e-3 to 1e6.
 const ROUNDING: f64 = 1e-12;
 
-/// Relative error of a jerk between two states: the instants at which a plan changes course are
-/// rounded, and this affects the jerk in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 with a
-/// new plan in each cycle.
+/// Relative error of the jerk between two states. The instants at which the jerk changes are
+/// rounded, which affects the jerk directly. The largest errors seen were 3.6e-10 in ten million
+/// plans, and 1.1e-8 with a new plan in each cycle.
 const JERK: f64 = 1e-7;
 
 /// Checks the step of one axis from one state to another, `dt` later.
@@ -47,7 +47,7 @@ pub(super) fn check_step<const N: usize>(
             "axis {i}: jerk {jerk} of {}",
             l.jerk
         );
-        // Trapezoids differ from the integrals by at most the bound of the next derivative.
+        // The error of a trapezoid is bounded by the limit of the next derivative.
         let dv = 0.5 * dt * (p.acceleration + q.acceleration);
         let bound = 0.25 * l.jerk * dt * dt * (1.0 + EXACT) + 8.0 * f64::EPSILON * l.velocity;
         let gap = (q.velocity - p.velocity - dv).abs();
