@@ -44,7 +44,8 @@ impl Frame {
         Self::Stiffness,
     ];
 
-    /// Number of joints that move this frame; the remaining columns of its Jacobians are zero.
+    /// Returns the number of joints that move this frame; the remaining columns of its Jacobians
+    /// are zero.
     pub const fn joints(self) -> usize {
         let index = self as usize;
         if index < 7 { index + 1 } else { 7 }

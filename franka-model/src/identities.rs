@@ -28,7 +28,7 @@ fn models() -> [&'static Model; 3] {
     ]
 }
 
-/// True if a load acts as an additional rigid body.
+/// Returns true if a load acts as an additional rigid body.
 fn loads_add_up(model: &Model) -> bool {
     !core::ptr::eq(model, Model::fer())
 }

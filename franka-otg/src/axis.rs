@@ -116,7 +116,7 @@ impl Axis {
         Some(self.unit * (self.braking + earlier))
     }
 
-    /// True if the axis can be at its target after `duration`, within rounding.
+    /// Returns true if the axis can be at its target after `duration`, within rounding.
     pub(crate) fn can_take(&self, duration: f64) -> bool {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -217,7 +217,8 @@ fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
     })
 }
 
-/// True if the quantities differ by few enough orders of magnitude to plan a stop from `start`.
+/// Returns true if the quantities differ by few enough orders of magnitude to plan a stop from
+/// `start`.
 pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }

@@ -50,12 +50,12 @@ impl FeasibleDurations {
         DRIFT * self.size.at(t, self.vf)
     }
 
-    /// True if a motion of duration `t` ends at the target, within rounding.
+    /// Returns true if a motion of duration `t` ends at the target, within rounding.
     pub(crate) fn meets(&self, reach: &ExtremalProfile, t: f64) -> bool {
         reach.beyond <= TIGHT * self.size.at(t, reach.w)
     }
 
-    /// True if the axis can be at its target after `t`.
+    /// Returns true if the axis can be at its target after `t`.
     pub(crate) fn is_feasible(&self, t: f64) -> bool {
         self.change.is_feasible(t) && {
             let (up, down) = (self.up.profile(t), self.down.profile(t));

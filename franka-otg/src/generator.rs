@@ -353,7 +353,7 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// True if the current state is at rest at the end of the motion.
+    /// Returns true if the current state is at rest at the end of the motion.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.state.position == *self.plan.end() && self.state.is_at_rest()

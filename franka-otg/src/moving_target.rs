@@ -98,7 +98,7 @@ impl MovingTarget {
         self.candidates.iter().filter(|&earlier| earlier < t).last()
     }
 
-    /// True if the axis can be at its target after `t`, within rounding.
+    /// Returns true if the axis can be at its target after `t`, within rounding.
     pub(crate) fn can_take(&self, t: f64) -> bool {
         let feasible = self.feasible();
         feasible.is_feasible(t) || self.same(&feasible, t).is_some()

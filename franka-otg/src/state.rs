@@ -41,7 +41,7 @@ impl AxisState {
         }
     }
 
-    /// True if the axis is at rest: velocity and acceleration are exactly zero.
+    /// Returns true if the axis is at rest: velocity and acceleration are exactly zero.
     pub(crate) fn is_at_rest(self) -> bool {
         self.velocity == 0.0 && self.acceleration == 0.0
     }
@@ -82,7 +82,7 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// True if all axes are at rest: all velocities and accelerations are exactly zero.
+    /// Returns true if all axes are at rest: all velocities and accelerations are exactly zero.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         (0..N).all(|i| self.axis(i).is_at_rest())

@@ -25,7 +25,7 @@ impl<const N: usize> StraightLine<N> {
     /// Returns the line along which `state` moves and on which `target` lies, and the state along
     /// this line.
     ///
-    /// `None` if no such line exists, or if the state and the target are the same at rest.
+    /// Returns `None` if no such line exists, or if the state and the target are the same at rest.
     pub(crate) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
         let displacement: [f64; N] =
             core::array::from_fn(|i| target.position[i] - state.position[i]);

@@ -28,8 +28,8 @@ impl Task {
     /// Returns the task in units of the limits, and the unit of time `A/J` (`A`: acceleration
     /// limit, `J`: jerk limit).
     ///
-    /// `None` if the quantities differ by more than 100 decades, because their squares could
-    /// overflow.
+    /// Returns `None` if the quantities differ by more than 100 decades, because their squares
+    /// could overflow.
     pub(crate) fn new(state: AxisState, target: f64, limits: AxisLimits) -> Option<(Self, f64)> {
         let (task, unit) = Self::unchecked(state, target, limits);
         let fits = |value: f64| value.abs() < FAR; // false for NaN

@@ -41,7 +41,7 @@ impl VelocityChange {
         self.size
     }
 
-    /// True if duration `t` is feasible for the change.
+    /// Returns true if duration `t` is feasible for the change.
     pub(crate) fn is_feasible(&self, t: f64) -> bool {
         self.is_feasible_within(t, TIGHT * self.size)
     }

@@ -114,7 +114,7 @@ pub enum FrameError {
 /// Returns the first message in `received`, or `None` while the message is incomplete.
 ///
 /// # Errors
-/// [`FrameError`] if the message size is smaller than the header or larger than
+/// Returns [`FrameError`] if the message size is smaller than the header or larger than
 /// [`MAX_MESSAGE_SIZE`]. The function returns the error as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_within(received, MAX_MESSAGE_SIZE)
@@ -124,7 +124,7 @@ pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> 
 /// caller, such as [`MAX_REQUEST_SIZE`].
 ///
 /// # Errors
-/// [`FrameError`] if the size is smaller than the header or larger than `limit`.
+/// Returns [`FrameError`] if the size is smaller than the header or larger than `limit`.
 pub fn next_message_within(
     received: &[u8],
     limit: usize,

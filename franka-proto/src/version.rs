@@ -21,7 +21,7 @@ impl Version {
     /// TCP port of the robot in all versions.
     pub const TCP_PORT: u16 = 1337;
 
-    /// The number of this version in the handshake.
+    /// Returns the number of this version in the handshake.
     #[must_use]
     pub fn number(self) -> u16 {
         match self {

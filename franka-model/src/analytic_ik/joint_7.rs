@@ -288,8 +288,8 @@ impl Turn {
     }
 }
 
-/// Returns `x` as a cosine, clamped if rounding moved it out of range; `None` if `x` is further out
-/// of range.
+/// Returns `x` as a cosine, clamped if rounding moved it out of range, or `None` if `x` is further
+/// out of range.
 pub(super) fn cosine(x: f64) -> Option<f64> {
     (x.abs() <= 1.0 + FOLD).then(|| x.clamp(-1.0, 1.0))
 }

@@ -29,7 +29,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// True if the target is within reach.
+    /// Returns true if the target is within reach.
     pub fn within(&self) -> bool {
         self.posture.is_some()
     }

@@ -30,7 +30,7 @@ impl Capsule {
         }
     }
 
-    /// True if all numbers are finite and the radius is not negative.
+    /// Returns true if all numbers are finite and the radius is not negative.
     fn is_valid(&self) -> bool {
         let mut ends = self.start.iter().chain(self.end.iter());
         ends.all(|x| x.is_finite()) && self.radius.is_finite() && self.radius >= 0.0

@@ -283,7 +283,8 @@ const LINE: f64 = 0.12;
 /// Number of lines of each kind.
 const LINES: usize = if cfg!(debug_assertions) { 28 } else { 140 };
 
-/// True if every point of a line is at least three centimetres within the reach of the flange.
+/// Returns true if every point of a line is at least three centimetres within the reach of the
+/// flange.
 fn reachable(from: &JointVector, direction: &Vector3<f64>, length: f64) -> bool {
     let start = flange(from).translation.vector;
     (0..=5).all(|k| {

@@ -46,7 +46,7 @@ impl ModelLibrary {
     /// current user can read the file, and it is deleted before this function returns.
     ///
     /// # Errors
-    /// [`LibraryError`] if the library cannot be stored, loaded or used.
+    /// Returns [`LibraryError`] if the library cannot be stored, loaded or used.
     ///
     /// # Safety
     /// The bytes must be the vendor's model library, or a library that meets these conditions. The

@@ -77,7 +77,7 @@ impl Model {
     /// See [`urdf`](crate::urdf) for the parts that are read.
     ///
     /// # Errors
-    /// [`UrdfError`] if the text is not a valid description of the arm.
+    /// Returns [`UrdfError`] if the text is not a valid description of the arm.
     pub fn from_urdf(text: &str) -> Result<Self, UrdfError> {
         // The robot may add a byte order mark, and the client may add a terminator.
         let text = text.trim_start_matches('\u{feff}').trim_start();

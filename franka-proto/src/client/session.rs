@@ -76,13 +76,13 @@ impl<P: Protocol> Session<P> {
         }
     }
 
-    /// The version of the session.
+    /// Returns the version of the session.
     #[must_use]
     pub fn version(&self) -> P {
         self.version
     }
 
-    /// True if the handshake has succeeded.
+    /// Returns true if the handshake has succeeded.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.phase == ConnectionPhase::Open
@@ -111,7 +111,7 @@ impl<P: Protocol> Session<P> {
     /// Returns the message of a request, with the next id.
     ///
     /// # Errors
-    /// [`RequestError`] if the request cannot be sent. The session is then unchanged.
+    /// Returns [`RequestError`] if the request cannot be sent. The session is then unchanged.
     pub fn request(&mut self, request: &P::Request) -> Result<Outgoing, RequestError> {
         if P::handshake(request).is_some() {
             return Err(RequestError::Handshake);
@@ -140,8 +140,8 @@ impl<P: Protocol> Session<P> {
     /// Processes a message from the device and returns its meaning.
     ///
     /// # Errors
-    /// [`Violation`] if the device violated the protocol. [`Violation::is_fatal`] is true if the
-    /// connection is no longer usable.
+    /// Returns [`Violation`] if the device violated the protocol. [`Violation::is_fatal`] is true
+    /// if the connection is no longer usable.
     pub fn on_message<'a>(
         &mut self,
         message: Message<'a>,

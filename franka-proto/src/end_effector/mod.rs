@@ -19,7 +19,7 @@ use crate::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_of};
 /// bytes.
 ///
 /// # Errors
-/// [`FrameError`] if the message size is smaller than the header or larger than
+/// Returns [`FrameError`] if the message size is smaller than the header or larger than
 /// [`MAX_REQUEST_SIZE`]. The function returns the error as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_of::<U16>(received, MAX_REQUEST_SIZE)

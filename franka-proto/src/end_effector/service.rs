@@ -33,7 +33,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Creates the request for the handshake.
     fn hello(version: u16, udp_port: u16) -> Self::Request;
 
-    /// Returns the version and the UDP port of a handshake; `None` for other requests.
+    /// Returns the version and the UDP port of a handshake, or `None` for other requests.
     fn announced(request: &Self::Request) -> Option<(u16, u16)>;
 
     /// Returns the command of a request.
@@ -45,7 +45,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Reads the parameters of a request.
     ///
     /// # Errors
-    /// [`DecodeError`] if there are too few bytes, or an enumerator is not defined.
+    /// Returns [`DecodeError`] if there are too few bytes, or an enumerator is not defined.
     fn decode(
         command: Self::Command,
         message: &Message<'_>,

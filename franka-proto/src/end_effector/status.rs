@@ -26,7 +26,7 @@ impl Status {
     /// had the requested result.
     ///
     /// # Errors
-    /// [`Failure`] if the action failed or was aborted.
+    /// Returns [`Failure`] if the action failed or was aborted.
     pub fn result<C: ServiceCommand>(self, command: C) -> Result<bool, Failure<C>> {
         match self {
             Self::Success => Ok(true),

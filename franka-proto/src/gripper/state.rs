@@ -31,7 +31,7 @@ impl State {
     /// Reads a datagram of the Hand. Additional bytes are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
+    /// Returns [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
     pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
         let (wire, _) = GripperState::ref_from_prefix(bytes)
             .map_err(|_| DecodeError::datagram::<GripperState>(bytes))?;

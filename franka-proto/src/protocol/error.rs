@@ -265,8 +265,8 @@ impl<C: ServiceCommand> Violation<C> {
         }
     }
 
-    /// True if the session is no longer usable. A violation in a single reply does not affect other
-    /// requests.
+    /// Returns true if the session is no longer usable. A violation in a single reply does not
+    /// affect other requests.
     #[must_use]
     pub fn is_fatal(&self) -> bool {
         !matches!(self, Self::Reply { .. } | Self::SecondMotionStarted { .. })

@@ -50,13 +50,13 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Returns the handshake of a client that expects states on `udp_port`.
     fn connect(self, udp_port: u16) -> Self::Request;
 
-    /// Returns the version and the UDP port in a handshake; `None` for other requests.
+    /// Returns the version and the UDP port in a handshake, or `None` for other requests.
     fn handshake(request: &Self::Request) -> Option<(u16, u16)>;
 
     /// Returns the answer to a handshake.
     fn answer_handshake(self, status: ConnectStatus) -> Self::Reply<'static>;
 
-    /// Returns the answer of a device to a request with an undefined enumerator; `None` for an
+    /// Returns the answer of a device to a request with an undefined enumerator, or `None` for an
     /// unknown command.
     fn rejection(self, message: &Message<'_>) -> Option<(Self::Command, Self::Reply<'static>)>;
 
@@ -66,7 +66,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Encodes a request as a message.
     ///
     /// # Errors
-    /// [`RequestError::Unsupported`] if the protocol has no such command.
+    /// Returns [`RequestError::Unsupported`] if the protocol has no such command.
     fn encode_request(
         self,
         request: &Self::Request,
@@ -76,7 +76,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Decodes the request in a client's message.
     ///
     /// # Errors
-    /// [`DecodeError`] if the message contains no valid request.
+    /// Returns [`DecodeError`] if the message contains no valid request.
     fn decode_request(
         self,
         message: &Message<'_>,
@@ -86,7 +86,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// caller sends afterwards.
     ///
     /// # Errors
-    /// [`ReplyError`] if the reply does not suit the command or the protocol.
+    /// Returns [`ReplyError`] if the reply does not suit the command or the protocol.
     fn encode_reply(
         self,
         command: Self::Command,
@@ -98,7 +98,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Decodes the reply to `command` in a device's message.
     ///
     /// # Errors
-    /// [`DecodeError`] if the message contains no valid reply to `command`.
+    /// Returns [`DecodeError`] if the message contains no valid reply to `command`.
     fn decode_reply<'a>(
         self,
         command: Self::Command,

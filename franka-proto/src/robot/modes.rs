@@ -125,7 +125,8 @@ pub enum ControllerMode {
 }
 
 impl ControllerMode {
-    /// True if the client must send torques. The robot's own controllers require no torques.
+    /// Returns true if the client must send torques. The robot's own controllers require no
+    /// torques.
     #[must_use]
     pub fn is_running(self) -> bool {
         self == Self::ExternalController

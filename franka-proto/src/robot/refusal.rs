@@ -34,7 +34,7 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// Returns the refusal for `status` as an answer to `command`; `None` if `status` is not a
+    /// Returns the refusal for `status` as an answer to `command`, or `None` if `status` is not a
     /// refusal.
     ///
     /// `mode` is the robot's mode, usually from the newest state.
@@ -47,7 +47,7 @@ impl Refusal {
         })
     }
 
-    /// Returns the refusal in a reply to `command`; `None` if the reply is a success or answers
+    /// Returns the refusal in a reply to `command`, or `None` if the reply is a success or answers
     /// `Connect`.
     #[must_use]
     pub fn from_reply(command: Command, reply: &Reply<'_>, mode: RobotMode) -> Option<Self> {

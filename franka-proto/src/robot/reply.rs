@@ -85,7 +85,7 @@ impl<'a> Reply<'a> {
         Some((command, reply))
     }
 
-    /// True if this kind of reply answers `command`.
+    /// Returns true if this kind of reply answers `command`.
     #[must_use]
     pub fn suits(&self, command: Command) -> bool {
         match self {
@@ -160,8 +160,8 @@ impl<'a> Reply<'a> {
     /// length are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownStatus`]
-    /// if the version does not define the status byte.
+    /// Returns [`DecodeError::MessageSize`] if the payload is too short, and
+    /// [`DecodeError::UnknownStatus`] if the version does not define the status byte.
     pub fn decode(
         version: Version,
         command: Command,

@@ -107,8 +107,8 @@ impl Request {
     /// Returns the message that carries this request with `id`.
     ///
     /// # Errors
-    /// [`RequestError::Unsupported`] if the version has no such command, or does not support these
-    /// parameters.
+    /// Returns [`RequestError::Unsupported`] if the version has no such command, or does not
+    /// support these parameters.
     pub fn encode(&self, version: Version, id: CommandId) -> Result<Outgoing, RequestError> {
         let number = version
             .command_number(self.command())
@@ -178,7 +178,7 @@ impl Request {
     /// Decodes the request from a client's message. Bytes after the request's struct are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::UnknownCommand`] if the version has no command with this number,
+    /// Returns [`DecodeError::UnknownCommand`] if the version has no command with this number,
     /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
     /// if the version does not define one of its enumerators, such as a mode of a `Move`.
     pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {

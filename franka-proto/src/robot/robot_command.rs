@@ -45,7 +45,8 @@ impl RobotCommand {
     /// the datagram.
     ///
     /// # Errors
-    /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command has.
+    /// Returns [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command
+    /// has.
     pub fn decode(version: Version, bytes: &[u8]) -> Result<Self, DecodeError> {
         (version.table().command_codec.decode)(bytes)
     }

@@ -130,7 +130,7 @@ impl Errors {
         core::array::from_fn(|index| u8::from(self.0 >> index & 1 != 0))
     }
 
-    /// True if `error` is in the set.
+    /// Returns true if `error` is in the set.
     #[must_use]
     pub fn contains(self, error: RobotError) -> bool {
         self.0 & error.bit() != 0
@@ -152,13 +152,13 @@ impl Errors {
         Self(self.0 | other.0)
     }
 
-    /// True if the set is empty.
+    /// Returns true if the set is empty.
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Number of errors in the set.
+    /// Returns the number of errors in the set.
     #[must_use]
     pub fn len(self) -> usize {
         self.0.count_ones() as usize

@@ -32,7 +32,7 @@ impl Version {
         self.table().commands.get(index).copied()
     }
 
-    /// True if the version supports the command.
+    /// Returns true if the version supports the command.
     #[must_use]
     pub fn supports(self, command: Command) -> bool {
         self.table().commands.contains(&command)

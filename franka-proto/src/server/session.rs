@@ -84,13 +84,13 @@ impl<P: Protocol> Session<P> {
         }
     }
 
-    /// The version of the device.
+    /// Returns the version of the device.
     #[must_use]
     pub fn version(&self) -> P {
         self.version
     }
 
-    /// True if the handshake has succeeded.
+    /// Returns true if the handshake has succeeded.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.phase == ConnectionPhase::Open
@@ -129,7 +129,7 @@ impl<P: Protocol> Session<P> {
     /// model, use [`Session::model_header`] or [`Session::library_header`] instead.
     ///
     /// # Errors
-    /// [`ReplyError`] if the reply cannot be sent. The session is then unchanged.
+    /// Returns [`ReplyError`] if the reply cannot be sent. The session is then unchanged.
     pub fn reply(
         &mut self,
         id: CommandId,

@@ -90,7 +90,7 @@ impl State {
     /// Reads a datagram of the vacuum gripper. Additional bytes are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
+    /// Returns [`DecodeError::DatagramSize`] if there are fewer than [`State::SIZE`] bytes.
     pub fn decode(bytes: &[u8]) -> Result<Self, DecodeError> {
         let (wire, _) = VacuumGripperState::ref_from_prefix(bytes)
             .map_err(|_| DecodeError::datagram::<VacuumGripperState>(bytes))?;

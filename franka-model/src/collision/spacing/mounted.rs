@@ -74,7 +74,7 @@ impl Mounted {
         }
     }
 
-    /// Number of joints that move the capsule.
+    /// Returns the number of joints that move the capsule.
     pub(super) fn joints(&self) -> usize {
         match self.number {
             TOOL => Body::Tool.joints(),

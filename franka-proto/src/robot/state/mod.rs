@@ -144,7 +144,7 @@ impl RobotState {
     /// truncated the datagram.
     ///
     /// # Errors
-    /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
+    /// Returns [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
     #[inline]
     pub fn decode(version: Version, bytes: &[u8]) -> Result<Self, DecodeError> {
         (version.table().state_codec.decode)(bytes)
@@ -188,13 +188,13 @@ impl RobotState {
         filled.unwrap_or(self.elbow)
     }
 
-    /// True if the client must send motion commands.
+    /// Returns true if the client must send motion commands.
     #[must_use]
     pub fn generator_running(&self) -> bool {
         self.motion_generator_mode.is_running()
     }
 
-    /// True if the client must send torques.
+    /// Returns true if the client must send torques.
     #[must_use]
     pub fn controller_running(&self) -> bool {
         self.controller_mode.is_running()
