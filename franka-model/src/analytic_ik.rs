@@ -1,8 +1,7 @@
 //! All joint positions for a pose of the flange and one redundancy parameter.
 //!
-//! The arm has seven joints, and a pose has six coordinates. If the caller also fixes one number, a
-//! [`Redundancy`], only finitely many postures reach the pose. This module finds all of these
-//! postures:
+//! The arm has seven joints, and a pose has six coordinates. With one more number given, a
+//! [`Redundancy`], finitely many postures reach the pose. This module finds all of them:
 //!
 //! ```text
 //! joint 7 ──────────────┐
@@ -31,8 +30,8 @@
 //!
 //! The driver's own cycle does not call this module: it follows poses with
 //! [`differential_ik`](crate::differential_ik) and starts from
-//! [`inverse_kinematics`](crate::inverse_kinematics). Use this module in programs that choose a
-//! posture or refuse a target before a motion, such as planners.
+//! [`inverse_kinematics`](crate::inverse_kinematics). Use this module to choose a posture or to
+//! refuse a target before a motion.
 //!
 //! # Singularities
 //!
@@ -107,8 +106,7 @@ impl Redundancy {
 /// benchmarks measure the cost (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
 ///
 /// # Errors
-/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
-/// if the end-effector frame is not rigid.
+/// Returns [`IkError`] if an argument is not finite or the end-effector frame is not rigid.
 pub fn solve(
     model: &Model,
     target: &Isometry3<f64>,

@@ -58,7 +58,7 @@ impl AsBuilt {
         Placement::of(&self.chain(q), frame, ee).pose()
     }
 
-    /// Returns the pose and the zero Jacobian of a frame, as [`Model::pose_and_jacobian`] does.
+    /// Returns a frame's pose and zero Jacobian; see [`Model::pose_and_jacobian`].
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,
@@ -71,12 +71,12 @@ impl AsBuilt {
         (placement.pose(), jacobian)
     }
 
-    /// Returns the joint-space inertia, `[kg·m²]`, as [`Model::mass`] does.
+    /// Returns the joint-space inertia; see [`Model::mass`].
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         dynamics::mass(&self.chain(q), &self.model.links_with(load))
     }
 
-    /// Returns the torques that hold the arm still against gravity, as [`Model::gravity`] does.
+    /// Returns the torques against gravity; see [`Model::gravity`].
     pub fn gravity(
         &self,
         q: &JointVector,
@@ -86,8 +86,8 @@ impl AsBuilt {
         dynamics::gravity(&self.chain(q), &self.model.links_with(load), gravity_earth)
     }
 
-    /// Returns the joint accelerations, as [`Model::forward_dynamics`] does. The armature is a
-    /// symmetric matrix and may couple the joints.
+    /// Returns the joint accelerations; see [`Model::forward_dynamics`]. The armature is symmetric
+    /// and may couple the joints.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

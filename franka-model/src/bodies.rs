@@ -32,7 +32,6 @@ pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f6
 /// Several bodies combined into one rigid body, described about the shoulder.
 pub(crate) struct Composite {
     pub(crate) mass: f64,
-    /// Mass times the centre of mass.
     pub(crate) first_moment: Vector3<f64>,
     /// Inertia about the shoulder.
     pub(crate) inertia: Symmetric3,

@@ -62,8 +62,7 @@ impl Default for Damping {
     /// Returns a damping that changes a rotation by less than 10⁻⁵ and a translation by less than
     /// 10⁻⁹ at the ready pose. In a singularity, a rotation of the hand requires joint velocities
     /// of at most 8 rad/s per rad/s. If the elbow is stretched, a translation may require hundreds
-    /// of rad/s per m/s, because only turns of the hand can produce it. The box then bounds the
-    /// velocities.
+    /// of rad/s per m/s, because only turns of the hand can produce it.
     fn default() -> Self {
         Self {
             floor: 1.5e-3,
@@ -75,7 +74,7 @@ impl Default for Damping {
     }
 }
 
-/// Parameters of differential inverse kinematics.
+/// Parameters of the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferentialIk {
     /// Position error, in metres, that weighs as much as one radian of orientation error. It must

@@ -15,7 +15,7 @@ use crate::inertia::{RigidBody, cross, dot};
 use crate::jacobian::{Placement, zero_jacobian};
 use crate::{Jacobian, JointVector, MassMatrix, Twist};
 
-/// All quantities that a control law needs at one state of the arm, computed in one pass.
+/// All quantities that a control law needs at one state of the arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dynamics {
     /// Pose of the end effector in the base frame.

@@ -39,8 +39,8 @@ pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     let squared = dot(w, w);
     let turned = e.x * w.y - e.y * w.x;
     let up = (e.z * squared - dot(e, w) * w.z) / sqrt(squared);
-    // The size is a product of two distances: the wrist's from the axis of joint 1, and the elbow's
-    // from the line.
+    // The size is a product: the wrist's distance from axis 1 times the elbow's distance from the
+    // line.
     let size = sqrt(turned * turned + up * up);
     (size > UNDEFINED).then(|| atan2(turned, up))
 }

@@ -73,8 +73,7 @@ fn unit(i: usize) -> JointVector {
 
 const ZERO: JointVector = crate::joint_vector([0.0; 7]);
 const FLOATING: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-/// Number of cases per model. Debug builds check ten thousand cases in total, and release builds
-/// check ten thousand per model.
+/// Number of cases per model: ten thousand in total, or ten thousand per model in release builds.
 const CASES: usize = if cfg!(debug_assertions) {
     3_400
 } else {

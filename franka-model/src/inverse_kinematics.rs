@@ -61,8 +61,8 @@ impl core::error::Error for IkError {}
 /// end-effector frame is slightly non-rigid, the search uses the nearest rigid frame.
 ///
 /// # Errors
-/// Returns [`IkError`] if the search finds no solution or an argument is invalid. The search fails
-/// after at most 32 starts of 60 iterations each, about 2 ms.
+/// Returns [`IkError`] if the search finds no solution in up to 32 starts of 60 iterations each
+/// (about 2 ms), or if an argument is invalid.
 pub fn solve(
     model: &Model,
     target: &Isometry3<f64>,
@@ -91,8 +91,8 @@ pub fn solve(
 /// in the base frame, within [`TOLERANCE`], with any orientation.
 ///
 /// # Errors
-/// Returns [`IkError`] if the search finds no solution or an argument is invalid; its field
-/// `orientation` is then zero.
+/// Returns [`IkError`], with an `orientation` of zero, if the search finds no solution or an
+/// argument is invalid.
 pub fn solve_position(
     model: &Model,
     point: &Vector3<f64>,
@@ -137,7 +137,6 @@ enum Task {
     Position(Vector3<f64>, Vector3<f64>),
 }
 
-/// The residual of a target.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
     position: f64,
@@ -190,8 +189,7 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
             .scale_mut(ORIENTATION_WEIGHT);
         task.fixed_rows_mut::<3>(3).scale_mut(ORIENTATION_WEIGHT);
         // With a damping in proportion to the remaining error, the iteration converges from afar
-        // and near singularities. Close to the solution, the damping vanishes, and Gauss-Newton
-        // converges quadratically (Sugihara, 2011).
+        // and near singularities, and quadratically close to the solution (Sugihara, 2011).
         let damping = 0.5 * task.norm_squared() + DAMPING_FLOOR;
         let zero = JointVector::zeros();
         let problem = Problem::new(&weighted, &task, &zero, damping);
@@ -253,7 +251,7 @@ const STEP_MAX: f64 = 0.5;
 const ITERATIONS_MAX: usize = 60;
 /// Number of starts after the seed and the ready pose.
 const SPREAD_STARTS: u32 = 30;
-/// Number of starts for a point, which needs fewer starts than a pose.
+/// Number of starts for a point.
 const POSITION_STARTS: u32 = 6;
 
 /// Returns posture `index` of a sequence that fills the joint ranges evenly.

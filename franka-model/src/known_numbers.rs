@@ -1,4 +1,4 @@
-//! Tests against numbers that Pinocchio 4.1 computed from the same parameters at two postures.
+//! Numbers that Pinocchio 4.1 computed from the same parameters, at two postures.
 
 use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, Vector3};
 
@@ -21,8 +21,7 @@ pub(crate) fn hand_load() -> Load {
     }
 }
 
-/// The frame of the Franka Hand: turned by an eighth of a turn, with the tip 0.1034 m from the
-/// flange.
+/// The frame of the Hand, turned by an eighth of a turn, 0.1034 m from the flange.
 pub(crate) fn hand() -> EndEffector {
     let r = core::f64::consts::FRAC_1_SQRT_2;
     let mut f_t_ee = Matrix4::identity();

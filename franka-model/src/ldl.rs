@@ -1,14 +1,12 @@
 //! `L D Lᵀ` factorisation of small symmetric matrices, with a size known at compile time.
 //!
-//! The factorisation needs no square roots, and the compiler unrolls the loops. It therefore takes
-//! half the time of a general factorisation.
+//! Without square roots, and with unrolled loops, it takes half the time of a general
+//! factorisation.
 
 /// A factorisation of a positive definite matrix.
 #[derive(Debug)]
 pub(crate) struct Ldl<const N: usize> {
-    /// The triangle below the diagonal.
     lower: [[f64; N]; N],
-    /// Reciprocals of the pivots.
     reciprocals: [f64; N],
     pivots: [f64; N],
 }
@@ -67,7 +65,6 @@ impl<const N: usize> Ldl<N> {
         (factor, positive)
     }
 
-    /// Returns the solution for a right-hand side.
     #[inline(always)]
     pub(crate) fn solve(&self, right: &[f64; N]) -> [f64; N] {
         let mut x = *right;

@@ -68,8 +68,8 @@ impl Default for Load {
 }
 
 /// `mass * S(r)^2` with the skew matrix `S`: minus the inertia of a point mass at `r` about the
-/// origin. Like the vendor's code, this function multiplies the first factor by the mass, because
-/// the order affects the last bit.
+/// origin. The first factor is multiplied by the mass, as in the vendor's code, because the order
+/// affects the last bit.
 fn skew_squared(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     let skew = r.cross_matrix();
     skew * mass * skew

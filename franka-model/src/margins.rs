@@ -71,7 +71,7 @@ impl JointLimits {
         }
     }
 
-    /// Returns the deceleration, `[rad/s²]`, with which joint `i` brakes.
+    /// Returns the deceleration of a braking joint, `[rad/s²]`.
     fn deceleration(&self, i: usize) -> f64 {
         match &self.envelope {
             Some(envelope) => envelope.deceleration[i],
@@ -126,7 +126,7 @@ mod tests {
             let (q, dq) = (random.posture(model), random.joints(2.0));
             let margins = limits.margins(&q, &dq);
             for i in 0..7 {
-                // The test integrates small steps of constant deceleration.
+                // Integrates small steps of constant deceleration.
                 let deceleration = match &limits.envelope {
                     Some(envelope) => envelope.deceleration[i],
                     None => limits.acceleration[i],

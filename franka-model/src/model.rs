@@ -222,8 +222,8 @@ impl Model {
     /// diag(armature)) ddq = tau − C dq − g`.
     ///
     /// `armature` is the reflected rotor inertia of each joint `[kg·m²]`. Returns `None` if the
-    /// matrix `M + diag(armature)` is not positive definite. Possible causes are a number that is
-    /// not finite, a negative armature, and a load that is not physical.
+    /// matrix `M + diag(armature)` is not positive definite. Causes are a number that is not
+    /// finite, a negative armature, or a load that is not physical.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

@@ -32,11 +32,10 @@ impl OperationalSpace {
     /// inertia.
     ///
     /// The point is the origin of the Jacobian's frame. All results are in the axes of the
-    /// Jacobian, which are base axes for a zero Jacobian. For another point of the last link, move
-    /// the end effector to that point ([`EndEffector::f_t_ee`]).
+    /// Jacobian, which are base axes for a zero Jacobian. For another point of the last link,
+    /// change [`EndEffector::f_t_ee`].
     ///
-    /// Returns `None` if `mass` is not positive definite. The mass matrix of a physical arm is
-    /// always positive definite.
+    /// Returns `None` if `mass` is not positive definite. A physical arm's matrix always is.
     pub fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Option<Self> {
         // With M = L Lᵀ, the mobility is a product of a matrix and its transpose, so it is
         // symmetric to the last digit.

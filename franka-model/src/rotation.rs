@@ -1,8 +1,7 @@
 //! Rotation vectors, which describe orientations by three numbers, and their derivatives.
 //!
-//! A rotation vector `phi` is the axis times the angle. A path of orientations is `R(t) =
-//! exp(phi(t)) R0` with a fixed orientation `R0`. The angular velocity and acceleration are then,
-//! in base axes,
+//! A rotation vector `phi` is the axis times the angle. On a path of orientations `R(t) =
+//! exp(phi(t)) R0` with constant `R0`, the angular velocity and acceleration in base axes are
 //!
 //! ```text
 //! omega = J(phi) phi'                 J: left Jacobian of SO(3)

@@ -15,9 +15,8 @@ pub const DISTORTION_MAX: f64 = 1e-3;
 
 /// Returns the rigid transform nearest to `matrix`.
 ///
-/// Returns `None` if an element is not finite, if the last row is not `0 0 0 1`, or if the rotation
-/// block deviates by more than `DISTORTION_MAX` (1e-3) from every rotation, for example because it
-/// is mirrored, scaled or sheared.
+/// Returns `None` if an element is not finite, or if the last row is not `0 0 0 1`. Also returns
+/// `None` if the rotation block deviates by more than `DISTORTION_MAX` (1e-3) from every rotation.
 pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
     let last_row = [matrix.m41, matrix.m42, matrix.m43, matrix.m44];
     if last_row != [0.0, 0.0, 0.0, 1.0] {
@@ -54,9 +53,9 @@ pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
 /// Returns the rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) /
 /// 2`.
 ///
-/// The iteration converges for every matrix of positive determinant, and quadratically near a
+/// The iteration converges for every matrix with a positive determinant, quadratically near a
 /// rotation (Higham, Functions of Matrices, 2008, section 8.3). Returns `None` for other matrices,
-/// and if 20 steps are not enough. Only matrices that are almost singular need more steps.
+/// and if 20 steps are not enough. Only almost singular matrices need more.
 pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
     let determinant = block.determinant();
     if determinant.is_nan() || determinant <= 0.0 {

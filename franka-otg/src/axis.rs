@@ -14,7 +14,6 @@ use crate::state::AxisState;
 use crate::task::{ROUNDING, Task};
 use crate::transfer::stop;
 
-/// The solved problem of one axis.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axis {
     start: AxisState,
@@ -256,8 +255,7 @@ fn append_stop(limits: AxisLimits, profile: &mut Profile) {
     profile.finish_here();
 }
 
-/// Returns the position at which the least-time stop from `start` ends. The function creates no
-/// plan.
+/// Returns the position at which the least-time stop from `start` ends.
 #[must_use]
 pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     if start.is_at_rest() {

@@ -27,12 +27,11 @@ impl Pieces {
         self.list[..self.len].iter().copied()
     }
 
-    /// Returns the sum of the durations of the pieces.
     pub(crate) fn duration(&self) -> f64 {
         self.iter().map(|(_, t)| t).sum()
     }
 
-    /// Appends a piece and returns the remaining task.
+    /// Appends a piece, and returns the remaining task.
     pub(crate) fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
         // Pieces have positive durations; NaN cannot occur here.
         if t > 0.0 && self.len < self.list.len() {

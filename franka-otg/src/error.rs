@@ -36,9 +36,8 @@ pub enum PlanError {
         axis: usize,
     },
     /// The distance or the velocity differs from the limits by too many orders of magnitude, so
-    /// `f64` cannot represent the powers in the solution. The bound is 100 decades, in units of
-    /// `A^3/J^2` for the distance and `A^2/J` for the velocity (`A`: acceleration limit, `J`: jerk
-    /// limit).
+    /// `f64` cannot represent the powers in the solution. The bound is 100 decades, in units of the
+    /// acceleration and jerk limits.
     #[error(
         "state, target and limits of axis {axis} differ by too many orders of magnitude to \
         plan with, expected comparable magnitudes"

@@ -192,7 +192,7 @@ const NEAR: f64 = 0.5;
 const BREAKS: usize = 16;
 
 /// Largest number of candidates found. Each break may be a candidate. Between two breaks, and after
-/// the last break, the end of each extremal motion may cross the target once.
+/// the last break, each extremal motion may cross the target once.
 const FOUND: usize = 48;
 
 /// Largest number of candidates kept. Feasible durations form at most three intervals. The other

@@ -146,8 +146,8 @@ impl<const N: usize> Generator<N> {
     /// effect.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
-    /// the magnitudes differ too much. After an error, the current motion continues.
+    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// After an error, the current motion continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
             && now.position == *target
@@ -164,18 +164,18 @@ impl<const N: usize> Generator<N> {
     ///
     /// Use this method to follow a moving object, with a new target before each arrival, or to pass
     /// through points without a stop. If no new target is set, the motion continues for one cycle
-    /// past the old target and then stops in the least time, so an arm does not keep moving if the
-    /// program stalls.
+    /// past the old target, and then stops in the least time. An arm therefore stops if the program
+    /// stalls.
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
     /// be early cannot wait at a moving target. It moves back and approaches again, possibly after
     /// it has passed the target, and the other axes wait for it.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
-    /// the magnitudes differ too much. Returns [`PlanError::TargetMotion`] if `|velocity| +
-    /// acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or if the acceleration exceeds
-    /// its limit. After an error, the current motion continues.
+    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// Returns [`PlanError::TargetMotion`] if `|velocity| + acceleration^2 / (2 jerk limit)`
+    /// exceeds the velocity limit, or if the acceleration exceeds its limit. After an error, the
+    /// current motion continues.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
@@ -192,13 +192,12 @@ impl<const N: usize> Generator<N> {
     /// Changes the limits of the current motion, which keeps its target. A call with the current
     /// limits has no effect.
     ///
-    /// If the current state is outside the new limits, the axes brake until they are within the
-    /// limits.
+    /// If the current state is outside the new limits, the axes brake into them.
     ///
     /// # Errors
-    /// Returns [`PlanError::OutOfRange`] if the magnitudes differ too much, and
-    /// [`PlanError::TargetMotion`] if the target moves faster than the new limits allow. After an
-    /// error, the previous limits still apply.
+    /// Returns [`PlanError::TargetMotion`] if the target moves faster than the new limits allow,
+    /// and [`PlanError::OutOfRange`] if the magnitudes differ too much. After an error, the
+    /// previous limits still apply.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -221,8 +220,7 @@ impl<const N: usize> Generator<N> {
     /// A motion on a straight line stops on this line. If all axes have the same ratio of
     /// acceleration limit to jerk limit, such a stop takes no longer than separate stops. Otherwise
     /// it takes longer by about the difference between these ratios. If the motion is not on a
-    /// line, each axis stops separately. This method cannot fail, because the state and the limits
-    /// were checked when they were set.
+    /// line, each axis stops separately. Braking cannot fail, because all inputs have been checked.
     pub fn brake(&mut self) {
         if self.heading != Heading::Rest {
             self.plan_stop();
@@ -235,9 +233,8 @@ impl<const N: usize> Generator<N> {
     /// The velocity of the output jumps, so the caller must ensure that `share` is close to 1.
     ///
     /// # Errors
-    /// Returns [`PlanError::OutOfRange`] if the magnitudes differ too much, and
-    /// [`PlanError::TargetMotion`] if the limits do not allow the target's motion. After an error,
-    /// the current motion continues.
+    /// Returns [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`] if no plan exists. After an
+    /// error, the current motion continues.
     pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         let state = State {
             velocity: self.state.velocity.map(|velocity| share * velocity),
@@ -268,8 +265,8 @@ impl<const N: usize> Generator<N> {
     /// output.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
-    /// the magnitudes differ too much. After an error, the current motion continues.
+    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// After an error, the current motion continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
     }

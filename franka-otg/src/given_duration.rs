@@ -19,7 +19,7 @@
 //! the equation of time. Therefore the duration is exact, and rounding affects only the position,
 //! where its effect is smallest.
 //!
-//! **Stop, then go.** This family applies if no cruise fits; see [`crate::stop_then_go`].
+//! **Stop, then go.** Used if no cruise fits; see [`crate::stop_then_go`].
 //!
 //! Two other methods are not suitable. Scaling the time of the whole profile would change the
 //! velocity at the start. Lowering all three limits together makes the duration discontinuous where

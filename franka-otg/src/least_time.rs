@@ -25,8 +25,7 @@
 //!
 //! from the right, so they cannot leave the interval. `x` is negative if the axis already brakes
 //! and only needs to brake less. A search over peak velocities misses this profile, and its result
-//! takes up to 28 % longer. The usual method computes all families of profiles and tests each
-//! result. Because of rounding, that method fails where two families meet.
+//! takes up to 28 % longer.
 
 use crate::scalar::{cbrt, sqrt};
 use crate::shape::Shape;
@@ -140,8 +139,7 @@ impl ExtendedStart {
         Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
     }
 
-    /// Returns the smallest acceleration at which the motion may turn, which is the value of an
-    /// immediate stop.
+    /// Returns the smallest acceleration at which the motion may turn (for an immediate stop).
     fn least_ramp(&self) -> f64 {
         if self.c < 0.0 {
             self.a.max(sqrt(-self.c))

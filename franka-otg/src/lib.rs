@@ -34,8 +34,7 @@
 //! ```
 //!
 //! `cargo run --release -p franka-otg --example plot` draws an irregular target and the smooth
-//! command (the picture on the book's page on the generator). `cargo bench -p franka-otg` measures
-//! how long the plan to a new target takes.
+//! command (the picture on the book's page on the generator).
 //!
 //! # Modules
 //!
@@ -60,11 +59,11 @@
 //!
 //! An axis may wait at rest. The positions at which it can rest at time `T` therefore form an
 //! interval that only grows with `T`. This has three consequences. First, every duration above the
-//! least duration is feasible, so the common duration is the longest of the axes' least durations.
-//! Second, the fastest motion is "push at the limits, then stop", in the direction from the end of
-//! an immediate stop to the target. Third, the end of the motion is a monotone function of the
-//! duration of the push. A comparison of the target with a few breakpoints therefore selects either
-//! a closed form or one short convex search (`least_time`).
+//! least duration is feasible, so the common duration is the longest least duration of the axes.
+//! Second, the fastest motion is "push at the limits, then stop", from the end of an immediate stop
+//! towards the target. Third, the end of the motion grows with the duration of the push. A
+//! comparison with a few breakpoints therefore selects a closed form or one short convex search
+//! (`least_time`).
 //!
 //! # Targets in motion
 //!
@@ -84,8 +83,7 @@
 //!   rest without overshoot, it does not overshoot when it waits for slower axes. One case is
 //!   special: an axis whose stop ends exactly at its target cannot arrive later without overshoot,
 //!   so it arrives early and waits there (`stop_then_go`).
-//! - The path is straight if the motion starts at rest, and stays straight while new targets are on
-//!   the same line (`straight_line`).
+//! - From rest, and while new targets are on the same line, the path is straight (`straight_line`).
 //! - The generator does not allocate or panic for finite inputs. It returns an error for inputs
 //!   that are out of range for `f64`.
 //!

@@ -17,9 +17,8 @@
 //!   such a profile always exists. If a motion through a constant velocity fits, that motion is
 //!   used instead ([`Plateau`]).
 //!
-//! The velocity of the target must also be reachable. This is the same problem, with velocity and
-//! acceleration in place of position and velocity. If the target accelerates, this problem may have
-//! its own blocked interval (`velocity_change`).
+//! The velocity of the target must also be reachable. This is the same problem with one derivative
+//! less. If the target accelerates, it may have its own blocked interval (`velocity_change`).
 //!
 //! The usual solution computes all profiles that fit. It solves quartic and sixth-order equations
 //! in eleven families per direction. Half of these fail because of rounding where two families
@@ -152,8 +151,8 @@ mod tests {
     proptest! {
         #![proptest_config(cases(3000))]
 
-        /// A target at rest is a special case of a target in motion. The solution for targets at
-        /// rest shares no equation with this solution, and must yield the same duration.
+        /// Compares this solution, for a target at rest, with the independent solution for targets
+        /// at rest.
         #[test]
         fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
             exponent in -1.5_f64..2.5, coasting in -1.0_f64..1.0, bend in -1.0_f64..1.0, distance in -3.0_f64..1.0, up in any::<bool>(),

@@ -51,7 +51,6 @@ pub(crate) struct PlanStart<'a, const N: usize> {
 }
 
 impl<const N: usize> Plan<N> {
-    /// Creates a plan that stays at `position`.
     pub(crate) fn at_rest(position: [f64; N]) -> Self {
         Self {
             path: Path::PerAxis,

@@ -2,8 +2,8 @@
 //!
 //! The motion is a transfer to a velocity `w`, a cruise, and a transfer to the end's velocity. The
 //! first transfer has the direction `s`, and the second has the direction `u`. Both ends are
-//! extended by their jerks to zero acceleration: `c0 = v0 - s a0^2/2` and `cf = vf + u af^2/2`. The
-//! duration of the cruise, and the distance of the motion's end beyond the target, are
+//! extended to zero acceleration: `c0 = v0 - s a0^2/2` and `cf = vf + u af^2/2`. The duration of
+//! the cruise, and the distance of the end beyond the target, are
 //!
 //! ```text
 //! cruise(w) = T + s a0 + u af - time(w - c0) - time(cf - w)

@@ -36,7 +36,6 @@ impl Segment {
 }
 
 impl Profile {
-    /// Creates a profile without motion, at `position`.
     pub(crate) const fn at_rest(position: f64) -> Self {
         Self {
             origin: position,
@@ -118,9 +117,8 @@ impl Profile {
         self.end = self.origin + self.front.position;
     }
 
-    /// Sets the profile to the weighted mean of two motions that have the same start and the same
-    /// duration. The first motion has the weight `weight`, and the second has `1 - weight`. The
-    /// mean ends at `target`.
+    /// Sets the profile to the mean of two motions with the same start and duration, weighted with
+    /// `weight` and `1 - weight`. The mean ends at `target`.
     ///
     /// The states of the segments are means of the states of the two motions, and not sums over the
     /// previous segments. They are therefore equally exact at the start, at the end, and after a
@@ -152,7 +150,6 @@ impl Profile {
         self.lead_to(target, 0.0, 0.0, [0.0; 3]);
     }
 
-    /// Returns the end time of a segment.
     fn end_of(&self, segment: usize) -> f64 {
         match self.segments[..self.len].get(segment + 1) {
             Some(next) => next.start,
@@ -177,7 +174,6 @@ impl Profile {
         self.front
     }
 
-    /// Returns the final position.
     pub(crate) const fn end(&self) -> f64 {
         self.end
     }

@@ -16,7 +16,6 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// Returns the sum of the durations.
     pub(crate) fn duration(&self) -> f64 {
         self.t.iter().sum()
     }
@@ -50,11 +49,8 @@ impl Shape {
 /// solution.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretched {
-    /// The pieces before the shape.
     pub(crate) before: Pieces,
-    /// Direction of the shape.
     pub(crate) sign: f64,
-    /// The shape.
     pub(crate) shape: Shape,
 }
 

@@ -6,9 +6,8 @@
 //! axis determines all three limits, the motion takes as long as a motion with
 //! [`Time`](crate::Synchronisation::Time). Otherwise it takes longer.
 //!
-//! Because of rounding, the velocities and accelerations of a motion are not exactly parallel to
-//! its line. While targets stay on the line, the scalar state therefore continues, and is not
-//! derived from the axes again.
+//! Because of rounding, the axes of a motion are not exactly parallel to its line. Therefore the
+//! scalar state continues while targets stay on the line, and is not derived from the axes again.
 
 use crate::state::{AxisState, State};
 
@@ -17,7 +16,7 @@ use crate::state::{AxisState, State};
 pub(crate) struct StraightLine<const N: usize> {
     origin: [f64; N],
     direction: [f64; N],
-    /// The axis with the largest component.
+    /// Axis with the largest component.
     main: usize,
 }
 
@@ -65,8 +64,8 @@ impl<const N: usize> StraightLine<N> {
             })
     }
 
-    /// Returns true if `vector` is parallel to the line. Each component is compared separately, so
-    /// the unit of one axis does not affect another axis.
+    /// Returns true if `vector` is parallel to the line. The comparison is separate for each
+    /// component, so units do not matter.
     fn is_parallel(&self, vector: &[f64; N]) -> bool {
         (0..N).all(|i| {
             let expected = vector[self.main] * self.direction[i];

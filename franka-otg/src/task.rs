@@ -11,13 +11,9 @@ use crate::transfer::stop_distance;
 /// A motion to rest, in units in which the acceleration limit and the jerk limit are one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Task {
-    /// Distance to the target.
     pub(crate) d: f64,
-    /// Velocity.
     pub(crate) v: f64,
-    /// Acceleration.
     pub(crate) a: f64,
-    /// Velocity limit.
     pub(crate) top: f64,
     /// Expected rounding error of `d`. It is zero for a state at rest, because from rest even the
     /// smallest distance counts.
@@ -25,8 +21,8 @@ pub(crate) struct Task {
 }
 
 impl Task {
-    /// Returns the task in units of the limits, and the unit of time `A/J` (`A`: acceleration
-    /// limit, `J`: jerk limit).
+    /// Returns the task in units of the limits, and the unit of time (acceleration limit divided by
+    /// jerk limit).
     ///
     /// Returns `None` if the quantities differ by more than 100 decades, because their squares
     /// could overflow.
@@ -43,8 +39,7 @@ impl Task {
         representable.then_some((task, unit))
     }
 
-    /// Returns the task and the unit of time as [`Task::new`] does, for quantities that are known
-    /// to differ by fewer decades.
+    /// Returns the same as [`Task::new`], for quantities that are known to be in range.
     pub(crate) fn unchecked(state: AxisState, target: f64, limits: AxisLimits) -> (Self, f64) {
         let unit = limits.acceleration / limits.jerk;
         let per_velocity = 1.0 / (limits.acceleration * unit);

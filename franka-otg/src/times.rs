@@ -8,7 +8,6 @@ pub(crate) struct Times<const C: usize> {
 }
 
 impl<const C: usize> Times<C> {
-    /// An empty list.
     pub(crate) const NONE: Self = Self {
         list: [0.0; C],
         len: 0,

@@ -1,11 +1,10 @@
 //! The durations in which an axis can reach the velocity and the acceleration of a target, at any
 //! position.
 //!
-//! This is the problem of the position, with one derivative less. The velocities that are reachable
-//! in one duration form an interval. At its ends, the acceleration first rises and then falls, or
-//! first falls and then rises. The equations follow from the areas under these accelerations. An
-//! axis cannot wait at the acceleration of the target either, so a blocked interval may also exist
-//! here.
+//! The velocities that are reachable in one duration form an interval. At its ends, the
+//! acceleration first rises and then falls, or first falls and then rises. The equations follow
+//! from the areas under these accelerations. An axis cannot wait at the acceleration of the target
+//! either, so a blocked interval may also exist here.
 
 use crate::scalar::sqrt;
 use crate::task::{ROUNDING, Task};

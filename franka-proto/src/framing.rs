@@ -120,8 +120,8 @@ pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> 
     next_message_within(received, MAX_MESSAGE_SIZE)
 }
 
-/// Returns the first message as [`next_message`] does, with the longest allowed size from the
-/// caller, such as [`MAX_REQUEST_SIZE`].
+/// Returns the first message as [`next_message`] does, with a limit such as [`MAX_REQUEST_SIZE`]
+/// for its size.
 ///
 /// # Errors
 /// Returns [`FrameError`] if the size is smaller than the header or larger than `limit`.

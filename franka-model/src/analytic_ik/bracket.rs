@@ -135,7 +135,7 @@ fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> (f64, f64) {
 }
 
 const STEPS_MAX: u32 = 60;
-/// Number of parabola steps without improvement after which a search stops.
+/// Number of parabola steps without improvement that end a search.
 const SETTLED: u32 = 3;
 /// Number of samples between an end and the point next to it.
 const END_STEPS: u32 = 5;

@@ -27,7 +27,7 @@ pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Soluti
     found
 }
 
-/// Returns the angles of joint 7 at which the wrist has the given distance from the shoulder.
+/// Returns the angles of joint 7 at which the wrist has this distance from the shoulder.
 fn circle(flange: &Flange, squared_distance: f64) -> [Option<f64>; 2] {
     let d = &flange.from_shoulder;
     let (p, q) = (dot(d, &flange.x), dot(d, &flange.y));

@@ -8,17 +8,16 @@ use crate::frame::EndEffector;
 use crate::inverse_kinematics::{self, IkError};
 use crate::model::Model;
 
-/// Returns the posture nearest to `q` that brings the end effector to `target`, within the limits
-/// and for any redundancy parameter. The nearest posture has the smallest sum of squared joint
-/// differences. Returns `None` if no posture was found.
+/// Returns the posture nearest to `q` that brings the end effector to `target`, within the limits.
+/// The nearest posture has the smallest sum of squared joint differences. Returns `None` if no
+/// posture was found.
 ///
 /// The search sweeps joint 7 through its range and refines the best posture of every branch. The
 /// search takes about 0.3 ms. The sweep may miss solutions that exist only in a range of joint 7 of
 /// a hundredth of a radian. [`reach`](super::reach) searches more finely.
 ///
 /// # Errors
-/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
-/// if the end-effector frame is not rigid.
+/// Returns [`IkError`] if an argument is not finite or the end-effector frame is not rigid.
 pub fn nearest(
     model: &Model,
     target: &Isometry3<f64>,
@@ -73,7 +72,6 @@ fn distance(solution: &Solution, q: &JointVector) -> f64 {
     (solution.q - q).norm_squared()
 }
 
-/// Number of intervals of the sweep.
 const STEPS: u32 = 96;
 /// Resolution of joint 7, `[rad]`.
 const RESOLUTION: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Reachability of a pose or a point, and its distance from the boundary of the reachable set.
 //!
-//! Use these functions for planning, not in a control cycle. They take about 10 µs for targets well
-//! inside the reachable set, and up to about 10 ms for targets far outside.
+//! Use these functions for planning, not in a control cycle. They take from about 10 µs (target
+//! well inside) to about 10 ms (target far outside).
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -38,8 +38,7 @@ impl Reach {
 /// Computes the reachability of the pose `target` for the end effector.
 ///
 /// # Errors
-/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
-/// if the end-effector frame is not rigid.
+/// Returns [`IkError`] if an argument is not finite or the end-effector frame is not rigid.
 pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
     let flange = flange_of(target, ee)?;
     let limits = model.joint_limits();
@@ -59,12 +58,11 @@ pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<
 /// Computes the reachability of `point` `[m]`, in the base frame, for the end effector's origin
 /// with any orientation.
 ///
-/// The search iterates from several starting postures. If no iteration reaches the point, the point
-/// is almost certainly out of reach, but this is not proven.
+/// If the search, which has several starting postures, does not reach the point, the point is
+/// almost certainly out of reach.
 ///
 /// # Errors
-/// Returns [`IkError::NotFinite`] if a number is not finite, and [`IkError::EndEffectorNotRigid`]
-/// if the end-effector frame is not rigid.
+/// Returns [`IkError`] if an argument is not finite or the end-effector frame is not rigid.
 pub fn position(model: &Model, point: &Vector3<f64>, ee: &EndEffector) -> Result<Reach, IkError> {
     let mut seed = crate::READY;
     let mut find =
@@ -165,7 +163,6 @@ fn margin(
     if inside { FAR } else { f64::NEG_INFINITY }
 }
 
-/// Number of intervals of a sweep of joint 7.
 const STEPS: u32 = 32;
 /// Distance between two examined points of the line, `[m]`.
 const STRIDE: f64 = 5e-3;

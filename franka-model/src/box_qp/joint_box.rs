@@ -22,12 +22,11 @@ pub struct JointBox {
 }
 
 impl JointBox {
-    /// Creates the box between `lower` and `upper`. A bound may be infinite and is then never
-    /// active.
+    /// Creates the box between `lower` and `upper`. An infinite bound is never active.
     ///
     /// If a lower bound exceeds its upper bound, both become their midpoint, and the variable is
-    /// fixed. This rule is meant for rounding errors. If bounds can contradict each other by more
-    /// than rounding, the caller must first decide which bound to drop.
+    /// fixed. If bounds can contradict each other by more than rounding, the caller must first
+    /// decide which bound to drop.
     pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
         let mut bounds = Self {
             lower: *lower,

@@ -60,8 +60,7 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Returns the gradient `Aᵀ(A x − t) + d (x − x0)`. The function computes the residual `A x −
-    /// t` first, for precision.
+    /// Returns the gradient `Aᵀ(A x − t) + d (x − x0)`.
     #[inline(always)]
     pub(super) fn gradient(&self, x: &JointVector) -> [f64; 7] {
         let columns = &self.rows.data.0;

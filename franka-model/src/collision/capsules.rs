@@ -120,15 +120,15 @@ const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     Capsule::new(turned(start), turned(end), radius)
 }
 
-/// The vendor's capsules of the Hand's body, and of its fingers at any width. Source:
-/// `franka_description` 1.0.1, `end_effectors/common/franka_hand.xacro`.
+/// The vendor's capsules of the Hand. Source: `franka_description` 1.0.1,
+/// `end_effectors/common/franka_hand.xacro`.
 pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.04], [0.0, 0.05, 0.04], 0.04),
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// Capsules that contain the Hand. The capsule of the body was fitted like those of the links. The
-/// fingers have the vendor's capsule, and a second capsule where they join the body.
+/// Capsules that contain the Hand. The body's capsule was fitted as the links' capsules. The
+/// fingers have the vendor's capsule, and a second one where they join the body.
 pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],

@@ -98,9 +98,8 @@ impl Body {
     }
 }
 
-/// Distance between two bodies, and its derivative. `P` identifies the bodies. Within the arm it is
-/// `(Body, Body)`, with the body nearer to the base first; for an obstacle it is the arm's
-/// [`Body`].
+/// Distance between two bodies, and its derivative. `P` identifies the bodies: `(Body, Body)`
+/// within the arm, with the body nearer to the base first, or one [`Body`] for an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity<P> {
     /// The bodies.
@@ -111,9 +110,8 @@ pub struct Proximity<P> {
     pub gradient: JointVector,
     /// Unit vector from the inner body, or the obstacle, to the outer body, in base axes.
     pub normal: Vector3<f64>,
-    /// The nearest points, `[m]`, in the base frame. The first point is on the axis of the inner
-    /// body's capsule, or on the surface of the obstacle. The second is on the axis of the outer
-    /// body's capsule.
+    /// The nearest points, `[m]`, in the base frame. The first is on the inner body's axis or on
+    /// the obstacle's surface, and the second is on the outer body's axis.
     pub points: [Vector3<f64>; 2],
 }
 

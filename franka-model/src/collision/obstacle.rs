@@ -171,8 +171,8 @@ impl Axis {
     }
 
     /// Returns half the derivative of the squared distance to the box, which is zero inside. The
-    /// slope is piecewise linear in `t` and never decreases, because the distance to a convex body
-    /// is convex.
+    /// slope is piecewise linear and never decreases, because the distance to a convex body is
+    /// convex.
     fn slope(&self, t: f64) -> f64 {
         (self.at(t) - self.clamped(t)).dot(&self.along)
     }
@@ -273,7 +273,6 @@ fn unit(i: usize) -> Vector3<f64> {
     Vector3::from_fn(|row, _| if row == i { 1.0 } else { 0.0 })
 }
 
-/// Returns -1, 0 or 1.
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0

@@ -13,7 +13,6 @@ pub(super) struct Segment {
     pub(super) start: Vector3<f64>,
     /// End minus start.
     pub(super) along: Vector3<f64>,
-    /// Square of the length of `along`.
     square: f64,
     pub(super) radius: f64,
 }

@@ -62,10 +62,10 @@ impl Shape<'static> {
     /// capsules **do not cover** the links: for example, the elbow extends several centimetres
     /// beyond them. For obstacles use [`covering`](Self::covering).
     ///
-    /// The shape contains a pair of capsules if they come within 5 cm of each other somewhere
-    /// within the position limits of either robot, and if at least one link is between their links.
-    /// Links 1 and 3 are no pair, because their capsules overlap around the shoulder, where the
-    /// links themselves fit together.
+    /// The shape contains a pair of capsules if at least one link is between their links, and if
+    /// they come within 5 cm of each other within the position limits of either robot. Links 1 and
+    /// 3 are no pair, because their capsules overlap around the shoulder, where the links
+    /// themselves fit together.
     pub const fn vendor() -> Self {
         Self {
             arm: &VENDOR,

@@ -9,11 +9,10 @@
 //! A point force `f` on link `k` loads joints 1 to `k`, each with the torque `axis · ((p − origin)
 //! × f)`. It does not load the joints further out. [`locate`] divides the surface of the arm into
 //! patches (1.5 to 4 centimetres wide, on the capsules that were fitted to the links). For each
-//! patch, the function computes the force that explains the torques best, and how well this force
-//! explains them. The function assumes that a contact pushes: the force points into the surface,
-//! and its likelihood decreases with its angle from the normal. The probability of a body is the
-//! sum of the probabilities of the body's patches. The contact point is the mean of the patches
-//! around the best patch.
+//! patch, it computes the force that explains the torques best, and how well this force explains
+//! them. A contact pushes: the force points into the surface, and its likelihood decreases with its
+//! angle from the normal. A body's probability is the sum over its patches. The contact point is
+//! the mean of the patches around the best patch.
 //!
 //! # What can be known
 //!
@@ -31,8 +30,8 @@
 //! - Shifting a force along its own line does not change the torques. The function returns the
 //!   point where that line enters the arm.
 //!
-//! The function treats two simultaneous contacts as one contact. It does not model a torque without
-//! a force (a firm grip). In both cases the result has a residual, or is [`Unknown::Unexplained`].
+//! Two simultaneous contacts are treated as one contact, and a torque without a force (a firm grip)
+//! is not modelled. Both leave a residual, or result in [`Unknown::Unexplained`].
 //!
 //! # Errors of external torques
 //!
@@ -377,10 +376,9 @@ impl<'a> Search<'a> {
 
     /// Returns the force on a patch that explains the torques best, or `None` if this force pulls.
     ///
-    /// The function minimises the weighted square of the residual torques. It treats the force
-    /// across the normal as an additional measurement with the value zero. The standard deviation
-    /// of this measurement is proportional to the force along the normal, so several passes are
-    /// needed.
+    /// The function minimises the weighted square of the residual torques. The force across the
+    /// normal counts as a measurement of zero. Its standard deviation is proportional to the force
+    /// along the normal, so the search needs several passes.
     fn fit(&self, of: Body, patch: &Patch) -> Option<Fit> {
         let joints = of.joints();
         let (mut normal_matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -429,7 +427,6 @@ fn inverse(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, f64)> {
     (determinant > 0.0).then(|| (Matrix3::from_columns(&[a, b, c]) / determinant, determinant))
 }
 
-/// Returns the body with this number.
 fn body(number: usize) -> Body {
     match number {
         0..=7 => Body::Link(number as u8),
@@ -447,7 +444,6 @@ fn largest(values: &[f64; BODIES], except: Option<usize>) -> usize {
 /// Number of bodies: the base, seven links and a tool.
 const BODIES: usize = 9;
 
-/// Number of capsules of an arm with a tool.
 const SURFACES: usize = crate::collision::CAPACITY;
 
 /// Width of the patches for the choice of the body, by body number, `[m]`. If a force moves to the

@@ -8,7 +8,6 @@ use crate::collision::Capsule;
 use crate::inertia::{cross, dot};
 use crate::scalar::{sin_cos, sqrt};
 
-/// A piece of a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch {
     /// Middle of the patch, in the frame in which the capsule's ends are given.
@@ -19,8 +18,8 @@ pub(super) struct Patch {
     pub(super) area: f64,
 }
 
-/// Calls `each` with patches that cover the capsule, each about `spacing` metres wide. The patches
-/// form bands around the axis, from pole to pole, and each band is cut into equal pieces.
+/// Calls `each` with patches that cover the capsule, each about `spacing` metres wide: bands around
+/// the axis, from pole to pole, cut into equal pieces.
 pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)) {
     let along = capsule.end - capsule.start;
     let length = sqrt(dot(&along, &along));

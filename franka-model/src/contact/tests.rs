@@ -1,4 +1,4 @@
-//! Contacts whose torques are computed exactly. `tests/lockstep/contact.rs` tests a simulated arm.
+//! Contacts whose torques are computed exactly.
 
 #![allow(clippy::result_large_err)] // See `locate`.
 

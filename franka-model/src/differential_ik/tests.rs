@@ -44,8 +44,7 @@ fn the_posture_moves_the_joints_without_moving_the_hand() {
         let solution = solve(&jacobian, &Twist::zeros(), &posture, &UNBOUNDED);
         assert!(solution.residual.norm() < 1e-3 * posture.norm());
         assert!(solution.residual.fixed_rows::<3>(0).norm() < 1e-8);
-        // The solution is the part of the posture in the nullspace, so it is orthogonal to the
-        // rest.
+        // The solution is the posture's part in the nullspace, orthogonal to the rest.
         let rest = posture - solution.velocity;
         assert!(solution.velocity.dot(&rest).abs() < 1e-3);
         let nullspace_share = jacobian
@@ -280,7 +279,6 @@ fn flange(q: &JointVector) -> Isometry3<f64> {
 const POSITION: f64 = 1e-4;
 /// Length of a line, `[m]`.
 const LINE: f64 = 0.12;
-/// Number of lines of each kind.
 const LINES: usize = if cfg!(debug_assertions) { 28 } else { 140 };
 
 /// Returns true if every point of a line is at least three centimetres within the reach of the

@@ -52,8 +52,8 @@ impl ModelLibrary {
     /// The bytes must be the vendor's model library, or a library that meets these conditions. The
     /// library's initialisers and functions must be safe to run from any thread at any time. Its
     /// functions named `M_NE`, `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` must have the
-    /// vendor's signatures. A caller that loads a robot's library trusts the robot, and every host
-    /// that can impersonate the robot on the network.
+    /// vendor's signatures. The caller trusts the robot, and every host that can impersonate the
+    /// robot on the network.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
         // SAFETY: the caller guarantees safe initialisers.
@@ -90,14 +90,14 @@ impl ModelLibrary {
         pose
     }
 
-    /// Returns the Jacobian of `frame` in base axes, as
-    /// [`Model::zero_jacobian`](crate::Model::zero_jacobian) does.
+    /// Returns the Jacobian in base axes; see
+    /// [`Model::zero_jacobian`](crate::Model::zero_jacobian).
     pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         jacobian(&self.symbols.zero_jacobians, frame, q, ee)
     }
 
-    /// Returns the Jacobian in the axes of `frame`, as
-    /// [`Model::body_jacobian`](crate::Model::body_jacobian) does.
+    /// Returns the Jacobian in the frame's own axes; see
+    /// [`Model::body_jacobian`](crate::Model::body_jacobian).
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         jacobian(&self.symbols.body_jacobians, frame, q, ee)
     }

@@ -151,7 +151,7 @@ static CLIENT: Model = Model {
 /// depends on these numbers.
 ///
 /// The numbers were fitted to the library's mass matrices under one load of 1.23 kg. The fit has
-/// three equations, two unknowns and a residual of 4e-15 kg·m². For other loads, the only
+/// three equations for two unknowns, and a residual of 4e-15 kg·m². For other loads, the only
 /// confirmation is one published figure (7e-4 kg·m², compared with 7.1e-4 from this model).
 const LINK_7_INSIDE: (f64, [f64; 3]) = (
     0.536221593609,

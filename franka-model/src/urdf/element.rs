@@ -74,7 +74,6 @@ impl<'a, 'n> Element<'a, 'n> {
         }
     }
 
-    /// Returns three numbers.
     pub(super) fn vector(&self, attribute: &'static str) -> Result<[f64; 3], UrdfError> {
         let text = self.text(attribute)?;
         let mut numbers = text.split_whitespace().map(plausible);

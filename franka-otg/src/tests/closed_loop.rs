@@ -77,7 +77,6 @@ fn replan<const N: usize>(
     Ok(())
 }
 
-/// Brakes in the middle of a motion.
 fn brake<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, [f64; N]),
     cycles: usize,

@@ -7,8 +7,8 @@ use super::random::{Case, arm_limits, cases, extreme_limits, mixed_limits, one, 
 use super::walk::{check_motion, check_step};
 use crate::{AxisLimits, AxisState, Generator, Limits};
 
-/// Compares the duration with the result of a bisection. The bisection's error is the rounding of
-/// positions divided by the velocity, or a square root of the rounding near a stop point.
+/// Compares the duration with a bisection, whose error is the rounding of positions divided by the
+/// velocity, or a square root of it near a stop point.
 fn check_duration(case: &Case) -> Result<(), TestCaseError> {
     let duration = case.generator().duration();
     let expected = least_duration(case.state, case.target, case.limits);

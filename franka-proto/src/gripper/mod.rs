@@ -2,8 +2,8 @@
 //!
 //! A client sends requests over TCP. The hand replies to each request when its action has ended.
 //! The client can send `Stop` while another action runs. The hand then replies to the other action
-//! with the status "aborted". The hand sends its [`State`] over UDP to the port that the client
-//! announced in the handshake. The client sends no UDP datagrams.
+//! with the status "aborted". It sends its [`State`] over UDP to the port in the handshake. The
+//! client sends no UDP datagrams.
 //!
 //! ```
 //! use franka_proto::gripper::{Client, Command, Request, Server, Status, Version, next_message};

@@ -18,8 +18,8 @@ macro_rules! for_thresholds {
     };
 }
 
-/// Thresholds for contact (lower) and for collision (upper). The robot uses separate thresholds
-/// while it accelerates, and at constant velocity (nominal).
+/// Thresholds for contact (lower) and collision (upper), during acceleration and at constant
+/// velocity (nominal).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionBehavior {

@@ -178,9 +178,10 @@ impl Request {
     /// Decodes the request from a client's message. Bytes after the request's struct are ignored.
     ///
     /// # Errors
-    /// Returns [`DecodeError::UnknownCommand`] if the version has no command with this number,
-    /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
-    /// if the version does not define one of its enumerators, such as a mode of a `Move`.
+    /// Returns [`DecodeError::UnknownCommand`] if the version has no command with this number, and
+    /// [`DecodeError::MessageSize`] if the payload is too short. Returns
+    /// [`DecodeError::UnknownValue`] if the version does not define an enumerator, such as a mode
+    /// of a `Move`.
     pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {
         let number = message.header.command;
         let command = version

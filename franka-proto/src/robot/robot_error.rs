@@ -19,7 +19,7 @@ macro_rules! robot_errors {
             /// All errors, by index.
             pub const ALL: [Self; 41] = [$(Self::$variant,)*];
 
-            /// libfranka's name of the error.
+            /// Returns libfranka's name of the error.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self {
@@ -75,7 +75,7 @@ robot_errors! {
 }
 
 impl RobotError {
-    /// Position of the error's flag on the wire, 0 to 40.
+    /// Returns the position of the error's flag on the wire, 0 to 40.
     #[must_use]
     pub fn index(self) -> usize {
         self as usize

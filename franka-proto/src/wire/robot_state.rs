@@ -96,11 +96,11 @@ pub struct RobotState<R, A> {
     pub dtheta: [R; 7],
     /// The accelerometers, or `()` if the version has no accelerometers.
     pub accelerometers: A,
-    /// Active motion generator, in the numbering of states.
+    /// Active motion generator, with its number in states.
     pub motion_generator_mode: u8,
-    /// Active controller, in the numbering of states.
+    /// Active controller, with its number in states.
     pub controller_mode: u8,
-    /// Errors that block the robot at present, one flag each.
+    /// Errors that currently block the robot, one flag each.
     pub errors: [u8; 41],
     /// Errors that ended the last motion, one flag each.
     pub reflex_reason: [u8; 41],

@@ -41,7 +41,7 @@ impl MotionBound {
             }
         }
         let all = moved.iter().zip(&self.spare).enumerate();
-        // A group with a NaN stays a candidate, because comparisons with NaN are false.
+        // Comparisons with NaN are false, so NaN stays a candidate.
         let clear = all.fold(0, |clear, (i, (moved, spare))| {
             clear | u64::from(moved <= spare) << i
         });

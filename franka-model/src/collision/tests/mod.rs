@@ -18,7 +18,6 @@ const CASES: usize = 10_000;
 /// Error of the minimisers, which bracket the parameter to 1e-9.
 const DISTANCE: f64 = 1e-9;
 
-/// Number of steps of the minimisers.
 const STEPS: usize = 50;
 
 /// Returns the least value of a convex function on [0, 1], by ternary search.
@@ -40,14 +39,12 @@ fn point_on(capsule: &Capsule, t: f64) -> Vector3<f64> {
     capsule.start.lerp(&capsule.end, t)
 }
 
-/// Returns the distance of a point from the axis of a capsule.
 fn from_axis(capsule: &Capsule, point: &Vector3<f64>) -> f64 {
     let along = capsule.end - capsule.start;
     let t = (point - capsule.start).dot(&along) / along.norm_squared();
     (point_on(capsule, t.clamp(0.0, 1.0)) - point).norm()
 }
 
-/// Returns the distance of two capsules.
 fn oracle(a: &Capsule, b: &Capsule) -> f64 {
     least_of(|s| from_axis(b, &point_on(a, s))) - a.radius - b.radius
 }

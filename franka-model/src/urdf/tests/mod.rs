@@ -229,7 +229,7 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
 #[test]
 fn replaced_number_gives_a_finite_model_or_a_refusal() {
     let text = text();
-    // Visits every passage between quotation marks, and the numbers in it.
+    // Every passage between quotation marks, and the numbers in it.
     let quoted = text.split('"').skip(1).step_by(2);
     let starts = quoted.map(|passage| passage.as_ptr() as usize - text.as_ptr() as usize);
     let (mut accepted, mut refused) = (0, 0);

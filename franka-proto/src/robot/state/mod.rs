@@ -17,8 +17,8 @@ use crate::wire;
 
 /// All values of one datagram of the robot. The field names are the vendor's.
 ///
-/// The names of frames are the vendor's: O is the base, F the flange, NE the nominal end effector,
-/// EE the end effector, and K the stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix,
+/// Frames are named as by the vendor: O is the base, F the flange, NE the nominal end effector, EE
+/// the end effector, and K the stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix,
 /// column-major (index `4 * column + row`). Inertia matrices are 3x3, column-major.
 ///
 /// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.

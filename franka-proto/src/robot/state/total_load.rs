@@ -165,8 +165,8 @@ mod tests {
         }
     }
 
-    /// Masses above 1 kg as encoded in a datagram. Sums of two `f32` require more than 24 bits, so
-    /// the two precisions differ. The expected values were computed independently.
+    /// Masses above 1 kg, as encoded in a datagram. The sum of two `f32` needs more than 24 bits,
+    /// so the two precisions differ. The expected values were computed independently.
     #[test]
     fn the_masses_of_protocol_10_are_added_in_single_precision() {
         for (m_ee, m_load, single, double) in [

@@ -1,6 +1,6 @@
 //! Payloads of requests and replies, one request family per file.
 //!
-//! A request without parameters has no struct: it consists of a header. A reply that is only a
+//! A request without parameters has no struct, because it is only a header. A reply that is only a
 //! status has no struct either.
 
 mod connect;

@@ -1,4 +1,4 @@
-//! The start of a motion. Its replies and the replies of `StopMove` are only a status.
+//! The request that starts a motion. The replies to `Move` and `StopMove` are only a status.
 
 use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -17,14 +17,15 @@ pub struct Deviation {
     pub elbow: F64,
 }
 
-/// The fields that only protocol 10 has in a `Move`, for an asynchronous motion: the robot plans
-/// between sparse joint targets.
+/// The fields of a `Move` that only protocol 10 has, for a motion in which the robot plans between
+/// sparse joint targets.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct AsynchronousMotion {
     /// Non-zero for an asynchronous motion.
     pub use_async_motion_generator: u8,
-    /// Largest joint velocities of the robot's plan `[rad/s]`; zero without an asynchronous motion.
+    /// Largest joint velocities of the robot's plan `[rad/s]`; zero if the motion is not
+    /// asynchronous.
     pub maximum_velocity: [F64; 7],
 }
 
@@ -32,15 +33,15 @@ pub struct AsynchronousMotion {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct MoveRequest<A> {
-    /// Controller, in the numbering of requests.
+    /// Controller, with its number in requests.
     pub controller_mode: U32,
-    /// Motion generator, in the numbering of requests.
+    /// Motion generator, with its number in requests.
     pub motion_generator_mode: U32,
     /// Allowed deviation during the motion.
     pub maximum_path_deviation: Deviation,
     /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
-    /// Fields of an asynchronous motion; `()` if the version has none.
+    /// Fields of an asynchronous motion, or `()` if the version has no such motion.
     pub asynchronous: A,
 }
 

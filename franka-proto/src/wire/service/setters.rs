@@ -1,4 +1,5 @@
-//! Parameters that the robot keeps until they are set again. All replies are only a status.
+//! Requests that set parameters. The robot keeps a parameter until the next request. All replies
+//! are only a status.
 #![allow(non_snake_case)]
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
