@@ -30,8 +30,8 @@
 //!
 //! The driver's own cycle does not call this module: it follows poses with
 //! [`differential_ik`](crate::differential_ik) and starts from
-//! [`inverse_kinematics`](crate::inverse_kinematics). Use this module to choose a posture or to
-//! refuse a target before a motion.
+//! [`inverse_kinematics`](crate::inverse_kinematics). Use this module before a motion, to choose a
+//! posture or to refuse a target.
 //!
 //! # Singularities
 //!
@@ -45,14 +45,13 @@
 //!   boundary by less than 1e-12 counts as a pose on the boundary. Both solutions are continuous up
 //!   to the boundary; beyond it no solution exists.
 //! - **Shoulder** (joint 2 at zero): axes 1 and 3 coincide, and the pose fixes only the sum of
-//!   their angles. Each of the two joints then gets half of the sum. [`Solution::slide`] gives the
+//!   their angles. Each of the two joints then gets half of the sum. [`Solution::slide`] is the
 //!   range in which joint 1 may turn while joint 3 turns back. [`Solutions::nearest`] slides to the
 //!   posture nearest to a reference posture. A path through the singularity is therefore
-//!   continuous: joint 2 changes sign, and joints 1 and 3 do not move. Solutions near the
-//!   singularity are also accurate. A path that passes *beside* the singularity must turn joint 1
-//!   by up to half a turn. The closer the path is, the shorter is the part of the path in which
-//!   joint 1 turns. This large turn is a property of the arm, not of the solver;
-//!   [`differential_ik`](crate::differential_ik) passes it with bounded velocities.
+//!   continuous: joint 2 changes sign, and joints 1 and 3 do not move. A path that passes *beside*
+//!   the singularity must turn joint 1 by up to half a turn. The closer the path is, the shorter is
+//!   the part of the path in which joint 1 turns. This large turn is a property of the arm, not of
+//!   the solver; [`differential_ik`](crate::differential_ik) passes it with bounded velocities.
 //! - If joint 4 is given, the two angles of joint 7 may coincide. If the shoulder is on axis 7, the
 //!   angle of joint 7 is free, and zero represents all angles.
 //! - If the swivel angle is given: the angle is undefined if the wrist is straight above or below

@@ -18,8 +18,8 @@
 //!
 //! `A` has six rows, so only the term with `d` makes the minimum unique. `d` may be 1e-11 of the
 //! other terms. The normal equations `AᵀA + d` resolve the remaining direction to five digits. A
-//! refinement step with a residual computed from `A` itself gives ten digits, and another step
-//! gives full precision. Passes that guess need no refinement.
+//! refinement step, with a residual computed from `A` itself, yields ten digits. A second step
+//! yields full precision. Passes that guess need no refinement.
 
 mod joint_box;
 mod problem;

@@ -11,12 +11,11 @@
 //! # Position first
 //!
 //! `W` weighs radians of orientation against metres of position. `W` has no effect if position and
-//! orientation can both be met. They cannot if joints are at their bounds or the arm is singular.
-//! With the small default, almost the whole error is then in the orientation. The position keeps a
-//! share of `W²/r²`, where `r` is the lever of the joints that turn the hand. To reduce this share
-//! to its square, the solver adds the remaining position error to the target and solves again (one
-//! step of the method of multipliers: Hestenes, 1969). The answer is a continuous function of all
-//! arguments.
+//! orientation can both be met. If joints are at their bounds or the arm is singular, the small
+//! default puts almost the whole error into the orientation. The position keeps a share of `W²/r²`,
+//! where `r` is the lever of the joints that turn the hand. To reduce this share to its square, the
+//! solver adds the remaining position error to the target and solves again (one step of the method
+//! of multipliers: Hestenes, 1969). The answer is a continuous function of all arguments.
 //!
 //! # Damping
 //!

@@ -8,14 +8,14 @@ use crate::scalar::{atan2, sqrt};
 
 /// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips.
 ///
-/// The angle is `atan2(-a (d3 + d5), d3 d5 - a²)`, where `a` is the elbow offset, and `d3` and `d5`
-/// are the lengths of the upper arm and the forearm. libfranka 0.21 documents the angle in
-/// `robot_state.h`. On an arm with other [lengths](crate::geometry::Lengths::flip_angle), the angle
-/// differs by less than a milliradian.
+/// The angle is `atan2(-a (d3 + d5), d3 d5 - a²)` (libfranka 0.21, `robot_state.h`). Here `a` is
+/// the elbow offset, `d3` is the length of the upper arm, and `d5` is the length of the forearm. On
+/// an arm with other [lengths](crate::geometry::Lengths::flip_angle), the angle differs by less
+/// than a milliradian.
 pub const FLIP_ANGLE: f64 = -0.467002423653011;
 
-/// Returns `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1
-/// if joint 4 is above [`FLIP_ANGLE`], −1 if it is below, and 0 if it is equal.
+/// Returns `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`. The side is +1
+/// if joint 4 is above [`FLIP_ANGLE`], −1 below, and 0 at this angle.
 pub fn elbow(q: &JointVector) -> [f64; 2] {
     let side = match q[3].partial_cmp(&FLIP_ANGLE) {
         Some(core::cmp::Ordering::Greater) => 1.0,

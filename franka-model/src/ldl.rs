@@ -1,7 +1,7 @@
 //! `L D Lᵀ` factorisation of small symmetric matrices, with a size known at compile time.
 //!
-//! Without square roots, and with unrolled loops, it takes half the time of a general
-//! factorisation.
+//! It takes half the time of a general factorisation, because it has no square roots, and its loops
+//! unroll.
 
 /// A factorisation of a positive definite matrix.
 #[derive(Debug)]

@@ -29,7 +29,7 @@ pub struct JointMargins {
 
 impl JointMargins {
     /// Returns the joint, 1 to 7, with the smallest [`normalised`](Self::normalised) margin, and
-    /// that margin. If a position is NaN, returns that joint.
+    /// that margin. A NaN position comes first.
     pub fn tightest(&self) -> (usize, f64) {
         let mut tightest = (1, self.normalised[0]);
         for (i, &margin) in self.normalised.iter().enumerate() {

@@ -11,8 +11,8 @@ pub(crate) enum Merge {
     /// The physical rule: the inertias about the common centre of mass add up.
     Rigid,
     /// The rule of the FER's model library. The numbers are the mass and the centre of mass of link
-    /// 7 in this library. The rule adds the inertia of link 7 about its own centre of mass, and
-    /// ignores the distance to the common centre of mass.
+    /// 7 in this library. Link 7 keeps its inertia about its own centre of mass, regardless of the
+    /// distance to the common centre.
     WithoutOwnLever((f64, [f64; 3])),
 }
 

@@ -35,7 +35,7 @@ impl OperationalSpace {
     /// Jacobian, which are base axes for a zero Jacobian. For another point of the last link,
     /// change [`EndEffector::f_t_ee`].
     ///
-    /// Returns `None` if `mass` is not positive definite. A physical arm's matrix always is.
+    /// Returns `None` if `mass` is not positive definite. The matrix of a physical arm always is.
     pub fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Option<Self> {
         // With M = L Lᵀ, the mobility is a product of a matrix and its transpose, so it is
         // symmetric to the last digit.

@@ -25,8 +25,8 @@
 //!
 //! As the duration grows, the end moves at the rate `w + x y/2` (or the velocity limit, in a
 //! cruise). The rate may be negative: with more time, a motion that must end with a negative
-//! velocity first gets less far, until it has enough time to move upwards in between. The zeros of
-//! the rate also have closed forms; see [`ExtremalProblem::turning_points`].
+//! velocity gets less far, until the time suffices to move upwards in between. The zeros of the
+//! rate also have closed forms; see [`ExtremalProblem::turning_points`].
 
 use crate::scalar::sqrt;
 use crate::shape::Shape;

@@ -18,7 +18,7 @@ use crate::state::{AxisState, State, check_finite};
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
 ///   [`is_done`](Self::is_done).
 ///
-/// All methods take bounded time and do not allocate, so a real-time thread may call them. After an
+/// Real-time threads may call all methods: they take bounded time and do not allocate. After an
 /// error, the generator is unchanged.
 ///
 /// ```
@@ -146,7 +146,7 @@ impl<const N: usize> Generator<N> {
     /// effect.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
     /// After an error, the current motion continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
@@ -169,10 +169,10 @@ impl<const N: usize> Generator<N> {
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
     /// be early cannot wait at a moving target. It moves back and approaches again, possibly after
-    /// it has passed the target, and the other axes wait for it.
+    /// it has passed the target. The other axes wait for this axis.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
     /// Returns [`PlanError::TargetMotion`] if `|velocity| + acceleration^2 / (2 jerk limit)`
     /// exceeds the velocity limit, or if the acceleration exceeds its limit. After an error, the
     /// current motion continues.
@@ -265,7 +265,7 @@ impl<const N: usize> Generator<N> {
     /// output.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] or [`PlanError::OutOfRange`] if a value is unsuitable.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
     /// After an error, the current motion continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
@@ -310,7 +310,7 @@ impl<const N: usize> Generator<N> {
     }
 
     /// Returns the position at which the current motion stops if the target and the limits do not
-    /// change: the target, a position beyond a moving target, or the end of the stop.
+    /// change. This is the target, a position beyond a moving target, or the end of the stop.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()

@@ -51,7 +51,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
     let (stop, rounding) = task.stop_point();
     let fuzz = task.fuzz + if task.fuzz > 0.0 { rounding } else { 0.0 };
     let (sign, mut task, is_stop) = if (task.d - stop).abs() <= fuzz {
-        // A motion that removes the last rounding error would take a time of its square root.
+        // Removing the last rounding error would take its square root in time.
         let sign = 1_f64.copysign(task.coasting_velocity());
         let stopping = Task { d: stop, ..task };
         (sign, stopping.mirrored(sign), true)
@@ -171,8 +171,8 @@ impl ExtendedStart {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Two upper bounds of the root: one from the tangent at the left end, because F is convex,
-        // and one from F' >= 6 x^2 for c >= 0, or F' >= x^2 otherwise.
+        // Two upper bounds of the root: the tangent at the left end, because F is convex, and a
+        // bound from F' >= 6 x^2 if c >= 0, or F' >= x^2 otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;

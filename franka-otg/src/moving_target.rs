@@ -20,9 +20,8 @@
 //! The velocity of the target must also be reachable. This is the same problem with one derivative
 //! less. If the target accelerates, it may have its own blocked interval (`velocity_change`).
 //!
-//! The usual solution computes all profiles that fit. It solves quartic and sixth-order equations
-//! in eleven families per direction. Half of these fail because of rounding where two families
-//! meet.
+//! The usual solution computes all profiles that fit, with quartic and sixth-order equations in
+//! eleven families per direction. Half of these fail because of rounding where two families meet.
 
 use crate::feasible_durations::{Candidates, FeasibleDurations};
 use crate::plateau::Plateau;

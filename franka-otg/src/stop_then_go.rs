@@ -1,13 +1,13 @@
 //! Step two if no cruise fits: the axis follows its stop for a while, and then moves to the target.
 //!
 //! This case occurs if an axis slows down towards a target just past its stop point, and must
-//! arrive slightly later than it could (by up to a fifth of the duration). The axis follows its
-//! least-time stop for some time, and then takes the least-time profile to the target. The total
-//! duration grows continuously with the time on the stop, because a profile with a longer fixed
-//! first piece cannot be faster. It begins with the least duration, and ends with the duration of a
-//! complete stop and a motion from rest. For a still longer duration, the axis waits at rest.
-//! Therefore every duration has a profile. No profile overshoots: during the stop, the stop point
-//! is constant and short of the target, and the rest of the motion is a push and a stop.
+//! arrive slightly later (by up to a fifth of the duration). The axis follows its least-time stop
+//! for some time, and then takes the least-time profile to the target. The total duration grows
+//! continuously with the time on the stop, because a profile with a longer fixed first piece cannot
+//! be faster. It begins with the least duration, and ends with the duration of a complete stop and
+//! a motion from rest. For a still longer duration, the axis waits at rest. Therefore every
+//! duration has a profile. No profile overshoots: during the stop, the stop point is constant and
+//! short of the target, and the rest of the motion is a push and a stop.
 //!
 //! If the target is exactly at the stop point, the axis cannot arrive later without overshoot. The
 //! result is then the stop, followed by a wait at the target.

@@ -51,7 +51,7 @@ impl Solution {
         self.limit_distances(limits).min()
     }
 
-    /// Returns the distance to the three singularities of the arm.
+    /// Returns the distances to the three singularities of the arm.
     pub fn singularity(&self) -> Singularity {
         Singularity::of(&self.q)
     }
@@ -150,8 +150,8 @@ pub struct Solutions {
     count: usize,
 }
 
-/// Capacity of a list: four times the largest number of solutions for a given joint angle. In a
-/// test with two million given swivel angles, no list had more than 12 solutions within the limits.
+/// Capacity of a list. In a test with two million given swivel angles, no list had more than 12
+/// solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {

@@ -1,8 +1,8 @@
 //! Joint 7 from the swivel angle: the roots of one equation.
 //!
 //! A given angle of joint 7 determines the position of the wrist and the angle of joint 4. The
-//! swivel angle then determines the position of the elbow, and therefore the forearm's axis y4. y4
-//! is also the axis of joint 5, so it must be at right angles to the axis of joint 6:
+//! swivel angle then determines the position of the elbow, and therefore the forearm's axis y4.
+//! This axis is also the axis of joint 5, so it must be at right angles to the axis of joint 6:
 //!
 //! ```text
 //! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
@@ -173,8 +173,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Returns true if the interval up to `other` may contain undetected roots. The reason is a
-    /// large turn of the elbow's half plane, or a root or near-root at a sample.
+    /// Returns true if the interval up to `other` may contain undetected roots.
     fn hides_something_before(&self, other: &Self) -> bool {
         let ([a, b], [c, d]) = (self.horizontal, other.horizontal);
         let (along, across) = (a * c + b * d, a * d - b * c);

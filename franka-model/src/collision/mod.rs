@@ -89,7 +89,6 @@ impl Body {
         }
     }
 
-    /// Returns the number of joints that move the body.
     pub(crate) fn joints(self) -> usize {
         match self {
             Self::Link(link) => usize::from(link),

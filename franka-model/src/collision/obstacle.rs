@@ -103,7 +103,6 @@ const TOUCHING: f64 = 1e-12;
 /// The axis of a capsule in the axes of a box.
 pub(super) struct Axis {
     pub(super) start: Vector3<f64>,
-    /// End minus start.
     pub(super) along: Vector3<f64>,
     /// Half of the box's side lengths.
     pub(super) half: Vector3<f64>,

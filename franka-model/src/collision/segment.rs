@@ -11,7 +11,6 @@ use crate::scalar::sqrt;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
     pub(super) start: Vector3<f64>,
-    /// End minus start.
     pub(super) along: Vector3<f64>,
     square: f64,
     pub(super) radius: f64,
@@ -61,7 +60,6 @@ impl Segment {
         }
     }
 
-    /// Returns the capsule in the base frame.
     pub(super) fn capsule(&self) -> Capsule {
         let start = self.start + Vector3::new(0.0, 0.0, SHOULDER);
         Capsule {

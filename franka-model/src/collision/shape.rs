@@ -144,7 +144,6 @@ impl Shape<'_> {
         })
     }
 
-    /// Returns the number of capsules.
     pub(super) fn len(&self) -> usize {
         self.arm.len() + self.tool.len()
     }
@@ -156,7 +155,6 @@ impl Shape<'_> {
 pub enum ToolError {
     /// The tool has more than 8 capsules.
     TooMany {
-        /// Returns the number of capsules.
         got: usize,
     },
     /// A number is not finite, or the radius is negative.

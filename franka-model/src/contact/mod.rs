@@ -35,10 +35,10 @@
 //!
 //! # Errors of external torques
 //!
-//! External torques that are measured without a contact are errors. They are caused by the arm's
-//! model, the zero offset of the sensors, and the friction between the sensor and the link.
-//! [`Tare`] removes the constant part. Friction also hides part of a contact's torque;
-//! [`TorqueError`] states the expected amount.
+//! External torques that are measured without a contact are errors. They come from the arm's model,
+//! the sensors' zero offset, and the friction between sensor and link. [`Tare`] removes the
+//! constant part. Friction also hides part of a contact's torque; [`TorqueError`] states the
+//! expected amount.
 
 mod patches;
 mod tare;
@@ -290,9 +290,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns two values for each body, indexed by its number: the probability of a contact on the
-    /// body, relative to the most probable body, and the point of the body's best patch. A priori,
-    /// all bodies and all points on a body are equally probable.
+    /// Returns two values for each body number: the probability of a contact, relative to the most
+    /// probable body, and the point of the body's best patch. A priori, all bodies and all points
+    /// on a body are equally probable.
     fn bodies(&self) -> [(f64, Vector3<f64>); BODIES] {
         let mut logarithms = [f64::NEG_INFINITY; BODIES];
         let mut places = [Vector3::zeros(); BODIES];
@@ -423,7 +423,7 @@ fn inverse(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, f64)> {
     let (c0, c1, c2) = (m.column(0), m.column(1), m.column(2));
     let (a, b, c) = (c1.cross(&c2), c2.cross(&c0), c0.cross(&c1));
     let determinant = c0.dot(&a);
-    // The adjugate of a symmetric matrix is symmetric too.
+    // The adjugate of a symmetric matrix is symmetric.
     (determinant > 0.0).then(|| (Matrix3::from_columns(&[a, b, c]) / determinant, determinant))
 }
 

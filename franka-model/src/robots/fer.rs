@@ -165,10 +165,10 @@ const LINK_7_INSIDE: (f64, [f64; 3]) = (
 /// Model with physical bodies, close to the vendor's library. At the 40 reference states without a
 /// load, it deviates by at most 0.018 kg·m² (mass), 0.013 N·m (gravity) and 0.083 N·m (Coriolis).
 ///
-/// The numbers come from a least-squares fit to the library's torques at 300 random states. The fit
-/// kept every body's pseudo-inertia positive definite, and was regularised towards the parameters
-/// of Gaz, Cognetti, Oliva, Robuffo Giordano and De Luca, Dynamic Identification of the Franka
-/// Emika Panda Robot, 2019.
+/// The numbers come from a least-squares fit to the library's torques at 300 random states. It kept
+/// every body's pseudo-inertia positive definite, and was regularised towards the feasible set of
+/// Gaz, Cognetti, Oliva, Robuffo Giordano and De Luca, Dynamic Identification of the Franka Emika
+/// Panda Robot, 2019.
 static PHYSICALLY_CONSISTENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,

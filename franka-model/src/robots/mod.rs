@@ -36,8 +36,8 @@ impl Model {
     ///
     /// That library is not physically exact. Some of the [`links`](Self::links) that match it have
     /// negative moments. When the library adds a load to link 7, it ignores the distance of link
-    /// 7's own mass from the common centre of mass. With a load of 1.23 kg, the mass matrix is
-    /// therefore too small by 3.0e-3 kg·m². For simulation, use
+    /// 7's own mass from the common centre of mass. This omits 3.0e-3 kg·m² of the mass matrix with
+    /// a load of 1.23 kg. For simulation, use
     /// [`physically_consistent`](Self::physically_consistent).
     pub const fn fer() -> &'static Self {
         Self::of(RobotKind::Fer)

@@ -122,7 +122,6 @@ pub(super) fn origin(parent: Node<'_, '_>, owner: &str) -> Result<Isometry3<f64>
     ))
 }
 
-/// Returns the `name` of a joint or link.
 pub(super) fn name<'a>(node: Node<'a, '_>, element: &'static str) -> Result<&'a str, UrdfError> {
     node.attribute("name")
         .ok_or_else(|| UrdfError::MissingAttribute {

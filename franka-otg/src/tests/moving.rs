@@ -243,7 +243,7 @@ proptest! {
 /// Time to correct a rounding error of the position near the end, as for targets at rest.
 const ROOT_OF_ROUNDING: f64 = 2e-5;
 
-/// This axis can be at its target until 0.11403 s and again from 0.36 s on.
+/// This axis can be at its target until 0.11403 s, and again after 0.36 s.
 #[test]
 fn axis_early_by_less_than_a_cycle_is_not_early() {
     let limits = AxisLimits {

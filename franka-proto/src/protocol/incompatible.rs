@@ -19,8 +19,7 @@ pub struct IncompatibleVersion<P: Protocol = Version> {
 }
 
 impl<P: Protocol> IncompatibleVersion<P> {
-    /// Returns an explanation. It names the device and the system image with the device's version,
-    /// and says what the user can do.
+    /// Returns an explanation. It names the device, its system image, and what the user can do.
     ///
     /// ```
     /// use franka_proto::{IncompatibleVersion, Version};

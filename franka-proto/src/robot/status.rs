@@ -54,7 +54,7 @@ pub enum StopStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetterStatus {
-    /// The robot uses the new value from now on.
+    /// The robot now uses the new value.
     Success,
     /// The robot's mode does not allow the change.
     CommandNotPossibleRejected,

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Most distances are large at most postures. One pass places the capsules, excludes large
-//! distances with bounding balls and boxes, and measures the other distances. The bounds at one
-//! posture form its [`MotionBound`]. At nearby postures, the `MotionBound` excludes most or all
-//! distances without another pass.
+//! distances with bounding balls and boxes, and measures the rest. The bounds at one posture form
+//! its [`MotionBound`]. At nearby postures, the `MotionBound` excludes most or all distances
+//! without another pass.
 
 mod motion_bound;
 mod mounted;
@@ -113,7 +113,6 @@ impl LinkCapsules {
         count: 0,
     };
 
-    /// Returns the capsules from base to tool.
     fn of(shape: &Shape<'_>) -> Self {
         let links = shape.arm.iter();
         let links = links.map(|c| Mounted::on_link(c.link, &c.capsule));

@@ -74,7 +74,6 @@ impl Mounted {
         }
     }
 
-    /// Returns the number of joints that move the capsule.
     pub(super) fn joints(&self) -> usize {
         match self.number {
             TOOL => Body::Tool.joints(),

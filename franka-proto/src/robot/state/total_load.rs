@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn the_masses_of_protocol_10_are_added_in_single_precision() {
         for (m_ee, m_load, single, double) in [
-            // 1 + 2^-23 and 2 + 2^-22: the exact sum lies halfway between two values and is rounded
+            // 1 + 2^-23 and 2 + 2^-22: the exact sum is halfway between two values and is rounded
             // to the even value, 3 + 2^-21.
             (
                 0x3f80_0001,
