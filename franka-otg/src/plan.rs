@@ -185,18 +185,18 @@ impl<const N: usize> Plan<N> {
         self.path = Path::PerAxis;
     }
 
-    /// Position of rest at the end of the plan.
+    /// Returns the position of rest at the end of the plan.
     pub(crate) const fn end(&self) -> &[f64; N] {
         &self.end
     }
 
-    /// Time at which the axes are at the target, in seconds from the start of the plan. It is the
-    /// time of rest, unless the target moves.
+    /// Returns the time at which the axes are at the target, in seconds from the start of the plan.
+    /// It is the time of rest, unless the target moves.
     pub(crate) const fn arrival(&self) -> f64 {
         self.arrival
     }
 
-    /// Time at which all axes are at rest, in seconds from the start of the plan.
+    /// Returns the time at which all axes are at rest, in seconds from the start of the plan.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }

@@ -172,7 +172,7 @@ impl Elbow {
         atan2(self.sin, self.cos)
     }
 
-    /// Squared distance between shoulder and wrist, `[m²]`.
+    /// Returns the squared distance between shoulder and wrist, `[m²]`.
     pub(super) fn squared_distance(&self) -> f64 {
         self.f * self.f + self.h * self.h
     }

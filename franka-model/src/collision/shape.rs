@@ -155,6 +155,7 @@ impl Shape<'_> {
 pub enum ToolError {
     /// The tool has more than 8 capsules.
     TooMany {
+        /// Number of capsules.
         got: usize,
     },
     /// A number is not finite, or the radius is negative.

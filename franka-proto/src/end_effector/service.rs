@@ -95,8 +95,8 @@ impl<E: EndEffector> Protocol for E {
         E::NUMBER
     }
 
-    /// The advice is libfranka 0.21's. It fits both robots, because an end effector has the same
-    /// protocol on both.
+    /// Returns the advice of libfranka 0.21. It fits both robots, because an end effector has the
+    /// same protocol on both.
     fn incompatible_advice(self) -> [&'static str; 2] {
         crate::Version::V10.incompatible_advice()
     }

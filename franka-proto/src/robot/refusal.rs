@@ -54,7 +54,7 @@ impl Refusal {
         Self::new(command, reply.status()?, mode)
     }
 
-    /// The refused command.
+    /// Returns the refused command.
     #[must_use]
     pub fn command(&self) -> Command {
         self.command
@@ -66,7 +66,7 @@ impl Refusal {
         self.status
     }
 
-    /// The robot's mode when it refused the command.
+    /// Returns the robot's mode when it refused the command.
     #[must_use]
     pub fn mode(&self) -> RobotMode {
         self.mode

@@ -23,7 +23,7 @@ pub struct CommandHeader<N> {
 pub trait CommandNumber:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
-    /// The number as `u32`.
+    /// Returns the number as `u32`.
     fn get(self) -> u32;
 
     /// Converts a number to the wire. Higher bits are cut off, but no service has such large
