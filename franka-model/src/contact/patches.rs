@@ -97,8 +97,8 @@ fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
 /// Length, `[m]`, below which a direction is rounding error.
 const SHORT: f64 = 1e-9;
 
-/// Largest number of bands of a capsule. The number is enough for a capsule of 2 m in bands of 2
-/// cm, and bounds the work for larger tools.
+/// Largest number of bands of a capsule. Enough for a capsule of 2 m in bands of 2 cm; bounds the
+/// work for larger tools.
 const BANDS_MAX: usize = 100;
 
 /// Largest number of pieces of a band, enough for a radius of 0.1 m.

@@ -349,7 +349,7 @@ fn a_line_through_a_wrist_singularity_keeps_the_position() {
     let (mut lines, mut crossed, mut singular) = (0, 0, 0);
     while lines < LINES {
         // With joint 7 locked, the wrist is singular in all of these postures. In every second
-        // posture, the whole arm is singular, or as close to singular as the limits allow.
+        // posture, the whole arm is singular, or almost, within the limits.
         let mut q = READY + random.joints(0.4);
         q[4] = core::f64::consts::FRAC_PI_2;
         if lines % 2 == 1 {
