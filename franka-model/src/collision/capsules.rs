@@ -112,7 +112,7 @@ const fn pairs<const N: usize>(capsules: &[LinkCapsule], links: &[(u8, u8)]) -> 
 /// Sine and cosine of the Hand's turn on the flange.
 const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// Returns a capsule of the Hand in the flange frame.
+/// Returns a capsule of the Hand in the flange frame, after `RotZ(-45°)`.
 const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     const fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
         [HALF * (x + y), HALF * (y - x), z]

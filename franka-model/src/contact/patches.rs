@@ -123,7 +123,7 @@ mod tests {
                 mean += patch.point * patch.area;
             });
             let expected = 2.0 * TAU * radius * radius + TAU * radius * length;
-            // The area is approximate, because each band is treated as flat.
+            // Approximate: each band counts as flat.
             assert!((area / expected - 1.0).abs() < 2e-3, "{area} {expected}");
             assert!((mean / area - capsule.end / 2.0).norm() < 1e-4);
         }
