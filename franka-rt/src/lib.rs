@@ -1,4 +1,5 @@
-//! The real-time half of the driver: one thread per robot, and the pure cores that it drives.
+//! //! The real-time half of the driver: one thread per robot, and the modules without I/O that the
+//! thread calls.
 //!
 //! ```text
 //! UDP state -> exchange -> Driver::on_state -> [session: goal -> generator -> IK -> law -> guards] -> UDP command
@@ -6,29 +7,31 @@
 //!         orders, goal slot --+        +--> newest state, records, events -> eventfd
 //! ```
 //!
-//! * [`driver`]: the answer to one robot state; phases from watching to finishing. No clock, no
-//!   socket.
-//! * [`session`]: target control: goals in, one continuous joint-space reference out.
+//! * [`driver`]: answers one robot state. Contains the phases of a motion, from watching to
+//!   finishing, but no clock and no socket.
+//! * [`session`]: target control. Turns goals into one continuous joint-space reference.
 //! * [`control`]: commands, and control at 1 kHz by the user's own functions.
 //! * [`law`]: joint torques from a reference and a state.
-//! * [`identify`]: friction, bias and load of an arm, from the records of some motions. Pure.
-//! * [`shaping`]: filter, limiter and check of commands, as the vendor's control loops take them.
-//! * [`lifecycle`]: one motion from the first goal to the robot's last reply, across TCP and UDP.
+//! * [`identify`]: estimates friction, bias and load of an arm from the records of some motions.
 //!   Without I/O.
-//! * [`supervision`]: lost connections, reconnects, reflexes and recovery. Without I/O.
-//! * [`together`]: motions of several robots that begin at the same time. [`team`]: sessions of
-//!   several robots whose motions begin together, and brake together for a fault of one.
-//! * [`thread`]: the only loop; the only place with a socket and a clock.
+//! * [`shaping`]: filter, limiter and check of commands, as in the vendor's control loops.
+//! * [`lifecycle`]: follows one motion from the first goal to the robot's last reply, across TCP
+//!   and UDP. Without I/O.
+//! * [`supervision`]: handles lost connections, reconnects, reflexes and recovery. Without I/O.
+//! * [`together`]: makes motions of several robots begin at the same time. [`team`]: sessions of
+//!   several robots whose motions begin together. If one robot has a fault, all of them brake.
+//! * [`thread`]: contains the loop, and is the only module with a socket and a clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: the
 //!   parts of the loop. [`stats`] defines when a state is late.
 //!
-//! Modules with a socket or a thread need Unix; all others build everywhere, also for WebAssembly.
+//! Modules with a socket or a thread need Unix; all other modules build everywhere, also for
+//! WebAssembly.
 //!
 //! This crate uses no async runtime, opens no TCP connection, and reads only the files that
 //! identify a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Items that only the thread uses.
+// // Without Unix there is no thread, so the items that only the thread uses are unused.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;

@@ -10,21 +10,22 @@ use super::{
 use crate::sys;
 
 impl Scheduling {
-    /// Applies the options to the calling thread, touches its stack and blocks signals, so that no
-    /// handler of the process runs on it. The order is as in libfranka 0.21: scheduling first, then
-    /// the check of the kernel.
+    /// Applies the options to the calling thread, touches its stack, and blocks signals so that no
+    /// signal handler of the process runs on it. As in libfranka 0.21, the scheduling is set before
+    /// the kernel is checked.
     ///
     /// Signals that report a fault of the thread itself (such as `SIGSEGV`) are not blocked.
     /// Threads and processes that the thread starts later inherit the other settings.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], the first request that was refused; earlier requests stay
-    /// granted. Under both, an option that is out of range; then nothing is requested.
+    /// Under [`Realtime::Enforce`], returns the first refusal; requests that were granted before it
+    /// stay in force. Under either [`Realtime`](super::Realtime), returns an error if an option is
+    /// out of range, and then makes no request.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.enter_on(Kernel::read)
     }
 
-    /// As [`Self::enter`], on a host with this kernel.
+    /// Does the same as [`Self::enter`], on a host with this kernel.
     fn enter_on(&self, kernel: impl FnOnce() -> Kernel) -> Result<Granted, SchedError> {
         self.check()?;
         sys::block_signals();
@@ -53,11 +54,11 @@ impl Scheduling {
         Ok(granted)
     }
 
-    /// Applies the options to the socket that the thread receives from, and notes the result in
+    /// Applies the options to the socket that the thread receives from, and adds the result to
     /// `granted`.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if the system refuses to poll.
+    /// Returns [`SchedError::BusyPoll`] if the system refuses to poll, under [`Realtime::Enforce`].
     pub fn tune(&self, socket: &impl AsFd, granted: &mut Granted) -> Result<(), SchedError> {
         self.check()?;
         let Some(duration) = self.busy_poll else {
@@ -70,7 +71,7 @@ impl Scheduling {
         Ok(())
     }
 
-    /// Size of the stack that the thread needs, in bytes.
+    /// Returns the size of the stack that the thread needs, in bytes.
     pub(crate) fn stack_size(&self) -> usize {
         stack::size(self.prefault_stack.min(PREFAULT_MAX))
     }
@@ -87,13 +88,13 @@ impl Scheduling {
         }
     }
 
-    /// Checks whether a thread of this process would be granted the requests, except for memory.
-    /// Use it before a robot is contacted. Starts a short-lived thread, so that the caller keeps
-    /// its own scheduling.
+    /// Checks whether this process would be granted the requests for a thread, except for memory.
+    /// Call it before contacting a robot. The checks run in a short-lived thread, so the caller
+    /// keeps its own scheduling.
     ///
     /// # Errors
-    /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as
-    /// refused scheduling.
+    /// Returns the errors of [`Self::enter`] and [`Self::tune`]. If the thread cannot be started,
+    /// returns the error for refused scheduling.
     pub fn probe(&self) -> Result<Granted, SchedError> {
         self.check()?;
         let asked = Self {

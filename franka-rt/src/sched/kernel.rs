@@ -1,27 +1,27 @@
-//! Test whether the running kernel is a real-time kernel.
+//! //! Detects whether the running kernel is a real-time kernel.
 //!
-//! Up to Linux 6.11 real time (`PREEMPT_RT`) was a patch, which also added the file
-//! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, mostly without that
-//! file. The version text of `uname` names the option in both. The release name (`-rt`) is chosen
-//! freely and proves nothing.
+//! //! Up to Linux 6.11, real time (`PREEMPT_RT`) was a patch that also added the file
+//! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, and most of these
+//! kernels do not have that file. In either case the version text of `uname` contains the option's
+//! name. The release name (`-rt`) is free text and proves nothing.
 //!
-//! `/proc/config.gz` is not read: decompressing would need another crate, and a kernel with this
-//! file has a version text that its build made from the same options.
+//! //! `/proc/config.gz` is not read, because decompression would need another crate. A kernel with
+//! this file also has a version text, and its build made both from the same options.
 
 use core::fmt;
 use std::fs;
 
-/// Kernel of a host. [`Kernel::read`] reads the running one.
+/// Description of a host's kernel. [`Kernel::read`] reads the running kernel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Kernel {
-    /// Release, such as `6.12.43-rt`.
+    /// Release name, such as `6.12.43-rt`.
     pub release: String,
     /// Version text of `uname`, such as `#1 SMP PREEMPT_RT Debian 6.12.43-1`.
     pub version: String,
     /// Contents of `/sys/kernel/realtime`; `None` if it cannot be read.
     pub flag: Option<String>,
-    /// True if the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if no such file
-    /// can be read.
+    /// True if the kernel's configuration file contains `CONFIG_PREEMPT_RT=y`; `None` if no such
+    /// file can be read.
     pub configured: Option<bool>,
 }
 
@@ -31,7 +31,7 @@ impl Kernel {
         Self::read_by(|path| fs::read_to_string(path).ok())
     }
 
-    /// Reads the files of a host by `read`, which returns the content of a file or `None`.
+    /// Reads the files of a host with `read`, which returns the content of a file, or `None`.
     pub fn read_by(read: impl Fn(&str) -> Option<String>) -> Self {
         let line = |path| read(path).unwrap_or_default().trim().to_owned();
         let release = line("/proc/sys/kernel/osrelease");
@@ -49,13 +49,13 @@ impl Kernel {
         }
     }
 
-    /// True if any of the readings shows a real-time kernel.
+    /// True if the version text, the flag or the configuration shows a real-time kernel.
     pub fn is_realtime(&self) -> bool {
         self.names_realtime() || self.flag.as_deref() == Some("1") || self.configured == Some(true)
     }
 
-    /// True if the version text has the word `PREEMPT_RT` or, as kernels with the older patch, the
-    /// words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` are not real-time kernels.
+    /// True if the version text contains the word `PREEMPT_RT` or, in kernels with an older patch,
+    /// the words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` do not mark real-time kernels.
     fn names_realtime(&self) -> bool {
         let words: Vec<&str> = self.version.split_whitespace().collect();
         words.contains(&"PREEMPT_RT") || words.windows(2).any(|pair| pair == ["PREEMPT", "RT"])
@@ -81,7 +81,7 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// Places where distributions keep the configuration of a kernel.
+/// Returns the paths where distributions keep the configuration of a kernel.
 fn configuration_files(release: &str) -> [String; 2] {
     [
         format!("/boot/config-{release}"),
@@ -89,7 +89,7 @@ fn configuration_files(release: &str) -> [String; 2] {
     ]
 }
 
-/// True if the running kernel is a real-time one, by [`Kernel::is_realtime`].
+/// True if the running kernel is a real-time kernel: see [`Kernel::is_realtime`].
 pub fn kernel_is_realtime() -> bool {
     Kernel::read().is_realtime()
 }

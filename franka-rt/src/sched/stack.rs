@@ -3,27 +3,28 @@
 use core::hint::black_box;
 
 /// Default number of bytes of stack to touch before the loop starts. A cycle of target control uses
-/// some tens of kilobytes, a control function of the user any amount.
+/// some tens of kilobytes. A control function of the user may use any amount.
 pub const DEFAULT: usize = 512 * 1024;
 
 /// Largest stack that can be requested, in bytes. Larger buffers belong on the heap, allocated
 /// before the loop.
 pub const MAX: usize = 64 * 1024 * 1024;
 
-/// Stack beyond the touched part, in bytes: for the larger frames of unoptimised builds.
+/// Size of the stack beyond the touched part, in bytes. Unoptimised builds need it for their larger
+/// frames.
 const RESERVE: usize = 1536 * 1024;
 
-/// Number of bytes that one frame of the walk covers: a few pages, so that the walk touches little
-/// more than requested.
+/// Number of bytes that one frame of [`touch`] covers: a few pages, so that it touches little more
+/// than requested.
 const FRAME: usize = 16 * 1024;
 
-/// Returns the size of a stack of which `touched` bytes will be touched.
+/// Returns the size of the stack for a thread that touches `touched` bytes, in bytes.
 pub(super) const fn size(touched: usize) -> usize {
     touched + RESERVE
 }
 
-/// Writes to `bytes` of stack below the caller, rounded up to frames. A written page stays mapped,
-/// so that no cycle causes a fault on it.
+/// Writes to `bytes` of stack below the caller, rounded up to whole frames. A written page stays
+/// mapped, so no later cycle causes a page fault on it.
 #[inline(never)]
 pub(super) fn touch(bytes: usize) {
     if bytes == 0 {
@@ -32,7 +33,8 @@ pub(super) fn touch(bytes: usize) {
     let mut frame = [0u8; FRAME];
     black_box(&mut frame);
     touch(bytes.saturating_sub(FRAME));
-    // Use the frame after the call, so that each frame of the walk has its own place.
+    // // Use the frame after the call, so that the compiler cannot reuse its memory for the next
+    // frame.
     black_box(&mut frame);
 }
 
@@ -40,7 +42,7 @@ pub(super) fn touch(bytes: usize) {
 mod tests {
     use super::*;
 
-    /// Minor page faults of the calling thread so far: field 10 of proc_pid_stat(5).
+    /// Returns the minor page faults of the calling thread so far: field 10 of proc_pid_stat(5).
     fn faults() -> u64 {
         let stat = std::fs::read_to_string("/proc/thread-self/stat").expect("Linux has /proc");
         let fields = &stat[stat.rfind(')').expect("a name") + 1..];

@@ -6,28 +6,28 @@ use franka_model::{JointVector, RobotKind};
 use crate::shaping::CYCLE;
 use crate::shaping::limiter::{AxisBounds, CartesianBounds, JointBounds};
 
-/// Bounds of a robot's commands: its nominal limits minus a margin.
+/// Bounds that the limiters apply to a robot's commands.
 ///
-/// Every bound is the nominal limit, which the robot checks, minus [`CLIENT_MARGIN`]. On the FER a
-/// velocity also leaves room for the effect of three lost commands at the greatest acceleration.
-/// Source: libfranka 0.21 and 0.9, `rate_limiting.h`.
+/// Every bound is the nominal limit, which the robot checks, minus [`CLIENT_MARGIN`]. On the FER
+/// the bounds of the velocities are lower still, by the change that the greatest acceleration
+/// causes during three lost commands. Source: libfranka 0.21 and 0.9, `rate_limiting.h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Rate of each joint's torque, `[N m/s]`.
+    /// Bound of the torque rate of each joint, `[N m/s]`.
     pub torque_rate: [f64; 7],
-    /// Velocity of each joint.
+    /// Bounds of the velocity of each joint.
     pub joint_velocity: VelocityBounds,
-    /// Acceleration of each joint, `[rad/s^2]`.
+    /// Bound of the acceleration of each joint, `[rad/s^2]`.
     pub joint_acceleration: [f64; 7],
-    /// Jerk of each joint, `[rad/s^3]`.
+    /// Bound of the jerk of each joint, `[rad/s^3]`.
     pub joint_jerk: [f64; 7],
-    /// Norms of the end effector's linear and angular motion.
+    /// Bounds on the norms of the end effector's linear and angular motion.
     pub cartesian: CartesianBounds,
-    /// Motion of the elbow, the angle of joint 3.
+    /// Bounds on the motion of the elbow, which is the angle of joint 3.
     pub elbow: AxisBounds,
 }
 
-/// Velocity of each joint, `[rad/s]`.
+/// Bounds of the velocity of each joint, `[rad/s]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
@@ -36,9 +36,9 @@ pub struct Bounds {
 pub enum VelocityBounds {
     /// The bounds are the same at every position, in both directions.
     Everywhere([f64; 7]),
-    /// The bounds are lower near the ends of the joints' ranges.
+    /// The bounds depend on the position: they are lower near the ends of the joints' ranges.
     Envelope {
-        /// Limits of the joints, with their envelope.
+        /// Limits of the joints, with their velocity envelope.
         joints: JointLimits,
         /// Reduction of the envelope on both sides, `[rad/s]`.
         margin: f64,
@@ -46,8 +46,8 @@ pub enum VelocityBounds {
 }
 
 impl VelocityBounds {
-    /// Returns least and greatest velocities at the positions `q` `[rad]`: `(lower, upper)`,
-    /// `[rad/s]`.
+    /// Returns the least and the greatest velocities `(lower, upper)`, `[rad/s]`, at the positions
+    /// `q`, `[rad]`.
     pub fn at(&self, q: &[f64; 7]) -> ([f64; 7], [f64; 7]) {
         match self {
             Self::Everywhere(upper) => (upper.map(|upper| -upper), *upper),
@@ -60,13 +60,14 @@ impl VelocityBounds {
 }
 
 impl Bounds {
-    /// Returns the bounds of the FR3: velocities of the joints depend on their positions. They
-    /// leave no room for lost commands.
+    /// Returns the bounds of the FR3. The bounds of the joint velocities depend on the joint
+    /// positions. They leave no room for lost commands.
     pub fn fr3() -> Self {
         Self::new(RobotKind::Fr3, 0.0)
     }
 
-    /// Returns the bounds of the FER: velocities of the joints leave room for three lost commands.
+    /// Returns the bounds of the FER. The bounds of the velocities leave room for three lost
+    /// commands.
     pub fn fer() -> Self {
         Self::new(RobotKind::Fer, 3.0)
     }
@@ -109,8 +110,8 @@ impl Bounds {
         }
     }
 
-    /// Returns the same bounds with the velocities of `joints`, for example from a robot's
-    /// description. An FR3's client uses nothing else from the description.
+    /// Returns the same bounds with the velocity envelope of `joints`, for example from a robot's
+    /// description. A client of the FR3 uses nothing else from the description.
     #[must_use]
     pub fn with_envelope_of(mut self, joints: &JointLimits) -> Self {
         self.joint_velocity = VelocityBounds::Envelope {

@@ -1,15 +1,16 @@
-//! Checks that a command is valid: finite, a transformation, an elbow.
+//! //! Checks that a command is valid: its numbers are finite, its pose is a transformation, and
+//! its elbow has a sign.
 
 use crate::shaping::InvalidCommand;
 
-/// Tolerance of the norm of a row or column of a rotation (libfranka 0.21,
+/// Largest deviation from 1 of the norm of a row or column of a rotation (libfranka 0.21,
 /// `kOrthonormalThreshold`).
 pub const ORTHONORMAL_TOLERANCE: f64 = 1e-5;
 
-/// Refuses non-finite values.
+/// Checks that all values are finite.
 ///
 /// # Errors
-/// [`InvalidCommand::NotFinite`].
+/// Returns [`InvalidCommand::NotFinite`] if a value is infinite or NaN.
 pub fn finite(values: &[f64]) -> Result<(), InvalidCommand> {
     if all_finite(values) {
         Ok(())
@@ -18,10 +19,11 @@ pub fn finite(values: &[f64]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Refuses an array that is not a pose in column-major order.
+/// Checks that an array is a pose in column-major order.
 ///
 /// # Errors
-/// [`InvalidCommand::NotFinite`], then [`InvalidCommand::Transformation`].
+/// Returns [`InvalidCommand::NotFinite`] if an element is not finite, otherwise
+/// [`InvalidCommand::Transformation`] if the array is not a homogeneous transformation.
 pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
     finite(column_major)?;
     if is_homogeneous(column_major) {
@@ -31,10 +33,12 @@ pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Refuses an elbow that is not an angle of joint 3 `[rad]` and a sign of joint 4, plus or minus 1.
+/// Checks that an elbow consists of an angle of joint 3, `[rad]`, and a sign of joint 4, plus or
+/// minus 1.
 ///
 /// # Errors
-/// [`InvalidCommand::NotFinite`], then [`InvalidCommand::ElbowSign`].
+/// Returns [`InvalidCommand::NotFinite`] if a number is not finite, otherwise
+/// [`InvalidCommand::ElbowSign`] if the sign is neither -1 nor +1.
 pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     finite(elbow)?;
     if elbow[1] == 1.0 || elbow[1] == -1.0 {
@@ -44,11 +48,12 @@ pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// True if a 4x4 matrix, column-major, counts as a transformation. Its last row is exactly `0 0 0
-/// 1`, and each row and column of its rotation has length 1 within [`ORTHONORMAL_TOLERANCE`].
+/// True if a 4x4 matrix in column-major order counts as a transformation. Its last row must be
+/// exactly `0 0 0 1`, and each row and column of its rotation must have length 1 within
+/// [`ORTHONORMAL_TOLERANCE`].
 ///
-/// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored
-/// matrix passes.
+/// As in libfranka, neither the angles between the columns nor the handedness are checked, so a
+/// mirrored matrix passes.
 pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
     let m = column_major;
     let square = |x: f64, y: f64, z: f64| (x * x + y * y) + z * z;
@@ -61,7 +66,8 @@ pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
         square(m[2], m[6], m[10]),
     ];
     let unit = |square: f64| (square.sqrt() - 1.0).abs() <= ORTHONORMAL_TOLERANCE;
-    // A square this close to 1 has a root within the tolerance, so nearly every pose needs no root.
+    // // If the square is this close to 1, its root is within the tolerance. So nearly every pose
+    // needs no root.
     let near = |square: f64| (square - 1.0).abs() <= 1.9 * ORTHONORMAL_TOLERANCE;
     [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0]
         && (squares.map(near) == [true; 6] || squares.into_iter().all(unit))
@@ -79,7 +85,7 @@ mod tests {
         1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 0.2, 0.1, 1.0,
     ];
 
-    /// The identity with one element replaced.
+    /// Returns the identity with one element replaced.
     fn with(index: usize, value: f64) -> [f64; 16] {
         let mut m = IDENTITY;
         m[index] = value;

@@ -6,7 +6,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidCommand {
-    /// A number of a torque command, or of any command after filter and limiter, is not finite.
+    /// A torque, or any number of a command after the filter and the limiter, is not finite.
     #[error("Commanding value is infinite or NaN.")]
     NotFinite,
     /// The scalar given to the velocity limiter is not finite.
@@ -30,7 +30,8 @@ pub enum InvalidCommand {
     /// The pose given to the limiter is not a homogeneous transformation in column-major order.
     #[error("O_T_EE_c is invalid transformation matrix. Has to be column major!")]
     LimiterTransformation,
-    /// The pose after filter and limiter is not a homogeneous transformation in column-major order.
+    /// The pose after the filter and the limiter is not a homogeneous transformation in
+    /// column-major order.
     #[error(
         "libfranka: Attempt to set invalid transformation in motion generator. Has to be column major!"
     )]
@@ -40,26 +41,26 @@ pub enum InvalidCommand {
         "Invalid elbow configuration given! Only +1 or -1 are allowed for the sign of the 4th joint."
     )]
     ElbowSign,
-    /// The low-pass filter refuses its arguments.
+    /// The low-pass filter refuses an argument.
     #[error("{signal}lowpass-filter: {fault}")]
     Filter {
-        /// Signal that could not be filtered.
+        /// Kind of signal that could not be filtered.
         signal: Signal,
-        /// Fault of the signal or the filter.
+        /// Fault of the argument.
         fault: FilterFault,
     },
 }
 
-/// Signal that a low-pass filter is applied to.
+/// Kind of signal that a low-pass filter is applied to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
-    /// Scalars.
+    /// One or more scalars.
     Scalar,
     /// A pose.
     Pose,
 }
 
-/// Prints the name in an error text, before the filter's.
+/// Prints the signal as the prefix of an error text of the filter.
 impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -69,7 +70,7 @@ impl fmt::Display for Signal {
     }
 }
 
-/// Input that a low-pass filter refuses.
+/// Argument that a low-pass filter refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FilterFault {
     /// The time between two samples is negative or not finite.
@@ -78,8 +79,8 @@ pub enum FilterFault {
     /// The cutoff frequency is not positive, or not finite.
     #[error("cutoff_frequency is zero, negative, infinite or NaN.")]
     CutoffFrequency,
-    /// The command, or the value of the state that the filter uses as the last value, is not
-    /// finite.
+    /// The command is not finite, or the value from the state that the filter uses as its last
+    /// value is not finite.
     #[error("current or past input value of the signal to be filtered is infinite or NaN.")]
     Value,
 }

@@ -1,7 +1,7 @@
 //! First-order low-pass filters.
 //!
-//! `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample time `T` and the
-//! cutoff frequency `f`. For example, `g` is 0.386 at 1 ms and 100 Hz.
+//! //! A filter returns `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the
+//! sample time `T` and the cutoff frequency `f`. For example, `g` is 0.386 at 1 ms and 100 Hz.
 
 use core::f64::consts::PI;
 
@@ -9,18 +9,18 @@ use crate::shaping::check::all_finite;
 use crate::shaping::rotation::{Rigid, slerp};
 use crate::shaping::{FilterFault, InvalidCommand, Signal};
 
-/// Cutoff frequency from which on a control loop does not filter, `[Hz]` (libfranka 0.21,
+/// Cutoff frequency at and above which a control loop does not filter, `[Hz]` (libfranka 0.21,
 /// `lowpass_filter.h`).
 pub const MAX_CUTOFF_FREQUENCY: f64 = 1000.0;
 
 /// Default cutoff frequency of a control loop, `[Hz]` (libfranka 0.21, `lowpass_filter.h`).
 pub const DEFAULT_CUTOFF_FREQUENCY: f64 = 100.0;
 
-/// Filters a number: `last` is the last filtered value, `sample_time` is in `[s]` and may be 0,
-/// `cutoff_frequency` in `[Hz]`.
+/// Filters a number. `last` is the last filtered value, `sample_time` is in `[s]` and may be 0, and
+/// `cutoff_frequency` is in `[Hz]`.
 ///
 /// # Errors
-/// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
+/// Returns [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
 pub fn low_pass(
     sample_time: f64,
     current: f64,
@@ -31,10 +31,10 @@ pub fn low_pass(
     Ok(filtered)
 }
 
-/// Filters each of several numbers as [`low_pass`] does.
+/// Filters each number of an array as [`low_pass`] does.
 ///
 /// # Errors
-/// As for [`low_pass`].
+/// Returns the errors of [`low_pass`].
 pub fn low_pass_each<const N: usize>(
     sample_time: f64,
     current: &[f64; N],
@@ -49,13 +49,14 @@ pub fn low_pass_each<const N: usize>(
     Ok(core::array::from_fn(|i| mix(gain, current[i], last[i])))
 }
 
-/// Filters a pose, column-major: the translation as [`low_pass`] does, the orientation along the
-/// arc from the orientation of `last`.
+/// Filters a pose in column-major order. The translation is filtered as in [`low_pass`]. The
+/// orientation moves along the arc from the orientation of `last`.
 ///
-/// The orientations are the nearest rotations of both poses; the last row is copied from `current`.
+/// Both rotations are first replaced by the nearest orthogonal rotations. The last row is copied
+/// from `current`.
 ///
 /// # Errors
-/// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
+/// Returns [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
 pub fn low_pass_pose(
     sample_time: f64,
     current: &[f64; 16],
@@ -67,7 +68,7 @@ pub fn low_pass_pose(
         .map(|filtered| filtered.pose())
 }
 
-/// As [`low_pass_pose`], with the result of [`Rigid::nearest`] for `last`.
+/// Does the same as [`low_pass_pose`], for poses that [`Rigid::nearest`] returned.
 pub(crate) fn low_pass_rigid(
     sample_time: f64,
     current: &[f64; 16],
@@ -92,12 +93,13 @@ pub(crate) fn low_pass_rigid(
     })
 }
 
-/// Returns the share of the new value.
+/// Returns the weight of the new value.
 pub(crate) const fn gain(sample_time: f64, cutoff_frequency: f64) -> f64 {
     sample_time / (sample_time + (1.0 / (2.0 * PI * cutoff_frequency)))
 }
 
-/// Returns the new value and the last one, mixed by the share of the new one.
+/// Returns the weighted mean of the new value and the last value. `gain` is the weight of the new
+/// value.
 pub(crate) fn mix(gain: f64, current: f64, last: f64) -> f64 {
     gain * current + (1.0 - gain) * last
 }
@@ -180,7 +182,6 @@ mod tests {
         assert_eq!(fault(1e-3, 0.5, 1.0), None);
     }
 
-    /// Programs show and compare the texts.
     #[test]
     fn the_texts_are_those_of_libfranka() {
         assert_eq!(

@@ -1,22 +1,22 @@
-//! Filter, limiter and check, which a control loop applies to a returned command before sending it.
-//! Pure functions, composed by [`Shaper`](crate::control::Shaper).
+//! //! Filter, limiter and check, which a control loop applies to a command before it sends the
+//! command. These are pure functions; [`Shaper`](crate::control::Shaper) combines them.
 //!
 //! ```text
 //! command -> filter (low-pass against the state) -> limiter (velocity, acceleration, jerk) -> check -> robot
 //!            cutoff < 1000 Hz                       limit_rate
 //! ```
 //!
-//! * [`limiter`]: limits commands to given bounds: torques, scalars, joints, Cartesian velocity and
-//!   pose.
-//! * [`filter`]: first-order low-pass filters of scalars, arrays and poses.
-//! * [`Bounds`]: the bounds of the limiters of libfranka, for both robots.
+//! //! * [`limiter`]: limits torques, scalars, joint motions, twists and poses to given bounds.
+//! //! * [`filter`]: first-order low-pass filters for scalars, arrays and poses.
+//! //! * [`Bounds`]: bounds of libfranka's limiters, for both robots.
 //! * [`check`]: checks that a command is valid.
 //!
-//! The references of filters and limiters are the *last commanded* values of the robot's state.
-//! Everything is arithmetic on arrays: nothing allocates, and nothing panics for any input.
+//! //! Filters and limiters compare a command with the *last commanded* values in the robot's
+//! state. All functions compute on arrays: nothing allocates, and nothing panics for any input.
 //! Formulas, order of operations and the treatment of NaN follow libfranka 0.21
-//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`). libfranka 0.9 differs in bounds
-//! and in the beginning of a motion. The robot enforces its own limits in addition.
+//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`). libfranka 0.9 uses other
+//! bounds, and treats the beginning of a motion differently. The robot also enforces its own
+//! limits.
 
 mod bounds;
 pub mod check;
@@ -31,14 +31,14 @@ pub use filter::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
 pub use franka_model::CYCLE;
 
-/// Returns the smaller number. With a NaN it returns `x`, where [`f64::min`] returns the other
-/// number.
+/// Returns the smaller number. If either is NaN it returns `x`, whereas [`f64::min`] returns the
+/// number that is not NaN.
 const fn lo(x: f64, y: f64) -> f64 {
     if y < x { y } else { x }
 }
 
-/// Returns the larger number. With a NaN it returns `x`, where [`f64::max`] returns the other
-/// number.
+/// Returns the larger number. If either is NaN it returns `x`, whereas [`f64::max`] returns the
+/// number that is not NaN.
 const fn hi(x: f64, y: f64) -> f64 {
     if x < y { y } else { x }
 }

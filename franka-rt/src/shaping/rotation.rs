@@ -10,12 +10,12 @@ pub(crate) struct Rigid {
     pub(crate) orientation: UnitQuaternion<f64>,
     /// Translation, `[m]`.
     pub(crate) translation: Vector3<f64>,
-    /// Last row of the homogeneous matrix; for a pose `0 0 0 1`.
+    /// Last row of the homogeneous matrix; `0 0 0 1` for a pose.
     pub(crate) last_row: [f64; 4],
 }
 
 impl Rigid {
-    /// Returns the [`nearest_rotation`] of a column-major pose, which may be rounded to `f32`.
+    /// Returns a column-major pose, which may be rounded to `f32`, with the [`nearest_rotation`].
     pub(crate) fn nearest(pose: &[f64; 16]) -> Self {
         let m = pose;
         let block = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
@@ -34,7 +34,7 @@ impl Rigid {
     }
 }
 
-/// Returns a column-major pose from its parts.
+/// Returns the column-major pose with these parts.
 pub(crate) fn pose(
     rotation: &Matrix3<f64>,
     translation: &Vector3<f64>,
@@ -48,9 +48,9 @@ pub(crate) fn pose(
 }
 
 /// Returns the rotation nearest to a matrix: the orthogonal factor of its polar decomposition, or
-/// the nearest proper rotation if that factor mirrors.
+/// the nearest proper rotation if that factor is a reflection.
 ///
-/// Any finite matrix has a result; NaN if an element is not finite.
+/// Every finite matrix has a result. If an element is not finite, the result is NaN.
 fn nearest_rotation(block: &Matrix3<f64>) -> Matrix3<f64> {
     polished(*block).unwrap_or_else(|| procrustes(block))
 }
@@ -61,7 +61,7 @@ fn quaternion(rotation: &Matrix3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&rotation)
 }
 
-/// Returns the rotation at the share `t` of the shorter arc from `from` to `to`.
+/// Returns the rotation at the share `t` of the shorter arc between `from` and `to`.
 pub(crate) fn slerp(
     from: &UnitQuaternion<f64>,
     to: &UnitQuaternion<f64>,
@@ -78,13 +78,13 @@ pub(crate) fn slerp(
     };
     let of_to = if signed < 0.0 { -of_to } else { of_to };
     let sum = from.coords * of_from + to.coords * of_to;
-    // Its length is 1 except for rounding, where this step of Newton's is as good as a division by
+    // // Its length is 1 except for rounding. So this Newton step is as accurate as a division by
     // the root.
     let sum = sum * (1.5 - 0.5 * sum.norm_squared());
     UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
 
-/// Returns the rotation about `axis`, of length 1, by `angle` radians (Rodrigues).
+/// Returns the rotation by `angle` radians about `axis`, which has length 1 (Rodrigues).
 pub(crate) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (sine, cosine) = angle.sin_cos();
     let (along, across) = (axis * (1.0 - cosine), axis * sine);
@@ -103,9 +103,9 @@ pub(crate) fn about(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     )
 }
 
-/// Returns the nearest rotation by `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`: the start
-/// of the series of `X (X'X)^(-1/2)`, whose error cubes with each step. `None` if the block is not
-/// close to a rotation.
+/// Returns the nearest rotation, by iterating `X <- X (1 - E / 2 + 3 E^2 / 8)` with `E = X'X - 1`.
+/// The factor is the start of the series of `(X'X)^(-1/2)`; each step cubes the error. `None` if
+/// the block is not close to a rotation.
 fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
     if block.determinant() <= 0.0 {
         return None;
@@ -141,12 +141,13 @@ fn polished(block: Matrix3<f64>) -> Option<Matrix3<f64>> {
 /// A symmetric 3x3 matrix.
 struct Symmetric {
     diagonal: [f64; 3],
-    /// The elements in rows and columns yz, zx and xy.
+    /// Elements yz, zx and xy.
     beside: [f64; 3],
 }
 
 impl Symmetric {
-    /// Returns the sum of the sizes of all elements. Unlike their maximum, it cannot lose a NaN.
+    /// Returns the sum of the absolute values of all elements. Unlike the maximum, the sum is NaN
+    /// if an element is NaN.
     fn size(&self) -> f64 {
         let sum = |x: &[f64; 3]| x[0].abs() + x[1].abs() + x[2].abs();
         sum(&self.diagonal) + 2.0 * sum(&self.beside)
@@ -170,8 +171,8 @@ impl Symmetric {
     }
 }
 
-/// Returns the rotation that maximises `tr(R'M)`, which is the nearest one. It is the eigenvector
-/// of the largest eigenvalue of a symmetric matrix, read as a quaternion. Source: Horn, J. Opt.
+/// Returns the rotation that maximises `tr(R'M)`, which is the nearest rotation. As a quaternion,
+/// it is the eigenvector of the largest eigenvalue of a symmetric matrix. Source: Horn, J. Opt.
 /// Soc. Am. A 4, 1987, section 4.
 #[cold]
 fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
@@ -206,14 +207,14 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Largest deviation from orthogonal, element sizes summed, for which three steps of the series are
-/// enough.
+/// Largest deviation from orthogonality for which three steps of the series are enough, as the sum
+/// of the absolute values of `E`.
 const POLISH_BELOW: f64 = 0.3;
 const POLISH_STEPS_MAX: usize = 4;
-/// Deviation from orthogonal, for example of rotations rounded to `f32`, below which one more step
-/// is as close as rounding allows.
+/// Deviation from orthogonality below which one more step is exact up to rounding. Rotations
+/// rounded to `f32` are below it.
 const CUBES_AWAY: f64 = 5e-6;
-/// The rounding error of products of rotations.
+/// Rounding error of products of rotations.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Maximum number of steps, far more than a symmetric 4x4 matrix needs.
 const EIGEN_STEPS_MAX: usize = 200;
@@ -241,8 +242,8 @@ mod tests {
         (r.tr_mul(r) - Matrix3::identity()).amax() < 4e-15 && r.determinant() > 0.0
     }
 
-    /// `U V'` of the singular value decomposition, the last singular direction turned to make it a
-    /// rotation.
+    /// Returns `U V'` of the singular value decomposition. The last singular direction is flipped
+    /// if that makes the result a rotation.
     fn by_singular_values(m: &Matrix3<f64>) -> Matrix3<f64> {
         let svd = m.svd(true, true);
         let (Some(mut u), Some(v_t)) = (svd.u, svd.v_t) else {
@@ -263,7 +264,7 @@ mod tests {
             let mut singular = m.singular_values();
             singular.as_mut_slice().sort_by(f64::total_cmp);
             let (least, middle) = (singular[0], singular[1]);
-            // The result is as well determined as the two smallest singular values are apart from
+            // // The result is well determined if the two smallest singular values are far from
             // opposite.
             let gap = if m.determinant() > 0.0 { middle + least } else { middle - least };
             prop_assume!(gap > 1e-3);

@@ -8,7 +8,7 @@ use crate::shaping::check::{all_finite, is_homogeneous};
 use crate::shaping::rotation::{Rigid, about, pose};
 use crate::shaping::{CYCLE, InvalidCommand, lo};
 
-/// Share of the rotational bounds that a pose may use (libfranka 0.21,
+/// Share of the rotational bounds that the limiter of poses uses (libfranka 0.21,
 /// `kFactorCartesianRotationPoseInterface`).
 pub const POSE_ROTATION_SHARE: f64 = 0.99;
 
@@ -21,10 +21,10 @@ pub struct CartesianBounds {
     pub rotation: MotionLimits,
 }
 
-/// Limits a twist in the base frame: linear velocity `[m/s]`, then angular velocity `[rad/s]`.
+/// Limits a twist in the base frame: linear velocity, `[m/s]`, then angular velocity, `[rad/s]`.
 ///
 /// # Errors
-/// [`InvalidCommand::Twist`] if a component of `command` is not finite.
+/// Returns [`InvalidCommand::Twist`] if a component of `command` is not finite.
 pub fn cartesian_velocity(
     bounds: &CartesianBounds,
     command: &[f64; 6],
@@ -42,13 +42,14 @@ pub fn cartesian_velocity(
     Ok([v.x, v.y, v.z, w.x, w.y, w.z])
 }
 
-/// Limits a pose, column-major, in the base frame, by the twist from `last_pose` to it.
+/// Limits a pose in the base frame, in column-major order. The bounds apply to the twist from
+/// `last_pose` to the pose.
 ///
-/// Both poses are replaced by the nearest rotations. The rotational bounds are multiplied by
-/// [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
+/// The rotations of both poses are replaced by the nearest orthogonal rotations. The rotational
+/// bounds are multiplied by [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
 ///
 /// # Errors
-/// [`InvalidCommand::Pose`] if an element of `command` is not finite, then
+/// Returns [`InvalidCommand::Pose`] if an element of `command` is not finite, otherwise
 /// [`InvalidCommand::LimiterTransformation`] if `command` is not a homogeneous transformation.
 pub fn cartesian_pose(
     bounds: &CartesianBounds,
@@ -67,7 +68,7 @@ pub fn cartesian_pose(
     )
 }
 
-/// As [`cartesian_pose`], with the results of [`Rigid::nearest`] for the poses.
+/// Does the same as [`cartesian_pose`], for poses that [`Rigid::nearest`] returned.
 pub(crate) fn limit_rigid(
     bounds: &CartesianBounds,
     command: &[f64; 16],
@@ -105,20 +106,21 @@ pub(crate) fn limit_rigid(
     Ok(pose(&rotation, &translation, [0.0, 0.0, 0.0, 1.0]))
 }
 
-/// Returns both halves of a twist: linear, then angular.
+/// Returns the linear and the angular part of a twist.
 fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
     let [x, y, z, rx, ry, rz] = *twist;
     (Vector3::new(x, y, z), Vector3::new(rx, ry, rz))
 }
 
-/// Limits a velocity of three components by the norms of its derivatives.
+/// Limits a velocity of three components, and the norms of its derivatives.
 ///
-/// The acceleration keeps its direction. Its limit falls with the distance to the bound of the
-/// velocity along that direction, at the rate of the jerk. If the last velocity is so far outside
-/// that no acceleration in this direction leads back, the distance is NaN and does not limit.
+/// The acceleration keeps its direction. Its limit decreases with the distance to the velocity
+/// bound along that direction, at the rate that the jerk allows. If the last velocity is so far
+/// outside the bound that no acceleration in this direction leads back, the distance is NaN and
+/// does not limit the acceleration.
 ///
-/// The computation uses shares of the vectors, where libfranka uses unit vectors times their
-/// lengths. This takes half the time, and differs by rounding.
+/// The computation scales the vectors, whereas libfranka multiplies unit vectors by lengths.
+/// Scaling takes half the time, and the results differ by rounding.
 #[inline(always)]
 fn limit_vector(
     most: &MotionLimits,

@@ -1,5 +1,5 @@
-//! Rate limiters: move the last command as near to the given command as the bounds on derivatives
-//! allow.
+//! //! Rate limiters. Each one moves the last command towards the given command, as far as the
+//! bounds on the derivatives allow.
 //!
 //! | command | function | bounded quantity |
 //! |---|---|---|
@@ -9,24 +9,25 @@
 //! | twist | [`cartesian_velocity`] | norms of the linear and of the angular part |
 //! | pose | [`cartesian_pose`] | as for a twist; rotations keep 1 % more distance |
 //!
-//! The last values come from the robot's state: last command, and its first and second derivative.
-//! Only the command is checked. Non-finite last values, and commands whose derivatives overflow,
-//! may give a non-finite result, as in libfranka. [`Shaper`](crate::control::Shaper) refuses such a
-//! result.
+//! //! The last values come from the robot's state: the last command, and its first and second
+//! derivative. Only the command is checked. If a last value is not finite, or if the derivatives of
+//! the command overflow, the result may not be finite, as in libfranka.
+//! [`Shaper`](crate::control::Shaper) refuses such a result.
 //!
 //! # What they do not keep
 //!
-//! These are the limiters of libfranka 0.21, value for value, with its weaknesses:
+//! //! These are the limiters of libfranka 0.21, value for value, so they share its weaknesses:
 //!
-//! * The jerk yields to the velocity. The jerk may exceed its bound if a vector turns at the bound
-//!   of its velocity, and if a joint meets the envelope of its position.
-//! * Above its upper bound a velocity returns at the bound of the acceleration. Below the lower
-//!   bound it returns by half of the excess per cycle, at any acceleration.
-//! * Joints 5 and 7 of the FR3 have envelopes for a deceleration of 17 rad/s^2. The limiter brakes
-//!   with 10. At full speed towards the upper end of their range, these joints pass that end.
+//! //! * The velocity bound takes precedence over the jerk bound. The jerk may exceed its bound if
+//! a vector turns at the velocity bound, or if a joint meets its velocity envelope.
+//! //! * A velocity above its upper bound returns at the acceleration bound. A velocity below its
+//! lower bound returns by half of the excess per cycle, at any acceleration.
+//! //! * The velocity envelopes of joints 5 and 7 of the FR3 assume a deceleration of 17 rad/s^2,
+//! but the limiter brakes with 10 rad/s^2. If these joints move at full speed towards the upper end
+//! of their range, they pass that end.
 //!
-//! The robot judges every command by its own limits. Commands that stay away from the bounds cause
-//! none of these cases.
+//! //! The robot checks every command against its own limits. None of these cases occurs while
+//! commands stay away from the bounds.
 
 mod cartesian;
 mod scalar;

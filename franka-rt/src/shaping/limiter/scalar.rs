@@ -1,4 +1,4 @@
-//! Limiters of numbers: torques, joints, the elbow.
+//! //! Limiters of scalars: torques, joints, the elbow.
 
 use franka_model::limits::MotionLimits;
 
@@ -12,14 +12,14 @@ pub struct AxisBounds {
     pub upper_velocity: f64,
     /// Least velocity, in the same unit; positive if the axis must turn back.
     pub lower_velocity: f64,
-    /// Bound of the acceleration in both directions, per second.
+    /// Bound of the acceleration in both directions, `[rad/s^2]` or `[m/s^2]`.
     pub acceleration: f64,
-    /// Bound of the jerk in both directions, per second squared.
+    /// Bound of the jerk in both directions, `[rad/s^3]` or `[m/s^3]`.
     pub jerk: f64,
 }
 
 impl AxisBounds {
-    /// Returns the same bounds in both directions.
+    /// Returns bounds that are the same in both directions.
     pub const fn symmetric(limits: &MotionLimits) -> Self {
         Self {
             upper_velocity: limits.velocity,
@@ -44,7 +44,7 @@ pub struct JointBounds {
 }
 
 impl JointBounds {
-    /// Returns the bounds of joint `i`, from 0.
+    /// Returns the bounds of joint `i`, counted from 0.
     fn joint(&self, i: usize) -> AxisBounds {
         AxisBounds {
             upper_velocity: self.upper_velocity[i],
@@ -55,11 +55,11 @@ impl JointBounds {
     }
 }
 
-/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`. Works for any seven numbers and
-/// their greatest derivative.
+/// Limits the rate of torques, `[N m]`, to `max_rate`, `[N m/s]`. The function also limits any
+/// other seven numbers to their greatest derivative.
 ///
 /// # Errors
-/// [`InvalidCommand::NotFinite`] if a torque of `command` is not finite.
+/// Returns [`InvalidCommand::NotFinite`] if a torque of `command` is not finite.
 pub fn torques(
     command: &[f64; 7],
     last: &[f64; 7],
@@ -73,21 +73,21 @@ pub fn torques(
     }))
 }
 
-/// Returns `command`, moved away from `last` by at most what `max_rate` allows in a cycle, and true
-/// if that changed it.
+/// Returns `command`, limited to the values that `max_rate` allows one cycle after `last`, and true
+/// if the limit changed it.
 pub(crate) fn limit_rate(command: f64, last: f64, max_rate: f64) -> (f64, bool) {
     let rate = (command - last) / CYCLE;
     let limited = hi(lo(rate, max_rate), -max_rate);
     (last + limited * CYCLE, limited != rate)
 }
 
-/// Returns a torque rate, `[N m/s]`, that keeps `max_rate` even if the last torque is only known as
-/// its `f32` echo.
+/// Returns a torque rate, `[N m/s]`, that stays below `max_rate` even if only the `f32` echo of the
+/// last torque is known.
 ///
 /// A robot of protocol 10 sends its last torque as an `f32`, but judges the rate against the `f64`
-/// that it received. The rate therefore has to be lower by half a step of the `f32` per cycle. At
-/// 80 N m that is 5e-3 N m/s, more than the margin of libfranka, whose limiter does not consider
-/// this.
+/// that it received. The rate must therefore be lower by half a step of the `f32` per cycle. At 80
+/// N m this is 5e-3 N m/s, which exceeds libfranka's margin. The limiter of libfranka does not
+/// consider the rounding.
 pub fn within_echo(max_rate: f64, last: f64) -> f64 {
     let echo_error = f64::from(f32::EPSILON) * last.abs() / 2.0;
     hi(max_rate - echo_error / CYCLE, 0.0)
@@ -96,7 +96,7 @@ pub fn within_echo(max_rate: f64, last: f64) -> f64 {
 /// Limits a velocity.
 ///
 /// # Errors
-/// [`InvalidCommand::Velocity`] if `command` is not finite.
+/// Returns [`InvalidCommand::Velocity`] if `command` is not finite.
 pub fn velocity(
     bounds: &AxisBounds,
     command: f64,
@@ -114,10 +114,10 @@ pub fn velocity(
     ))
 }
 
-/// Limits a position by the velocity from `last_position` to it.
+/// Limits a position. The bounds apply to the velocity from `last_position` to it.
 ///
 /// # Errors
-/// [`InvalidCommand::Position`] if `command` is not finite.
+/// Returns [`InvalidCommand::Position`] if `command` is not finite.
 pub fn position(
     bounds: &AxisBounds,
     command: f64,
@@ -140,7 +140,7 @@ pub fn position(
 /// Limits each joint velocity independently, `[rad/s]`.
 ///
 /// # Errors
-/// [`InvalidCommand::JointVelocities`] if a velocity of `command` is not finite.
+/// Returns [`InvalidCommand::JointVelocities`] if a velocity of `command` is not finite.
 pub fn joint_velocities(
     bounds: &JointBounds,
     command: &[f64; 7],
@@ -163,7 +163,7 @@ pub fn joint_velocities(
 /// Limits each joint position independently, `[rad]`.
 ///
 /// # Errors
-/// [`InvalidCommand::JointPositions`] if a position of `command` is not finite.
+/// Returns [`InvalidCommand::JointPositions`] if a position of `command` is not finite.
 pub fn joint_positions(
     bounds: &JointBounds,
     command: &[f64; 7],
@@ -185,9 +185,10 @@ pub fn joint_positions(
     }))
 }
 
-/// Limits a velocity. The acceleration is bounded by the jerk first, then so that the velocity
-/// stays below its upper bound, and finally so that it stays above its lower bound. Near a bound
-/// the acceleration falls in proportion to the distance, at the rate that the jerk allows.
+/// Limits a velocity. The jerk bounds the acceleration first. Then the acceleration is reduced so
+/// that the velocity stays below its upper bound, and finally so that it stays above its lower
+/// bound. Near a bound the acceleration decreases in proportion to the distance, at the rate that
+/// the jerk allows.
 fn limit_velocity(
     bounds: &AxisBounds,
     command: f64,

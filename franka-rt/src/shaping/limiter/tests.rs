@@ -1,5 +1,5 @@
-//! Bounds of limited commands for any input: walks from rest in which every result is the last
-//! value of the next step.
+//! //! Tests that limited commands keep the bounds for any input. Each test walks from rest, and
+//! every result is the last value of the next step.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, READY, RobotKind, Twist, rotation, transform};
@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::shaping::{Bounds, CYCLE};
 
-/// Shares of a bound to command: moderate, far outside, beyond what squares can hold, and hardly
-/// any.
+/// Generates shares of a bound to command: moderate, far outside, so large that squares overflow,
+/// and tiny.
 fn share() -> impl Strategy<Value = f64> {
     prop_oneof![
         8 => -1.5..1.5,
@@ -19,7 +19,7 @@ fn share() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Commands, each of `N` shares and held for some steps; about 300 steps in all.
+/// Generates commands of `N` shares each, every one held for some steps; about 300 steps in all.
 fn commands<const N: usize>(
     share: impl Strategy<Value = f64>,
 ) -> impl Strategy<Value = Vec<[f64; N]>> {
@@ -64,7 +64,7 @@ impl<const N: usize> Last<N> {
     }
 }
 
-/// The norms of both halves of a twist or of its derivatives.
+/// Returns the norms of the linear and the angular part of a twist or of its derivatives.
 fn norms(twist: &[f64; 6]) -> [f64; 2] {
     let twist = Twist::from(*twist);
     [
@@ -73,7 +73,8 @@ fn norms(twist: &[f64; 6]) -> [f64; 2] {
     ]
 }
 
-/// The nominal limits of both halves, which the robot checks. The margin is room for rounding.
+/// Returns the nominal limits of the linear and the angular part, which the robot checks. Their
+/// distance from the bounds is room for rounding.
 fn halves(limits: &CartesianLimits) -> [MotionLimits; 2] {
     [limits.translation, limits.rotation]
 }
@@ -125,8 +126,8 @@ proptest! {
         }
     }
 
-    /// As in libfranka, the jerk is exceeded where the envelope takes the velocity back faster than
-    /// the jerk allows.
+    /// As in libfranka, the jerk exceeds its bound where the envelope reduces the velocity faster
+    /// than the jerk bound allows.
     #[test]
     fn joint_positions_keep_limits_and_jerk_without_envelope(
         shares in commands::<7>(share()),
@@ -151,7 +152,7 @@ proptest! {
         }
     }
 
-    /// A vector that turns at the bound of its velocity may exceed the jerk, as in libfranka.
+    /// As in libfranka, a vector that turns at its velocity bound may exceed the jerk bound.
     #[test]
     fn twists_keep_velocity_and_acceleration(
         shares in commands::<6>(share()),
@@ -191,7 +192,7 @@ proptest! {
         }
     }
 
-    /// The last values are measured at the poses, as in the robot.
+    /// As in the robot, the last values are derived from the poses.
     #[test]
     fn poses_keep_velocity_and_acceleration_and_stay_poses(
         shares in commands::<6>(-2.0..2.0),
@@ -227,8 +228,9 @@ proptest! {
     }
 }
 
-/// Drives every joint of the FR3 against the end of its range, upwards or downwards. Returns where
-/// each joint is after six seconds and by how much it passed its envelope, `[rad/s]`.
+/// Drives every joint of the FR3 towards the end of its range, upwards or downwards. Returns the
+/// position of each joint after six seconds, `[rad]`, and by how much it exceeded its envelope,
+/// `[rad/s]`.
 fn against_the_end(direction: f64) -> ([f64; 7], [f64; 7]) {
     let limits = JointLimits::of(RobotKind::Fr3);
     let bounds = Bounds::fr3();
@@ -251,7 +253,7 @@ fn against_the_end(direction: f64) -> ([f64; 7], [f64; 7]) {
     (q, excess)
 }
 
-/// The envelope changes within a cycle, and so does its slope: the limiter lags by some mrad/s.
+/// The envelope and its slope change within a cycle, so the limiter lags by some mrad/s.
 #[test]
 fn a_joint_sent_against_the_end_of_its_range_stops_before_it() {
     let limits = JointLimits::of(RobotKind::Fr3);
@@ -264,7 +266,8 @@ fn a_joint_sent_against_the_end_of_its_range_stops_before_it() {
     }
 }
 
-/// As documented in the module, the acceleration bound yields downwards only.
+/// As the module documents, the limiter keeps the acceleration bound upwards, but exceeds it
+/// downwards.
 #[test]
 fn joints_5_and_7_of_the_fr3_pass_their_upper_end() {
     let limits = JointLimits::of(RobotKind::Fr3);
@@ -285,7 +288,8 @@ fn velocity_keeps_acceleration_above_bounds_but_not_below() {
     };
     assert_eq!(velocity(&bounds, 2.0, 2.0, 0.0), Ok(2.0 - 10.0 * CYCLE));
     assert_eq!(velocity(&bounds, -2.0, -2.0, 0.0), Ok(-2.0 + 500.0 * CYCLE));
-    // The lower bound is applied last: it takes precedence where both cannot be kept.
+    // // The lower bound is applied last, so it takes precedence where the limiter cannot keep
+    // both.
     let turned = AxisBounds {
         upper_velocity: -1.0,
         lower_velocity: 1.0,
@@ -296,7 +300,8 @@ fn velocity_keeps_acceleration_above_bounds_but_not_below() {
 
 #[test]
 fn vector_far_beyond_velocity_bound_keeps_only_jerk_bound() {
-    // Across the last velocity, no acceleration leads back into the sphere: its distance is NaN.
+    // // No acceleration perpendicular to the last velocity leads back into the sphere, so its
+    // distance is NaN.
     let bounds = Bounds::fr3().cartesian;
     let last = [10.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let acceleration = [0.0, 20.0, 0.0, 0.0, 0.0, 0.0];
