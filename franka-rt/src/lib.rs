@@ -1,4 +1,4 @@
-//! //! The real-time half of the driver: one thread per robot, and the modules without I/O that the
+//! The real-time half of the driver: one thread per robot, and the modules without I/O that the
 //! thread calls.
 //!
 //! ```text
@@ -31,7 +31,7 @@
 //! identify a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// // Without Unix there is no thread, so the items that only the thread uses are unused.
+// Without Unix there is no thread, so the items that only the thread uses are unused.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;

@@ -1,9 +1,9 @@
-//! //! Requests that the thread makes to the operating system: scheduling class, processor, locked
+//! Requests that the thread makes to the operating system: scheduling class, processor, locked
 //! memory, blocked signals, and polling of the socket.
 //!
-//! //! [`Scheduling::enter`] makes the requests for the calling thread, and [`Scheduling::tune`]
-//! makes the requests for its socket. Under [`Realtime::Enforce`] the first refusal is an error.
-//! Under [`Realtime::Ignore`] the same requests are made, and [`Granted`] lists the refusals. Under
+//! [`Scheduling::enter`] makes the requests for the calling thread, and [`Scheduling::tune`] makes
+//! the requests for its socket. Under [`Realtime::Enforce`] the first refusal is an error. Under
+//! [`Realtime::Ignore`] the same requests are made, and [`Granted`] lists the refusals. Under
 //! either, a request that no host can grant is an error.
 
 #[cfg(unix)]

@@ -1,25 +1,26 @@
-//! Active control: a thread of the program reads states and writes a command in answer to each.
+//! Active control: a thread of the program reads the states and writes one command in answer to
+//! each state.
 
 use super::{Command, Misfit};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// The program of a motion whose commands a thread of the user writes.
+/// The program of a motion whose commands the user's thread writes.
 ///
-/// Commands pass no filter and no limiter, as with libfranka's `ActiveControl`.
+/// No filter and no limiter changes the commands, as with libfranka's `ActiveControl`.
 #[derive(Clone, Copy, Debug)]
 pub struct ActiveControl;
 
-/// Reason why a command was not sent. Texts begin as in libfranka 0.21, `active_control*.h` and
+/// Reason why a command was not sent. The texts begin as in libfranka 0.21, `active_control*.h` and
 /// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteError {
-    /// No motion runs that accepts the command: its last command was written, or the robot has
-    /// ended it.
+    /// No motion that accepts the command is running: the last command was written, or the robot
+    /// has ended the motion.
     #[error("writeOnce must not be called after the motion has finished.")]
     NotRunning,
-    /// Torques came with a motion command, but the robot's own controller runs.
+    /// The motion command came with torques, but the robot's own controller runs.
     #[error("Torques can only be commanded in kExternalController mode.")]
     TorquesUnwanted,
     /// A motion command came without the torques that the motion requires.
@@ -31,19 +32,20 @@ pub enum WriteError {
     /// The motion does not accept this kind of command.
     #[error("Wrong writeOnce method called for currently active control!")]
     WrongKind,
-    /// The last torques came while a motion generator runs whose own last command is missing.
+    /// The last torques came, but the motion generator still runs because its last command is
+    /// missing.
     #[error("libfranka robot: Motion generator is still running! Can't stop external control")]
     GeneratorRunning,
     /// The command does not fit the motion.
     #[error(transparent)]
     Misfit(#[from] Misfit),
-    /// A number of the command cannot be sent.
+    /// A number of the command is invalid.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
 }
 
 impl ActiveControl {
-    /// Checks that a motion in `modes` accepts `command`, in the order of the reference client.
+    /// Checks that a motion in `modes` accepts `command`. The order of the checks is libfranka's.
     pub(crate) fn check(
         &self,
         command: &Command,
@@ -121,7 +123,8 @@ mod tests {
         let bad = MotionCommand::JointPositions(JointPositions([f64::NAN; 7]));
         let bad_torques = Torques([f64::NAN; 7]);
         for (modes, motion, torques, finished, expected) in [
-            // The kind is checked before the torques, the torques before the numbers.
+            // The kind is checked before the torques, and the torques are checked before the
+            // numbers.
             (
                 INTERNAL,
                 Some(VELOCITIES),
@@ -138,8 +141,8 @@ mod tests {
                 Err(E::TorquesUnwanted),
             ),
             (EXTERNAL, Some(bad), None, true, Err(E::TorquesMissing)),
-            // For last torques alone, the error names the generator; for other commands, the
-            // misfit.
+            // If only torques come as the last command, the error names the generator. Otherwise it
+            // is the misfit.
             (
                 INTERNAL,
                 None,
@@ -182,7 +185,7 @@ mod tests {
                 true,
                 Err(Misfit::NoGenerator.into()),
             ),
-            // Numbers are checked last, the motion's before the torques'.
+            // Numbers are checked last: those of the motion command before the torques.
             (
                 INTERNAL,
                 Some(bad),

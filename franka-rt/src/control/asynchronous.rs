@@ -1,18 +1,18 @@
-//! Asynchronous joint positions: sparse targets between which the robot itself plans.
+//! Asynchronous joint positions: sparse targets. The robot itself plans the motion between them.
 
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotMode, RobotState};
 
 use super::{Command, JointPositions};
 use crate::triple_buffer::{Reader, Writer, triple_buffer};
 
-/// The program of a motion between sparse joint targets: one command per new target, not one per
-/// state. Protocol 10 only.
+/// The program of a motion between sparse joint targets. It sends one command per new target
+/// instead of one per state. Only protocol 10 supports it.
 #[derive(Debug)]
 pub struct AsynchronousPositions {
     targets: Reader<AsynchronousTarget>,
 }
 
-/// A target as it is passed through the slot.
+/// A joint target, as the slot passes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
     /// Joint positions to move to and hold, `[rad]`.
@@ -22,13 +22,13 @@ pub struct AsynchronousTarget {
 }
 
 impl AsynchronousPositions {
-    /// Returns a program without a target, and the writer of its targets.
+    /// Returns a program without a target, and the writer for its targets.
     pub fn new() -> (Self, Writer<AsynchronousTarget>) {
         let (writer, targets) = triple_buffer();
         (Self { targets }, writer)
     }
 
-    /// Returns the request for such a motion; the robot keeps each joint below
+    /// Returns the request for such a motion. The robot keeps each joint below
     /// `maximum_velocities`, `[rad/s]`.
     pub fn request(maximum_velocities: [f64; 7]) -> MoveRequest {
         MoveRequest {
@@ -40,7 +40,8 @@ impl AsynchronousPositions {
         }
     }
 
-    /// Returns the command for a target that has not been sent yet, and whether it is the last.
+    /// Returns the command for a target that has not been sent yet, and true if it is the last
+    /// command.
     pub(crate) fn step(&mut self) -> Option<(Command, bool)> {
         let AsynchronousTarget { q, finished } = self.targets.read_newer()?;
         let command = Command {
@@ -51,14 +52,14 @@ impl AsynchronousPositions {
     }
 }
 
-/// The progress of the newest target.
+/// Progress towards the newest target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TargetStatus {
-    /// There is no target, or the robot runs something else.
+    /// There is no target, or the robot runs another motion.
     Idle,
-    /// The robot moves to the target.
+    /// The arm moves to the target.
     Executing,
     /// The arm rests at the target.
     TargetReached,
@@ -66,7 +67,7 @@ pub enum TargetStatus {
     Aborted(AbortReason),
 }
 
-/// Reason why targets are no longer followed. Texts are taken from libfranka 0.21,
+/// Reason why the robot no longer follows targets. The texts are taken from libfranka 0.21,
 /// `async_position_control_handler.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -84,15 +85,16 @@ pub enum AbortReason {
 }
 
 impl TargetStatus {
-    /// Default distance of the desired joint positions from the target that counts as reached, as
-    /// Euclidean norm, `[rad]`. Source: libfranka 0.21, `async_position_control_handler.hpp`.
+    /// Default distance from the target at which it counts as reached: the Euclidean norm over the
+    /// desired joint positions, `[rad]`. Source: libfranka 0.21,
+    /// `async_position_control_handler.hpp`.
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
-    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
-    /// Source: as for [`Self::GOAL_TOLERANCE`].
+    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`. The
+    /// source is the same.
     pub const REST: f64 = 0.01;
 
-    /// Returns the status of the newest target in a state of the motion.
+    /// Returns the status of the newest target, as a state of the motion shows it.
     pub fn of(state: &RobotState, target: Option<&[f64; 7]>, goal_tolerance: f64) -> Self {
         let Some(target) = target else {
             return Self::Idle;

@@ -9,18 +9,19 @@ use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
 use super::{Command, GeneratorCommand, MotionCommand, Next, Torques};
 use crate::control::{Failure, Shaper};
 
-/// A boxed control function. Its arguments are a state and the robot's time since the previous
-/// state; it returns a command.
+/// A boxed control function. It receives a state and the time since the previous state by the
+/// robot's clock, and returns a command.
 type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
-/// The program of a motion that calls one or two control functions with every state.
+/// The program of a motion that passes every state to one or two control functions.
 ///
-/// The rules follow libfranka's control loops. A function receives a state and the robot's time
-/// since the previous state: zero at first, and more than a millisecond after a loss. The returned
-/// command passes the low-pass filter, the limiter and the checks. Two functions see the same state
-/// and step. Once one function finishes, the other is not called any more; its command of the
-/// previous cycle is part of the last command. In protocol 10 the torque function is called first,
-/// in protocol 5 the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
+/// The rules are those of libfranka's control loops. A function receives a state and the time since
+/// the previous state by the robot's clock. This time is zero at first, and more than a millisecond
+/// after a lost state. The low-pass filter, the limiter and the checks process the returned
+/// command. Two functions receive the same state and time. Once one function finishes, the other is
+/// not called any more, and the last command contains its command of the previous cycle. Protocol
+/// 10 calls the torque function first; protocol 5 calls the motion function first. Source:
+/// libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
     generator_first: bool,
@@ -32,15 +33,16 @@ pub struct Callback {
     held: bool,
 }
 
-/// A function, and the newest command from its answer.
+/// A function, and the newest command that it returned.
 struct Source<T> {
     function: Function<T>,
     newest: T,
 }
 
 impl Callback {
-    /// Returns a program with torques alone and the default shaping. In a version without such
-    /// motions, a motion generator runs too, with commands to stand still.
+    /// Returns a program that commands only torques, with the default shaping. If the protocol has
+    /// no motions with torques alone, a motion generator runs too, and its commands make the arm
+    /// stand still.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -53,8 +55,8 @@ impl Callback {
         Self::new(version, stand).with_torques(torques)
     }
 
-    /// Returns a program with commands to a motion generator, for one of the robot's own
-    /// controllers, and with the default shaping.
+    /// Returns a program that commands a motion generator, with the default shaping. One of the
+    /// robot's own controllers follows the generator.
     pub fn motion<C: GeneratorCommand, R: Into<Next<C>>>(
         version: Version,
         mut motion: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -63,7 +65,8 @@ impl Callback {
         Self::new(version, Some(Source::new(motion, C::ZERO.into())))
     }
 
-    /// Adds torques to the commands to a motion generator; they replace the robot's own controller.
+    /// Adds torques to the commands to a motion generator. The torques replace the robot's own
+    /// controller.
     #[must_use]
     pub fn with_torques<R: Into<Next<Torques>>>(
         self,
@@ -75,7 +78,7 @@ impl Callback {
         }
     }
 
-    /// Replaces the shaper; by default [`Shaper::by_default`].
+    /// Replaces the shaper. The default is [`Shaper::by_default`].
     #[must_use]
     pub fn with_shaper(self, shaper: Shaper) -> Self {
         Self { shaper, ..self }
@@ -97,8 +100,8 @@ impl Callback {
         self.torques.is_some()
     }
 
-    /// Returns the request for a motion of this program. `controller` applies if it commands no
-    /// torques.
+    /// Returns the request for a motion of this program. `controller` is used if the program
+    /// commands no torques.
     pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
         let controller = match &self.torques {
             Some(_) => MoveControllerMode::ExternalController,
@@ -111,12 +114,12 @@ impl Callback {
         MoveRequest::new(controller, generator)
     }
 
-    /// Returns the command that answers a state, and whether it is the last.
+    /// Returns the command that answers a state, and true if it is the last command.
     pub(crate) fn step(&mut self, state: &RobotState) -> Result<(Command, bool), Failure> {
         let first = self.previous.is_none();
         let previous = self.previous.replace(state.message_id);
         let step = Duration::from_millis(state.message_id - previous.unwrap_or(state.message_id));
-        // The first function to finish ends the cycle.
+        // The function that finishes first ends the cycle.
         let finished = if self.generator_first {
             self.step_motion(state, step, first)? || self.step_torques(state, step)?
         } else {
@@ -126,9 +129,9 @@ impl Callback {
         Ok((self.newest(), finished))
     }
 
-    /// Returns the command that holds the arm where it was first held: the robot's desired
-    /// position, no velocity, no torque. Calls no function; the next call of a function still
-    /// counts as the first.
+    /// Returns the command that holds the arm: the robot's desired position when the hold began, no
+    /// velocity, no torque. Does not call a function, so the next call of a function still counts
+    /// as the first.
     pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
         if let Some(source) = &mut self.motion
             && !self.held
@@ -184,10 +187,11 @@ impl<T> Source<T> {
         }
     }
 
-    /// Returns the function's command, and whether it is the last. Catches a panic of the function.
+    /// Returns the function's command, and true if it is the last command. Catches a panic of the
+    /// function.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
-        // A function that has panicked is never called again, so nothing reads its half-finished
-        // state.
+        // A function that has panicked is never called again, so its inconsistent state is never
+        // read.
         let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
         let next = called.map_err(Failure::Panicked)?;
         next.into_parts().map_err(Failure::GivenUp)

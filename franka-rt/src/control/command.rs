@@ -1,11 +1,11 @@
-//! Commands of a program in a cycle, in the robot's own terms.
+//! Commands of a program in one cycle, in the robot's own quantities.
 
 use franka_proto::{MoveGeneratorMode, RobotCommand, RobotState};
 
 use crate::control::Shaper;
 use crate::shaping::{InvalidCommand, check};
 
-/// Joint torques without gravity and friction, `[N m]`. The robot adds both.
+/// Joint torques without gravity and friction, `[N m]`. The robot adds both parts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torques(pub [f64; 7]);
 
@@ -21,10 +21,10 @@ pub struct JointVelocities(pub [f64; 7]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
 pub struct CartesianPose {
-    /// The pose, column-major, `[m]`.
+    /// Pose in column-major order, `[m]`.
     pub O_T_EE: [f64; 16],
-    /// Position of joint 3, `[rad]`, and sign of joint 4, plus or minus 1; `None` leaves the elbow
-    /// to the robot.
+    /// Position of joint 3, `[rad]`, and the sign of joint 4, plus or minus 1. If `None`, the robot
+    /// chooses the elbow.
     pub elbow: Option<[f64; 2]>,
 }
 
@@ -32,7 +32,7 @@ pub struct CartesianPose {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(non_snake_case)]
 pub struct CartesianVelocities {
-    /// Linear velocity `[m/s]`, then angular velocity `[rad/s]`.
+    /// Linear velocity, `[m/s]`, then angular velocity, `[rad/s]`.
     pub O_dP_EE: [f64; 6],
     /// Elbow, as in [`CartesianPose::elbow`].
     pub elbow: Option<[f64; 2]>,
@@ -62,7 +62,7 @@ impl MotionCommand {
         }
     }
 
-    /// Returns the command to the same generator that changes nothing: the robot's desired
+    /// Returns a command that keeps the arm in place, for the same generator: the robot's desired
     /// position, or zero velocity. The robot expects such a command at the start of a motion.
     pub(super) fn holding(&self, state: &RobotState) -> Self {
         match self {
@@ -77,10 +77,10 @@ impl MotionCommand {
         }
     }
 
-    /// Checks that the robot can use the numbers of the command.
+    /// Checks that the numbers of the command are valid.
     ///
     /// # Errors
-    /// The first [`InvalidCommand`] that applies.
+    /// Returns the first [`InvalidCommand`] that applies.
     pub fn validate(&self) -> Result<(), InvalidCommand> {
         let elbow = match self {
             Self::JointPositions(JointPositions(values))
@@ -99,7 +99,7 @@ impl MotionCommand {
         elbow.as_ref().map_or(Ok(()), check::elbow)
     }
 
-    /// Passes the command through the shaper; `first` is true for the first command of its motion.
+    /// Returns the command after the shaper; `first` is true for the first command of the motion.
     pub(crate) fn shaped(
         &self,
         shaper: &Shaper,
@@ -116,7 +116,7 @@ impl MotionCommand {
         }
     }
 
-    /// Writes the command into the fields of its generator; all other fields stay as they are.
+    /// Writes the command into the fields of its generator; the other fields do not change.
     pub(crate) fn write_to(&self, command: &mut RobotCommand) {
         match *self {
             Self::JointPositions(JointPositions(q)) => command.q_c = q,
@@ -135,7 +135,7 @@ impl MotionCommand {
 
 /// Commands of one kind, for one motion generator.
 pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
-    /// Zero in all numbers, without an elbow; sent while there is no command.
+    /// A command of zeros, without an elbow. It is sent while there is no other command.
     const ZERO: Self;
 }
 

@@ -1,4 +1,4 @@
-//! Encodes commands as a datagram, with the checks of the reference client.
+//! Encodes commands as a datagram, with libfranka's checks.
 
 use franka_proto::{MoveGeneratorMode, RobotCommand, Version};
 
@@ -6,8 +6,8 @@ use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// Content of one cycle's datagram: a command to the motion generator, torques, or both, as the
-/// motion requires.
+/// Content of one cycle's datagram: a command to the motion generator, torques, or both. The motion
+/// determines which of them it requires.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// Command for the motion generator.
@@ -16,7 +16,7 @@ pub struct Command {
     pub torques: Option<Torques>,
 }
 
-/// A command that does not fit the current motion. Texts are taken from libfranka 0.21,
+/// Reason why a command does not fit the current motion. The texts are taken from libfranka 0.21,
 /// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -27,14 +27,14 @@ pub enum Misfit {
     /// Torques came, but the robot's own controller runs.
     #[error("libfranka robot: Trying to send control command, but no controller running!")]
     NoController,
-    /// One of two commands came, but the motion requires both.
+    /// Only a motion command or only torques came, but the motion requires both.
     #[error("libfranka robot: Trying to send partial robot command!")]
     Partial,
 }
 
 impl Command {
-    /// Returns torques for a motion without commands to a generator. In a version without such
-    /// motions, a motion generator runs too, with commands to stand still.
+    /// Returns torques for a motion without commands to a generator. If the protocol has no such
+    /// motions, adds a generator command that makes the arm stand still.
     pub fn torques(version: Version, torques: Torques) -> Self {
         let idle = JointVelocities::ZERO.into();
         Self {
@@ -43,7 +43,7 @@ impl Command {
         }
     }
 
-    /// Returns a setpoint for the robot's own controller.
+    /// Returns a command of setpoints for the robot's own controller.
     pub(crate) fn setpoint(setpoint: MotionCommand) -> Self {
         Self {
             motion: Some(setpoint),
@@ -54,7 +54,7 @@ impl Command {
     /// Checks that a motion in `modes` accepts the command.
     ///
     /// # Errors
-    /// The first [`Misfit`] that applies, in order.
+    /// Returns the first [`Misfit`] that applies, in the order of the variants.
     pub fn check(&self, modes: Modes) -> Result<(), Misfit> {
         let (generator, external) = (modes.has_generator(), modes.is_external());
         match (self.motion.is_some(), self.torques.is_some()) {
@@ -65,14 +65,14 @@ impl Command {
         }
     }
 
-    /// Returns the datagram that answers the state `message_id`. Values that are not commanded are
-    /// zero. `finished` sets the finishing flag of the motion generator if there is a motion
-    /// command, otherwise the finishing flag of the torques.
+    /// Returns the datagram that answers the state `message_id`. Values that the command does not
+    /// contain are zero. If `finished`, the datagram sets the finishing flag of the motion
+    /// generator if there is a motion command, otherwise the finishing flag of the torques.
     ///
-    /// Every command of every kind of program is built here.
+    /// All programs build their datagrams here.
     ///
     /// # Errors
-    /// [`InvalidCommand::NotFinite`] if any value of the command is not finite.
+    /// Returns [`InvalidCommand::NotFinite`] if any value of the command is not finite.
     pub fn datagram(
         &self,
         message_id: u64,

@@ -1,15 +1,14 @@
 //! Control at 1 kHz by the user's own code.
 //!
-//! * [`Torques`] and the four [`MotionCommand`]s: commands in the robot's own terms.
-//! * [`Next`]: the answer of a control function to a state.
-//! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter
-//!   of the reference client.
+//! * [`Torques`] and the four [`MotionCommand`]s: commands in the robot's own quantities.
+//! * [`Next`]: the return value of a control function.
+//! * [`Callback`]: the program of a motion that calls control functions. Order, filter and limiter
+//!   are libfranka's.
 //! * [`Shaper`]: filter, limiter and check of each kind of command, as in libfranka's control
 //!   loops.
-//! * [`ActiveControl`]: a motion whose commands a thread of the user writes.
-//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and their
-//!   results.
-//! * [`Command`]: content of one datagram; checks whether a motion in given [`Modes`] accepts it.
+//! * [`ActiveControl`]: the program of a motion whose commands the user's thread writes.
+//! * [`AsynchronousPositions`]: sparse joint targets. The robot plans the motion between them.
+//! * [`Command`]: content of one datagram. Checks whether a motion in given [`Modes`] accepts it.
 //! * [`Failure`]: the reason why a program could not continue.
 
 mod active;

@@ -2,17 +2,17 @@
 
 use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
-/// The two modes that the states of a running motion show.
+/// The two modes that states show while a motion runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Modes {
-    /// The motion generator mode, in the state's numbering.
+    /// The motion generator mode, numbered as in the state.
     pub generator: MotionGeneratorMode,
     /// The controller mode.
     pub controller: ControllerMode,
 }
 
 impl Modes {
-    /// Returns the modes of the motion that `request` asks for.
+    /// Returns the modes of the motion that `request` starts.
     pub fn of(request: &MoveRequest) -> Self {
         Self {
             generator: request.generator.in_state(),
@@ -28,13 +28,13 @@ impl Modes {
         )
     }
 
-    /// True if the joints expect torques.
+    /// True if the motion expects joint torques.
     pub fn is_external(self) -> bool {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// True if `state` shows both modes. Ignores `robot_mode`, which may change later than the
-    /// modes at the start.
+    /// True if `state` shows both modes. Ignores `robot_mode`, which may change after the two modes
+    /// when a motion starts.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller
     }

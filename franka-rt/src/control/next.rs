@@ -1,27 +1,27 @@
-//! Answer of a control function to a state.
+//! Return value of a control function.
 
 use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques};
 
-/// A command, with the decision whether the motion continues, finishes or is given up.
+/// A command that continues or finishes the motion, or the decision to give it up.
 ///
-/// Control functions may return the bare command to continue.
+/// To continue, a control function may also return the bare command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Next<T> {
-    /// Send the command, and call the function again with the next state.
+    /// Sends the command, and calls the function again with the next state.
     Continue(T),
-    /// Send the command, repeated until the robot has ended the motion; do not call the function
-    /// again. The robot refuses to end a motion of an arm that still moves.
+    /// Sends the command, and repeats it until the robot has ended the motion. The function is not
+    /// called again. While the arm moves, the robot refuses to end the motion.
     Finish(T),
-    /// Send nothing more, and stop the robot. The motion fails with this code, which the function
-    /// chooses.
+    /// Sends no more commands, and stops the robot. The motion fails with this code, which the
+    /// function chooses.
     GiveUp(i32),
 }
 
 impl<T> Next<T> {
-    /// Returns the command, and whether it is the last.
+    /// Returns the command, and true if it is the last command.
     ///
     /// # Errors
-    /// The code of [`Self::GiveUp`].
+    /// Returns the code of [`Self::GiveUp`].
     pub fn into_parts(self) -> Result<(T, bool), i32> {
         match self {
             Self::Continue(command) => Ok((command, false)),
@@ -39,7 +39,8 @@ impl<T> Next<T> {
         }
     }
 
-    /// Returns both commands: finished if either is, given up if either is.
+    /// Combines both commands. The result is finished if either is finished, and given up if either
+    /// is given up.
     pub fn zip<U>(self, other: Next<U>) -> Next<(T, U)> {
         match (self.into_parts(), other.into_parts()) {
             (Ok((first, last)), Ok((second, also_last))) => {
@@ -56,14 +57,14 @@ impl<T> From<T> for Next<T> {
     }
 }
 
-/// Adds `command.finish()`, for the last command of a motion.
+/// Adds `command.finish()`, which marks the last command of a motion.
 pub trait Finish: Sized {
     /// Returns this command as the last one of its motion.
     fn finish(self) -> Next<Self> {
         Next::Finish(self)
     }
 
-    /// Returns this command, as the last one of its motion if `over`.
+    /// Returns this command, marked as the last one of its motion if `over` is true.
     fn finish_if(self, over: bool) -> Next<Self> {
         if over {
             Next::Finish(self)

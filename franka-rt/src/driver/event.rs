@@ -11,60 +11,62 @@ use crate::session::SessionEvent;
 use crate::stats::{MotionStatistics, MotionTimes};
 use crate::together::{StartFault, StartTicket};
 
-/// Something that happened in the thread. Events arrive in order and none is dropped.
+/// An event in the thread. Events arrive in order, and none is dropped.
 #[derive(Debug)]
 pub enum Event {
-    /// The robot shows the modes of the motion. The first command answers that state.
+    /// A state shows the modes of the motion, so the motion has started. The first command answers
+    /// this state.
     Started {
         /// The motion.
         motion: MotionId,
-        /// `message_id` of that state, `[ms]` of the robot's clock.
+        /// `message_id` of the state, `[ms]` of the robot's clock.
         time: u64,
     },
-    /// The motion's program reports an event.
+    /// The motion's program reports an event of its session.
     Program {
         /// The motion.
         motion: MotionId,
-        /// Report of the session.
+        /// Event of the session.
         event: SessionEvent,
         /// Counts so far.
         statistics: MotionStatistics,
     },
-    /// The finishing command is sent for the first time. It is repeated until the robot leaves the
-    /// motion's modes.
+    /// The thread sends the finishing command for the first time. It repeats the command until the
+    /// robot leaves the motion's modes.
     Finishing {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion's program could not continue. The thread sends no more commands; the robot must
-    /// be stopped.
+    /// The motion's program could not continue. The thread sends no more commands, so the receiver
+    /// must stop the robot.
     Failed {
         /// The motion.
         motion: MotionId,
         /// Cause.
         failure: Failure,
     },
-    /// The motion's observer has panicked, and is not called again in this motion.
+    /// The motion's observer has panicked, and is not called again during this motion.
     Unobserved {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion has ended for the thread. The event carries its program, to be freed.
+    /// The motion has ended for the thread. The event carries the program, so that the receiver
+    /// frees it.
     Ended(Ended),
-    /// No state has come for the link timeout, so the link counts as lost. A later state revives
-    /// it.
+    /// No state has come during the link timeout, so the link counts as lost. If a later state
+    /// arrives, the link counts as alive again.
     LinkLost {
-        /// The silence so far.
+        /// Length of the silence so far.
         silence: Duration,
     },
 }
 
-/// End of a motion, with the data of the state at that moment.
+/// End of a motion, with data from the newest state.
 #[derive(Debug)]
 pub struct Ended {
     /// The motion.
     pub motion: MotionId,
-    /// Kind of end.
+    /// How the motion ended.
     pub ending: Ending,
     /// `robot_mode` of the newest state.
     pub robot_mode: RobotMode,
@@ -74,13 +76,13 @@ pub struct Ended {
     pub reflex_reason: Errors,
     /// Counts over the motion.
     pub statistics: MotionStatistics,
-    /// Times of the motion's cycles.
+    /// Times of the motion's cycles, as histograms.
     pub times: Arc<MotionTimes>,
-    /// The program, with everything that it learned.
+    /// The program, including everything that it has learned.
     pub program: Program,
-    /// The motion's last cycles.
+    /// Last cycles of the motion.
     pub log: ControlLog,
-    /// The motion's ticket, if it was part of a common start of several robots.
+    /// The motion's ticket, if the motion was part of a common start of several robots.
     pub ticket: Option<StartTicket>,
     /// The observer of the motion's cycles.
     pub observer: Option<Observer>,
@@ -93,31 +95,31 @@ impl Ended {
     }
 }
 
-/// End of a motion, as the thread saw it. The robot's own report of the end is its last reply to
+/// How a motion ended, as the thread saw it. The robot reports the end itself, in its last reply to
 /// the `Move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The finishing command was sent and the robot left the motion's modes.
     Finished,
-    /// The robot left the motion's modes on its own: a reflex, a stop, a preemption.
+    /// The robot left the motion's modes on its own because of a reflex, a stop or a preemption.
     Aborted,
     /// The motion was disarmed before it ran.
     Disarmed,
-    /// Another motion was armed or running, so this one never was.
+    /// The motion was not armed, because another motion was armed or running.
     Refused,
-    /// The robot fell silent.
+    /// The robot was silent for too long.
     LinkLost {
-        /// Length of the silence when the motion was given up.
+        /// Length of the silence when the thread gave up the motion.
         silence: Duration,
     },
 }
 
-/// Queue of events that wait for the thread to publish them.
+/// Queue of events that the thread has not published yet.
 ///
-/// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and
-/// `LinkLost`, and needs orders from outside. The thread empties the queue every cycle unless the
-/// receiver has stopped listening altogether. A link that comes and goes meanwhile fills only one
-/// slot. The queue therefore has room for the end of a motion.
+/// A motion causes at most `Started`, one report per goal, `Failed` or `Finishing`, `Ended` and
+/// `LinkLost`. It starts only if the thread receives orders. The thread empties the queue in every
+/// cycle, unless the receiver has stopped listening. A link that is lost repeatedly in the meantime
+/// fills only one slot. The queue therefore always has room for the end of a motion.
 #[derive(Debug, Default)]
 pub(super) struct EventQueue {
     slots: [Option<Event>; EventQueue::CAPACITY],
@@ -128,8 +130,8 @@ pub(super) struct EventQueue {
 impl EventQueue {
     const CAPACITY: usize = 16;
 
-    /// Appends an event. A full queue leaks the event, because its memory must not be freed on the
-    /// thread. No motion can start without a listener outside.
+    /// Appends an event. If the queue is full, leaks the event, because the thread must not free
+    /// memory. No motion can start without a listener outside the thread.
     pub(super) fn push(&mut self, event: Event) {
         let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
         if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =

@@ -1,31 +1,32 @@
-//! Longest silence of a robot; `Driver::on_silence` then ends the motion. Late states are handled
-//! in `exchange` (overtaken states) and `stats::arrivals`.
+//! Longest silence of a robot before `Driver::on_silence` ends the motion. Other modules handle
+//! late states: `exchange` the overtaken ones, `stats::lateness` the delays.
 
 use core::time::Duration;
 
-/// Default silence of the robot after which the link counts as lost.
+/// Default time without states after which the link counts as lost.
 ///
 /// Source: the UDP receive timeout of libfranka, `network.h`.
 pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Silence of the robot after which the link counts as lost, between [`Self::MIN`] and
+/// Time without states after which the link counts as lost, between [`Self::MIN`] and
 /// [`Self::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LinkTimeout(Duration);
 
 impl LinkTimeout {
-    /// 20 ms: a robot that misses as many commands in a row stops on its own. It bridges shorter
-    /// gaps.
+    /// Shortest timeout, 20 ms. A robot that misses commands for this long stops on its own; it
+    /// bridges shorter gaps.
     pub const MIN: Duration = Duration::from_millis(20);
 
-    /// 10 s. A timeout of more than [`LINK_TIMEOUT`] is for a simulated robot on a busy host, which
-    /// delays states for longer. A silent real robot has stopped on its own long before.
+    /// Longest timeout, 10 s. Use more than [`LINK_TIMEOUT`] only for a simulated robot on a busy
+    /// host, which may delay states for longer. A real robot that receives no commands stops on its
+    /// own long before such a timeout.
     pub const MAX: Duration = Duration::from_secs(10);
 
-    /// Returns a timeout of this length.
+    /// Returns a link timeout of length `timeout`.
     ///
     /// # Errors
-    /// [`LinkTimeoutError`] for a length out of range.
+    /// Returns [`LinkTimeoutError`] if `timeout` is out of range.
     pub fn new(timeout: Duration) -> Result<Self, LinkTimeoutError> {
         if (Self::MIN..=Self::MAX).contains(&timeout) {
             Ok(Self(timeout))
@@ -34,7 +35,7 @@ impl LinkTimeout {
         }
     }
 
-    /// Returns the length of the silence.
+    /// Returns the length of the timeout.
     pub fn get(self) -> Duration {
         self.0
     }
@@ -47,7 +48,7 @@ impl Default for LinkTimeout {
     }
 }
 
-/// Caller: the timeout is out of range.
+/// Misuse: the timeout is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the link timeout is {got:?}, expected {:?} to {:?}",
@@ -55,7 +56,7 @@ impl Default for LinkTimeout {
     LinkTimeout::MAX
 )]
 pub struct LinkTimeoutError {
-    /// Timeout that was given.
+    /// The timeout that was given.
     pub got: Duration,
 }
 

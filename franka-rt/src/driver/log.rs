@@ -1,39 +1,40 @@
-//! The last cycles of a motion, for the error that ends it.
+//! The last cycles of a motion, which its error carries.
 
 use core::fmt;
 
 use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
 
-/// One cycle of a motion: a state, and the command that left before it came.
+/// One cycle of a motion: a state, and the command that was sent before the state arrived.
 ///
-/// Entries are as in libfranka 0.21 (`logger.h`), so that each entry shows the effect of a command:
-/// the state has the number `n + 1` if the command answered the state `n`. The first entry of a
-/// motion has a command of zeros.
+/// Each entry shows the effect of a command, as in libfranka 0.21 (`logger.h`). If the command
+/// answered the state `n`, the entry contains the state `n + 1`. The command of the first entry is
+/// all zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct LogEntry {
     /// The state.
     pub state: RobotState,
-    /// The newest command before the state, as sent; zeros before the first command.
+    /// The newest command that was sent before the state; zeros before the first command.
     pub command: RobotCommand,
 }
 
 impl LogEntry {
-    /// Returns the entry of `state`, after the newest command before it.
+    /// Returns the entry for `state`. `command` is the newest command before the state.
     pub fn new(state: RobotState, command: RobotCommand) -> Self {
         Self { state, command }
     }
 }
 
-/// The last cycles of one motion, oldest first, up to a capacity.
+/// Log of the last cycles of one motion, oldest first. It keeps at most as many cycles as its
+/// capacity.
 ///
-/// The memory is allocated when the log is made: writing to the log neither allocates nor frees.
+/// The log allocates its memory when it is created. Writing neither allocates nor frees.
 #[derive(Clone, Default)]
 pub struct ControlLog {
-    /// Entries of the log: one more than the capacity, or none at all.
+    /// Entries: one more than the capacity, or none for a capacity of 0.
     entries: Box<[LogEntry]>,
-    /// Index of the entry that has its command and waits for its state.
+    /// Index of the entry that has a command and waits for its state.
     next: usize,
     len: usize,
     rounded: bool,
@@ -43,11 +44,11 @@ impl ControlLog {
     /// Default number of cycles. Source: `log_size` of libfranka 0.21, `robot.h`.
     pub const DEFAULT_CAPACITY: usize = 50;
 
-    /// Largest number of cycles that a connected robot may log per motion: ten seconds. Such a log
-    /// needs 30 MB, and is allocated anew for each motion.
+    /// Largest number of cycles that a connected robot can log per motion: ten seconds. A log of
+    /// this size needs 30 MB, which every motion allocates anew.
     pub const CAPACITY_MAX: usize = 10_000;
 
-    /// Returns an empty log of the newest `capacity` cycles; 0 keeps none.
+    /// Returns an empty log for the newest `capacity` cycles. With 0 it keeps no cycle.
     pub fn with_capacity(capacity: usize) -> Self {
         let entries = if capacity == 0 { 0 } else { capacity + 1 };
         Self {
@@ -59,7 +60,7 @@ impl ControlLog {
     }
 
     /// Marks the numbers as rounded to six significant digits, as in a table of libfranka. A
-    /// diagnosis then ignores differences that may come from rounding.
+    /// diagnosis then ignores differences that rounding may have caused.
     #[must_use]
     pub fn rounded(self) -> Self {
         Self {
@@ -68,12 +69,12 @@ impl ControlLog {
         }
     }
 
-    /// True for a log whose numbers are rounded to six significant digits.
+    /// True if the numbers are rounded to six significant digits.
     pub fn is_rounded(&self) -> bool {
         self.rounded
     }
 
-    /// Returns the number of cycles that the log can keep.
+    /// Returns the largest number of cycles that the log can keep.
     pub fn capacity(&self) -> usize {
         self.entries.len().saturating_sub(1)
     }
@@ -83,7 +84,7 @@ impl ControlLog {
         self.len
     }
 
-    /// True if the log has no cycles.
+    /// True if the log contains no cycles.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -100,8 +101,9 @@ impl ControlLog {
         older.iter().chain(newer)
     }
 
-    /// Returns the success rate at the end, as libfranka 0.21 reports it: the rate of the previous
-    /// state, because the last state always shows 0. `None` with fewer than two entries.
+    /// Returns the success rate at the end of the motion. Like libfranka 0.21, it uses the state
+    /// before the last, because the last state always shows 0. `None` if the log has fewer than two
+    /// entries.
     pub fn success_rate(&self) -> Option<SuccessRate> {
         let mut newest = self.iter().rev();
         let (last, before) = (newest.next()?, newest.next()?);
@@ -112,8 +114,9 @@ impl ControlLog {
         ))
     }
 
-    /// Returns the log as a table with one row per cycle, and times in milliseconds. Column names
-    /// and number format are as in `franka::logToCSV` of libfranka 0.21. Empty for an empty log.
+    /// Returns the log as a table with one row per cycle and times in milliseconds, or an empty
+    /// string for an empty log. Column names and number format are those of `franka::logToCSV` in
+    /// libfranka 0.21.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
         if !self.is_empty() {
@@ -122,7 +125,7 @@ impl ControlLog {
         text
     }
 
-    /// Notes a state; replaces the oldest entry of a full log.
+    /// Adds a state. If the log is full, the state replaces the oldest entry.
     pub(super) fn note_state(&mut self, state: &RobotState) {
         let Some(entry) = self.entries.get_mut(self.next) else {
             return; // No capacity.
@@ -132,8 +135,8 @@ impl ControlLog {
         self.len = (self.len + 1).min(self.capacity());
     }
 
-    /// Notes the newest command, for the state that comes next. Call it after each state, because
-    /// the entry may still hold an older command.
+    /// Notes the newest command, which belongs to the next state. Call it after each state, because
+    /// the entry may still contain an older command.
     pub(super) fn note_command(&mut self, command: &RobotCommand) {
         if let Some(entry) = self.entries.get_mut(self.next) {
             entry.command = *command;
@@ -141,7 +144,7 @@ impl ControlLog {
     }
 }
 
-/// Collects the entries into a log without room for more.
+/// Collects the entries into a log that has no room for more.
 impl FromIterator<LogEntry> for ControlLog {
     fn from_iter<T: IntoIterator<Item = LogEntry>>(entries: T) -> Self {
         let mut entries: Vec<LogEntry> = entries.into_iter().collect();
@@ -165,7 +168,7 @@ impl PartialEq for ControlLog {
 }
 
 impl fmt::Debug for ControlLog {
-    /// Prints the times of the cycles only, because entries are pages of numbers.
+    /// Prints only the times of the cycles, because entries contain pages of numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let times = |entry: &LogEntry| entry.state.message_id;
         f.debug_struct("ControlLog")

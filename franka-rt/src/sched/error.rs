@@ -1,4 +1,4 @@
-//! //! Errors for requests that the operating system refuses.
+//! Errors for requests that the operating system refuses.
 
 use core::time::Duration;
 

@@ -1,11 +1,11 @@
-//! //! Detects whether the running kernel is a real-time kernel.
+//! Detects whether the running kernel is a real-time kernel.
 //!
-//! //! Up to Linux 6.11, real time (`PREEMPT_RT`) was a patch that also added the file
+//! Up to Linux 6.11, real time (`PREEMPT_RT`) was a patch that also added the file
 //! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, and most of these
 //! kernels do not have that file. In either case the version text of `uname` contains the option's
 //! name. The release name (`-rt`) is free text and proves nothing.
 //!
-//! //! `/proc/config.gz` is not read, because decompression would need another crate. A kernel with
+//! `/proc/config.gz` is not read, because decompression would need another crate. A kernel with
 //! this file also has a version text, and its build made both from the same options.
 
 use core::fmt;

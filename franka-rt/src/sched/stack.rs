@@ -33,7 +33,7 @@ pub(super) fn touch(bytes: usize) {
     let mut frame = [0u8; FRAME];
     black_box(&mut frame);
     touch(bytes.saturating_sub(FRAME));
-    // // Use the frame after the call, so that the compiler cannot reuse its memory for the next
+    // Use the frame after the call, so that the compiler cannot reuse its memory for the next
     // frame.
     black_box(&mut frame);
 }

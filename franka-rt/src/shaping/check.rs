@@ -1,5 +1,5 @@
-//! //! Checks that a command is valid: its numbers are finite, its pose is a transformation, and
-//! its elbow has a sign.
+//! Checks that a command is valid: its numbers are finite, its pose is a transformation, and its
+//! elbow has a sign.
 
 use crate::shaping::InvalidCommand;
 
@@ -66,7 +66,7 @@ pub fn is_homogeneous(column_major: &[f64; 16]) -> bool {
         square(m[2], m[6], m[10]),
     ];
     let unit = |square: f64| (square.sqrt() - 1.0).abs() <= ORTHONORMAL_TOLERANCE;
-    // // If the square is this close to 1, its root is within the tolerance. So nearly every pose
+    // If the square is this close to 1, its root is within the tolerance. So nearly every pose
     // needs no root.
     let near = |square: f64| (square - 1.0).abs() <= 1.9 * ORTHONORMAL_TOLERANCE;
     [m[3], m[7], m[11], m[15]] == [0.0, 0.0, 0.0, 1.0]

@@ -1,7 +1,7 @@
 //! First-order low-pass filters.
 //!
-//! //! A filter returns `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the
-//! sample time `T` and the cutoff frequency `f`. For example, `g` is 0.386 at 1 ms and 100 Hz.
+//! A filter returns `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample
+//! time `T` and the cutoff frequency `f`. For example, `g` is 0.386 at 1 ms and 100 Hz.
 
 use core::f64::consts::PI;
 

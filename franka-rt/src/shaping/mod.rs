@@ -1,4 +1,4 @@
-//! //! Filter, limiter and check, which a control loop applies to a command before it sends the
+//! Filter, limiter and check, which a control loop applies to a command before it sends the
 //! command. These are pure functions; [`Shaper`](crate::control::Shaper) combines them.
 //!
 //! ```text
@@ -6,17 +6,16 @@
 //!            cutoff < 1000 Hz                       limit_rate
 //! ```
 //!
-//! //! * [`limiter`]: limits torques, scalars, joint motions, twists and poses to given bounds.
-//! //! * [`filter`]: first-order low-pass filters for scalars, arrays and poses.
-//! //! * [`Bounds`]: bounds of libfranka's limiters, for both robots.
+//! * [`limiter`]: limits torques, scalars, joint motions, twists and poses to given bounds.
+//! * [`filter`]: first-order low-pass filters for scalars, arrays and poses.
+//! * [`Bounds`]: bounds of libfranka's limiters, for both robots.
 //! * [`check`]: checks that a command is valid.
 //!
-//! //! Filters and limiters compare a command with the *last commanded* values in the robot's
-//! state. All functions compute on arrays: nothing allocates, and nothing panics for any input.
-//! Formulas, order of operations and the treatment of NaN follow libfranka 0.21
-//! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`). libfranka 0.9 uses other
-//! bounds, and treats the beginning of a motion differently. The robot also enforces its own
-//! limits.
+//! Filters and limiters compare a command with the *last commanded* values in the robot's state.
+//! All functions compute on arrays: nothing allocates, and nothing panics for any input. Formulas,
+//! order of operations and the treatment of NaN follow libfranka 0.21 (`rate_limiting.cpp`,
+//! `lowpass_filter.cpp`, `control_loop.cpp`). libfranka 0.9 uses other bounds, and treats the
+//! beginning of a motion differently. The robot also enforces its own limits.
 
 mod bounds;
 pub mod check;

@@ -78,8 +78,8 @@ pub(crate) fn slerp(
     };
     let of_to = if signed < 0.0 { -of_to } else { of_to };
     let sum = from.coords * of_from + to.coords * of_to;
-    // // Its length is 1 except for rounding. So this Newton step is as accurate as a division by
-    // the root.
+    // Its length is 1 except for rounding. So this Newton step is as accurate as a division by the
+    // root.
     let sum = sum * (1.5 - 0.5 * sum.norm_squared());
     UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
@@ -264,7 +264,7 @@ mod tests {
             let mut singular = m.singular_values();
             singular.as_mut_slice().sort_by(f64::total_cmp);
             let (least, middle) = (singular[0], singular[1]);
-            // // The result is well determined if the two smallest singular values are far from
+            // The result is well determined if the two smallest singular values are far from
             // opposite.
             let gap = if m.determinant() > 0.0 { middle + least } else { middle - least };
             prop_assume!(gap > 1e-3);

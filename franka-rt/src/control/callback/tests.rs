@@ -1,4 +1,4 @@
-//! Control functions, called with states that a test makes up.
+//! Tests of control functions with artificial states.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -20,9 +20,9 @@ fn plain(version: Version) -> Shaper {
     Shaper::new(version, false, 1000.0)
 }
 
-/// Returns two functions that note each call by name, step in milliseconds and cycle. They finish
-/// in the given cycles, counted from one. The first commands ten times the cycle, the second the
-/// cycle.
+/// Returns two functions that record each call: name, time step in milliseconds, and cycle. They
+/// finish in the given cycles, counted from one. The first function commands ten times the cycle,
+/// the second commands the cycle.
 fn both(
     version: Version,
     motion_ends: u32,
@@ -57,8 +57,8 @@ fn both(
     (callback, called)
 }
 
-/// Returns the command that leaves: `dq_c` and `tau_J_d` of the first joint, and whether it is the
-/// last.
+/// Returns the command that is sent: `dq_c` and `tau_J_d` of the first joint, and true if it is the
+/// last command.
 fn step(callback: &mut Callback, message_id: u64) -> (f64, f64, bool) {
     let (command, finished) = callback.step(&at(message_id)).expect("good commands");
     let sent = command
@@ -86,8 +86,8 @@ fn the_order_of_two_functions_is_that_of_the_versions_client() {
 
 #[test]
 fn finished_function_keeps_the_other_from_its_call() {
-    // In the third cycle one function finishes. If the other would have been called after it, its
-    // command of the second cycle is sent.
+    // In the third cycle one function finishes. If the other function comes second, it is not
+    // called, and its command of the second cycle is sent.
     for (version, motion_ends, torques_end, last) in [
         (Version::V5, 3, 0, (3.0, 20.0, true)),
         (Version::V5, 0, 3, (3.0, 30.0, true)),
@@ -156,7 +156,7 @@ fn torques_alone_come_with_a_still_motion_if_needed() {
 
 #[test]
 fn the_first_command_is_shaped_as_the_first() {
-    // Protocol 10 filters the first position against itself, later ones against the state.
+    // Protocol 10 filters the first position against itself, and later positions against the state.
     let state = RobotState {
         q_d: [1.0; 7],
         ..at(5)

@@ -1,5 +1,5 @@
-//! Filter, limiter and check of a control function's commands. For torques, the limiter bounds
-//! their rate. The limiter is on by default for an FER and off for an FR3, as in libfranka.
+//! Filter, limiter and check of a control function's commands. For torques, the limiter bounds the
+//! rate. As in libfranka, the limiter is on by default for an FER, and off for an FR3.
 
 #[cfg(test)]
 mod tests;
@@ -16,7 +16,8 @@ use crate::shaping::{
     check, filter, limiter,
 };
 
-/// Shapes the commands of a control loop: low-pass filter, limiter and check, in this order.
+/// Shapes the commands of a control loop: applies a low-pass filter, a limiter and a check, in this
+/// order.
 ///
 /// ```
 /// use franka_proto::{RobotState, Version};
@@ -31,7 +32,7 @@ use crate::shaping::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaper {
     bounds: Bounds,
-    /// Limits of the robot, for bounds that depend on position.
+    /// Joint limits for the bounds that depend on position.
     limits: Option<JointLimits>,
     limit_rate: bool,
     cutoff_frequency: f64,
@@ -39,21 +40,22 @@ pub struct Shaper {
     echo: Echo,
 }
 
-/// Reference of the filter and the limiter for the first position or pose of a motion.
+/// Value with which the filter and the limiter compare the first position or pose of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FirstReference {
-    /// The command itself, which passes unchanged if the state is at rest (libfranka 0.21).
+    /// The command itself, so that the command passes unchanged if the state is at rest (libfranka
+    /// 0.21).
     Itself,
     /// The state, as for all later commands (libfranka 0.9).
     State,
 }
 
-/// Precision of the robot's echo of the last torques in the state.
+/// Precision with which the state echoes the last torques.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Echo {
-    /// The torques exactly as they were sent, or assumed to be.
+    /// The echo equals the sent torques, or is assumed to.
     Exact,
-    /// The torques rounded to `f32`, for which the bound of their rate leaves room.
+    /// The echo is rounded to `f32`. The bound of the rate leaves room for the rounding.
     Rounded,
 }
 
@@ -85,11 +87,12 @@ impl Conventions {
 }
 
 impl Shaper {
-    /// Returns the shaper of a robot that speaks `version`, with or without limiter. It has a
-    /// filter if `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
+    /// Returns the shaper for a robot that speaks `version`. It limits commands if `limit_rate`,
+    /// and filters them if `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
-    /// The first command reports a cutoff frequency that is not positive, as in libfranka. It also
-    /// reports a cutoff frequency that is not a number, of which libfranka makes no filter.
+    /// If the cutoff frequency is not positive, the first command returns an error, as in
+    /// libfranka. If it is NaN, the first command also returns an error, whereas libfranka does not
+    /// filter.
     pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
         let Conventions {
             bounds,
@@ -107,30 +110,29 @@ impl Shaper {
         }
     }
 
-    /// Returns the shaper that libfranka's control loops use by default:
-    /// [`DEFAULT_CUTOFF_FREQUENCY`], and a limiter if
-    /// [`limits_by_default`](Self::limits_by_default) is true.
+    /// Returns the default shaper of libfranka's control loops: with [`DEFAULT_CUTOFF_FREQUENCY`],
+    /// and with a limiter if [`limits_by_default`](Self::limits_by_default) is true.
     pub fn by_default(version: Version) -> Self {
         let limit_rate = Self::limits_by_default(version);
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
     }
 
-    /// True if libfranka's control loops limit by default: up to version 0.9 for the FER they do,
-    /// for the FR3 they do not.
+    /// True if libfranka's control loops limit commands by default: libfranka up to 0.9 does so for
+    /// the FER, and newer libfranka does not for the FR3.
     pub fn limits_by_default(version: Version) -> bool {
         Conventions::of(version).limit_rate
     }
 
-    /// Replaces the bounds; by default the bounds of the robot that has the version.
+    /// Replaces the bounds. The default bounds are those of the robot that speaks the version.
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
         self.limited()
     }
 
-    /// Replaces the velocity limits of the joints by the limits of `joints`, from the robot's
-    /// description. They also replace the velocity limits of other [bounds](Self::with_bounds). Has
-    /// no effect on a robot whose velocity limits do not depend on position.
+    /// Replaces the velocity limits of the joints, also in [other bounds](Self::with_bounds), by
+    /// those of `joints`, from the robot's description. Has no effect if the robot's velocity
+    /// limits do not depend on position.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         self.limits = Some(*joints);
@@ -147,17 +149,18 @@ impl Shaper {
     }
 
     /// Limits torque rates without the margin for the rounding of the echoed torques, as libfranka
-    /// does: see [`limiter::within_echo`]. Only protocol 10 rounds.
+    /// does: see [`limiter::within_echo`]. Only protocol 10 rounds the echo.
     #[must_use]
     pub fn trusting_the_echo(mut self) -> Self {
         self.echo = Echo::Exact;
         self
     }
 
-    /// Shapes torques. The reference is the last torques, `tau_J_d` of the state.
+    /// Shapes torques relative to the last torques, `tau_J_d` of the state.
     ///
     /// # Errors
-    /// [`InvalidCommand`] if a number of the command, or of its references, is not finite.
+    /// Returns [`InvalidCommand`] if a number of the command or of the last commanded values is not
+    /// finite.
     pub fn torques(
         &self,
         command: &Torques,
@@ -177,11 +180,11 @@ impl Shaper {
         Ok(Torques(tau))
     }
 
-    /// Shapes joint positions. The reference is the last positions, `q_d` of the state and its
+    /// Shapes joint positions relative to the last positions, `q_d` of the state, and their
     /// derivatives. `first` is true for the first command of the motion.
     ///
     /// # Errors
-    /// As for [`torques`](Self::torques).
+    /// Returns the errors of [`torques`](Self::torques).
     pub fn joint_positions(
         &self,
         command: &JointPositions,
@@ -202,11 +205,11 @@ impl Shaper {
         Ok(JointPositions(q))
     }
 
-    /// Shapes joint velocities. The reference is the last velocities, `dq_d` of the state and their
+    /// Shapes joint velocities relative to the last velocities, `dq_d` of the state, and their
     /// derivatives.
     ///
     /// # Errors
-    /// As for [`torques`](Self::torques).
+    /// Returns the errors of [`torques`](Self::torques).
     pub fn joint_velocities(
         &self,
         command: &JointVelocities,
@@ -221,13 +224,13 @@ impl Shaper {
         Ok(JointVelocities(dq))
     }
 
-    /// Shapes a pose. The reference is the last pose, [`RobotState::commanded_pose`] and its
-    /// derivatives, and for the elbow [`RobotState::commanded_elbow`]. `first` is true for the
+    /// Shapes a pose relative to the last pose, [`RobotState::commanded_pose`], and its
+    /// derivatives; the elbow relative to [`RobotState::commanded_elbow`]. `first` is true for the
     /// first command of the motion.
     ///
     /// # Errors
-    /// As for [`torques`](Self::torques); also if the pose is not a transformation, or the elbow
-    /// has no sign.
+    /// Returns the errors of [`torques`](Self::torques), or an error if the pose is not a
+    /// transformation or the elbow has no sign.
     pub fn cartesian_pose(
         &self,
         command: &CartesianPose,
@@ -242,7 +245,7 @@ impl Shaper {
         };
         let pose = self.pose(&command.O_T_EE, last, state)?;
         check::pose(&pose)?;
-        // The filter makes a rotation of any matrix. libfranka sends that rotation instead of an
+        // The filter turns any matrix into a rotation. libfranka sends that rotation instead of an
         // error.
         if pose != command.O_T_EE {
             check::pose(&command.O_T_EE)?;
@@ -253,11 +256,11 @@ impl Shaper {
         })
     }
 
-    /// Shapes a twist. The reference is the last twist, `O_dP_EE_c` of the state and its
-    /// derivative, and for the elbow [`RobotState::commanded_elbow`].
+    /// Shapes a twist relative to the last twist, `O_dP_EE_c` of the state, and its derivative; the
+    /// elbow relative to [`RobotState::commanded_elbow`].
     ///
     /// # Errors
-    /// As for [`torques`](Self::torques); also if the elbow has no sign.
+    /// Returns the errors of [`torques`](Self::torques), or an error if the elbow has no sign.
     pub fn cartesian_velocities(
         &self,
         command: &CartesianVelocities,
@@ -279,8 +282,8 @@ impl Shaper {
         })
     }
 
-    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a large
-    /// share of the work, so the second step reuses the rotations of the first.
+    /// Filters and limits a pose. Both steps need the nearest rotations of their poses, which take
+    /// a large share of the time. So the second step reuses the rotations from the first.
     fn pose(
         &self,
         command: &[f64; 16],
@@ -311,7 +314,8 @@ impl Shaper {
         )
     }
 
-    /// Shapes the angle of an elbow; the sign stays. Two zeros stand for no elbow, as on the wire.
+    /// Shapes the angle of an elbow and keeps the sign. As in the protocol, two zeros mean that
+    /// there is no elbow.
     fn elbow(
         &self,
         command: Option<[f64; 2]>,
@@ -341,7 +345,7 @@ impl Shaper {
     }
 
     fn filters(&self) -> bool {
-        // A frequency that is not a number reaches the filter, which refuses it.
+        // NaN passes on to the filter, which refuses it.
         self.cutoff_frequency < MAX_CUTOFF_FREQUENCY || self.cutoff_frequency.is_nan()
     }
 

@@ -1,4 +1,4 @@
-//! The order of the steps, their references, and their refusals.
+//! Tests of the order of the steps, of their reference values, and of their refusals.
 
 use franka_model::transform;
 use nalgebra::{Isometry3, Vector3};
@@ -10,7 +10,7 @@ use crate::shaping::{FilterFault, Signal, VelocityBounds};
 
 const OFF: f64 = MAX_CUTOFF_FREQUENCY;
 
-/// Returns a state at rest in a posture that both robots can have, with an elbow.
+/// Returns a state at rest with an elbow, in a posture that both robots can reach.
 fn at_rest() -> RobotState {
     let pose = Isometry3::new(Vector3::new(0.4, 0.1, 0.5), Vector3::new(3.0, 0.2, -0.1));
     RobotState {
@@ -58,8 +58,8 @@ fn the_filter_comes_before_the_limiter() {
     let mut state = at_rest();
     state.tau_J_d = [0.0; 7];
     let shaper = Shaper::new(Version::V5, true, 100.0);
-    // The torque is filtered to 0.386 N m, which is inside the rate. If it were limited first, it
-    // would be filtered from 0.999999.
+    // The filter reduces the torque to 0.386 N m, which is inside the rate. After a limiter, the
+    // filter would start from 0.999999.
     let gentle = shaper.torques(&Torques([1.0; 7]), &state).expect("finite");
     assert!((gentle.0[0] - 0.385_869_545_095_037_5).abs() < 1e-15);
     let harsh = shaper.torques(&Torques([10.0; 7]), &state).expect("finite");
@@ -91,7 +91,7 @@ fn first_position_or_pose_is_its_own_past_in_protocol_10() {
         v5.cartesian_pose(&pose, &state, true),
         v5.cartesian_pose(&pose, &state, false)
     );
-    // Twists have no such first command: their elbow is always compared with the state.
+    // The first twist gets no such treatment: its elbow is always compared with the state.
     let twist = CartesianVelocities {
         O_dP_EE: [0.0; 6],
         elbow: pose.elbow,
@@ -101,7 +101,7 @@ fn first_position_or_pose_is_its_own_past_in_protocol_10() {
     assert!(0.1 < elbow[0] && elbow[0] < 0.100_01 && elbow[1] == -1.0);
 }
 
-/// Returns the state of a robot that leaves the commanded fields at zero.
+/// Returns the state of a robot that does not fill the commanded fields.
 fn unfilled(state: &RobotState) -> RobotState {
     RobotState {
         O_T_EE_d: state.O_T_EE_c,
@@ -148,7 +148,7 @@ fn fr3_envelope_holds_positions_near_the_range_end() {
     let free = moved(&Shaper::new(Version::V5, true, OFF));
     let held = moved(&Shaper::new(Version::V10, true, OFF));
     assert!(held < 0.0 && 0.0 < free, "{held} {free}");
-    // Another description has another envelope.
+    // Another description contains another envelope.
     let bounds = Bounds::fr3();
     let VelocityBounds::Envelope { mut joints, .. } = bounds.joint_velocity else {
         panic!("the FR3 has an envelope");
@@ -225,7 +225,7 @@ fn an_elbow_of_two_zeros_is_none() {
     );
 }
 
-/// The first step that finds a bad number names the signal.
+/// The first step that encounters a number that is not finite names the signal.
 #[test]
 fn non_finite_command_is_refused_by_first_step_to_see_it() {
     let state = at_rest();
@@ -338,7 +338,7 @@ fn non_positive_cutoff_is_reported_with_first_command() {
     }
 }
 
-/// Generates ordinary numbers, and all special values of floating point.
+/// Generates ordinary numbers, and all special floating-point values.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -3.0..3.0,
@@ -368,8 +368,8 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
 
-    /// For any input of the program and the robot there is no panic, and a command that passes is
-    /// finite and valid.
+    /// For any input from the program and the robot, nothing panics, and every command that passes
+    /// is finite and valid.
     #[test]
     fn no_input_at_all_gives_an_invalid_command_or_a_panic(
         numbers in prop::collection::vec(any_number(), 7 * 4 + 6 * 3),

@@ -1,4 +1,4 @@
-//! //! Limiters of scalars: torques, joints, the elbow.
+//! Limiters of scalars: torques, joints, the elbow.
 
 use franka_model::limits::MotionLimits;
 

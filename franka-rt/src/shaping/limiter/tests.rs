@@ -1,5 +1,5 @@
-//! //! Tests that limited commands keep the bounds for any input. Each test walks from rest, and
-//! every result is the last value of the next step.
+//! Tests that limited commands keep the bounds for any input. Each test walks from rest, and every
+//! result is the last value of the next step.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, READY, RobotKind, Twist, rotation, transform};
@@ -288,8 +288,7 @@ fn velocity_keeps_acceleration_above_bounds_but_not_below() {
     };
     assert_eq!(velocity(&bounds, 2.0, 2.0, 0.0), Ok(2.0 - 10.0 * CYCLE));
     assert_eq!(velocity(&bounds, -2.0, -2.0, 0.0), Ok(-2.0 + 500.0 * CYCLE));
-    // // The lower bound is applied last, so it takes precedence where the limiter cannot keep
-    // both.
+    // The lower bound is applied last, so it takes precedence where the limiter cannot keep both.
     let turned = AxisBounds {
         upper_velocity: -1.0,
         lower_velocity: 1.0,
@@ -300,7 +299,7 @@ fn velocity_keeps_acceleration_above_bounds_but_not_below() {
 
 #[test]
 fn vector_far_beyond_velocity_bound_keeps_only_jerk_bound() {
-    // // No acceleration perpendicular to the last velocity leads back into the sphere, so its
+    // No acceleration perpendicular to the last velocity leads back into the sphere, so its
     // distance is NaN.
     let bounds = Bounds::fr3().cartesian;
     let last = [10.0, 0.0, 0.0, 0.0, 0.0, 0.0];
