@@ -1,71 +1,74 @@
-//! The estimate of the external wrench that a robot reports for an untouched arm, as an offset.
+//! Tare of the external wrench: the robot reports a wrench even for an untouched arm, which a
+//! [`WrenchTare`] removes.
 //!
-//! Model, tool and friction are never exact, so the estimate is a newton or two with nothing
-//! attached. A [`WrenchTare`] is the average of the estimate at rest, to subtract later. It belongs
-//! to the posture in which it was taken. The part from errors of weight turns with the arm, and
-//! friction sticks differently after each motion.
+//! The models of arm, tool and friction are never exact, so the robot reports a newton or two
+//! although nothing touches the arm. A [`WrenchTare`] is the average of these estimates at rest, to
+//! be subtracted later. It holds for the posture in which it was taken: the part that comes from
+//! wrong weights turns with the arm. Friction also differs after each motion.
 //!
 //! # The moment
 //!
 //! According to the vendor's documentation, `O_F_ext_hat_K` acts on the stiffness frame, in axes of
-//! the base. In recordings of both robots its moment is about the origin of the base, which changes
-//! with the position. `K_F_ext_hat_K` has the moment about the stiffness frame in both readings.
-//! Moments are therefore taken from `K_F_ext_hat_K`, rotated into axes of the base.
+//! the base. In recordings of both robots, however, its moment is about the origin of the base, so
+//! it changes with the position of the arm. The moment of `K_F_ext_hat_K` is about the stiffness
+//! frame in the documentation and in the recordings. The tare therefore takes its moments from
+//! `K_F_ext_hat_K` and rotates them into axes of the base.
 
 use core::time::Duration;
 
 use franka_proto::{RobotMode, RobotState};
 
-/// The average of the robot's estimates at rest.
+/// Average of the robot's estimates at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct WrenchTare {
     /// Force, then moment about the origin of the stiffness frame, in axes of the base, `[N, N m]`.
     pub wrench: [f64; 6],
-    /// Standard deviation of each number of the wrench over the average, `[N, N m]`.
+    /// Standard deviation of each component of the wrench over the averaged states, `[N, N m]`.
     pub deviation: [f64; 6],
-    /// External joint torques, `tau_ext_hat_filtered`, `[N m]`.
+    /// Average of the external joint torques, `tau_ext_hat_filtered`, `[N m]`.
     pub joint_torques: [f64; 7],
-    /// Joint positions in which the tare was taken, `[rad]`.
+    /// Average of the joint positions, `[rad]`.
     pub q: [f64; 7],
-    /// `message_id` of the last state of the average, `[ms]` of the robot's clock.
+    /// `message_id` of the last averaged state, `[ms]` of the robot's clock.
     pub time: u64,
-    /// Number of states in the average.
+    /// Number of averaged states.
     pub states: u32,
 }
 
 impl WrenchTare {
-    /// Default duration of the states of an average.
+    /// Default time over which states are averaged.
     pub const DURATION: Duration = Duration::from_millis(500);
 
-    /// Largest distance from its posture at which a tare is assumed to hold, `[rad]` of any joint.
-    /// The value is a convention: two degrees change the torque of an undeclared kilogram at half a
-    /// metre by less than 0.2 N m.
+    /// Largest change of any joint since the tare for which the tare is assumed to hold, `[rad]`.
+    /// The value is a convention: for an undeclared kilogram at half a metre, two degrees change
+    /// the torque by less than 0.2 N m.
     pub const NEAR: f64 = 0.035;
 
-    /// Returns the wrench of a state without the tare: force, then moment about the origin of the
-    /// stiffness frame, in axes of the base, `[N, N m]`. A positive wrench is exerted by the arm.
-    /// `None` if the robot has no estimate: near a singularity it reports zeros.
+    /// Returns the wrench of a state minus the tare: force, then moment about the origin of the
+    /// stiffness frame, in axes of the base, `[N, N m]`. The sign is that of the wrench that the
+    /// arm exerts. `None` if the robot has no estimate, because near a singularity it reports
+    /// zeros.
     pub fn compensate(&self, state: &RobotState) -> Option<[f64; 6]> {
         let wrench = estimate(state)?;
         Some(core::array::from_fn(|i| wrench[i] - self.wrench[i]))
     }
 
-    /// Returns the external joint torques of a state without the tare, `[N m]`.
+    /// Returns the external joint torques of a state minus the tare, `[N m]`.
     pub fn compensate_torques(&self, state: &RobotState) -> [f64; 7] {
         core::array::from_fn(|i| state.tau_ext_hat_filtered[i] - self.joint_torques[i])
     }
 
-    /// Returns the largest change of a joint since the tare, `[rad]`. Up to [`Self::NEAR`], the
-    /// tare is assumed to hold.
+    /// Returns the largest change of any joint position since the tare, `[rad]`. The tare is
+    /// assumed to hold up to [`Self::NEAR`].
     pub fn turned(&self, state: &RobotState) -> f64 {
         let turned = (0..7).map(|i| (state.q[i] - self.q[i]).abs());
         turned.fold(0.0, f64::max)
     }
 }
 
-/// Reason why a tare is refused.
+/// Reason why a tare was refused.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TareRefused {
@@ -76,43 +79,44 @@ pub enum TareRefused {
          {SPEED} rad/s and {WAY} rad: wait until the arm rests"
     )]
     Moves {
-        /// The joint, 1 to 7.
+        /// Number of the joint, 1 to 7.
         joint: u8,
         /// Velocity of the joint, `[rad/s]`.
         speed: f64,
         /// Distance of the joint from its position in the first state of the average, `[rad]`.
         way: f64,
     },
-    /// A goal is under way: the arm may still stick, while the law pushes it.
+    /// A goal is under way. Even if the arm stands still, the law may push it against friction.
     #[error("a motion is running, expected none: await its end before the tare")]
     UnderWay,
-    /// The robot is in a mode in which its torques are no measure of the offset.
+    /// The robot's mode is not one in which the arm holds itself, so the estimate is no measure of
+    /// the offset.
     #[error(
         "the robot is in mode {got}, expected idle or move: the arm must hold itself, untouched"
     )]
     Mode {
-        /// The mode.
+        /// The robot's mode.
         got: RobotMode,
     },
     /// The robot reports a contact.
     #[error("the robot reports a contact, expected none: nothing may touch the arm during a tare")]
     Contact,
-    /// The robot has no estimate in this posture.
+    /// The robot reports no estimate in this posture.
     #[error(
         "the robot reports no external wrench, expected one: this posture is near a singularity, \
          so take \
          the tare in another posture"
     )]
     NoEstimate,
-    /// The given time is out of range.
+    /// The duration is out of range.
     #[error("the duration of the tare is {got:?}, expected 20 ms to 60 s")]
     Duration {
-        /// The given time.
+        /// The given duration.
         got: Duration,
     },
 }
 
-/// Averages states one by one into a tare.
+/// Computes a tare from states that are added one by one.
 #[derive(Clone, Debug)]
 pub struct Taring {
     duration: u64,
@@ -122,14 +126,14 @@ pub struct Taring {
     squares: [f64; 6],
 }
 
-/// Numbers of an average: wrench, joint torques, joint positions.
+/// Number of averaged values: wrench, joint torques, joint positions.
 const NUMBERS: usize = 6 + 7 + 7;
 
 impl Taring {
-    /// Returns a taring for states that last for `duration`, by the robot's clock.
+    /// Returns a taring that averages states over `duration`, by the robot's clock.
     ///
     /// # Errors
-    /// [`TareRefused::Duration`].
+    /// Returns [`TareRefused::Duration`] if `duration` is not between 20 ms and 60 s.
     pub fn over(duration: Duration) -> Result<Self, TareRefused> {
         let range = Duration::from_millis(20)..=Duration::from_secs(60);
         if !range.contains(&duration) {
@@ -144,16 +148,16 @@ impl Taring {
         })
     }
 
-    /// Adds a state. Returns the tare once the states have lasted long enough. A state that is not
-    /// newer than the last one changes nothing.
+    /// Adds a state. Returns the tare once the states span the duration. Every call counts, so add
+    /// each state once.
     ///
     /// # Errors
-    /// [`TareRefused`] if the state is not of an untouched arm at rest.
+    /// Returns [`TareRefused`] if the state does not show an untouched arm at rest.
     pub fn push(&mut self, state: &RobotState) -> Result<Option<WrenchTare>, TareRefused> {
         let first = *self.first.get_or_insert(*state);
         check(state, &first)?;
         let wrench = estimate(state).ok_or(TareRefused::NoEstimate)?;
-        // Sums of differences from the first state lose no digits.
+        // Summing differences from the first state avoids the loss of digits.
         let start = estimate(&first).ok_or(TareRefused::NoEstimate)?;
         self.states += 1;
         for i in 0..6 {
@@ -186,7 +190,7 @@ impl Taring {
     }
 }
 
-/// Checks that the arm rests, holds its position and is not touched.
+/// Checks that the arm rests, keeps its position, and is not touched.
 fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     if !matches!(state.robot_mode, RobotMode::Idle | RobotMode::Move) {
         return Err(TareRefused::Mode {
@@ -195,7 +199,7 @@ fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     }
     for i in 0..7 {
         let (speed, way) = (state.dq[i], state.q[i] - first.q[i]);
-        // A value that is not a number does not count as rest.
+        // NaN does not count as rest.
         if !(speed.abs() <= SPEED && way.abs() <= WAY) {
             let joint = i as u8 + 1;
             return Err(TareRefused::Moves { joint, speed, way });
@@ -208,8 +212,8 @@ fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     Ok(())
 }
 
-/// Returns force and moment at the origin of the stiffness frame, in axes of the base. `None` if
-/// the robot has no estimate, and reports zeros.
+/// Returns force and moment about the origin of the stiffness frame, in axes of the base. `None` if
+/// the robot has no estimate and reports zeros.
 fn estimate(state: &RobotState) -> Option<[f64; 6]> {
     let wrench = state.wrench_at_stiffness_frame();
     let is_there = wrench.iter().all(|number| number.is_finite())
@@ -217,11 +221,11 @@ fn estimate(state: &RobotState) -> Option<[f64; 6]> {
     is_there.then_some(wrench)
 }
 
-/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times the velocity that real
-/// resting arms report.
+/// Highest joint velocity at which an arm counts as resting, `[rad/s]`. It is twenty times the
+/// velocity that real resting arms report.
 const SPEED: f64 = 0.02;
 
-/// Greatest movement of a joint during the average, `[rad]`.
+/// Largest movement of a joint during the average, `[rad]`.
 const WAY: f64 = 0.002;
 
 #[cfg(test)]
@@ -230,7 +234,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the state of an arm whose estimate is off by this force and moment, and noisy.
+    /// Returns the state of an arm whose estimate has an offset and noise.
     fn state(message_id: u64) -> RobotState {
         let noise = if message_id.is_multiple_of(2) {
             0.5
@@ -282,7 +286,8 @@ mod tests {
         assert!((tare.turned(&later) - 0.2).abs() < 1e-9);
     }
 
-    /// About the origin of the base, the moment of a constant force changes with the position.
+    /// If the moment were about the origin of the base, it would change with the position for a
+    /// constant force.
     #[test]
     fn the_moment_does_not_depend_on_where_the_base_is() {
         let tare = taken(state).unwrap();

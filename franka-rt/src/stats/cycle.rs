@@ -7,29 +7,30 @@ use franka_model::CYCLE;
 
 use crate::slot::Words;
 
-/// The times of one cycle that sent a command, as a whole and by phase.
+/// Times of one cycle that sent a command, as a whole and by phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct CycleTimes {
     /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
     pub time: u64,
-    /// Time from the moment when the state was due to the moment when the thread had it: network,
-    /// kernel and waking up. A state is due a whole number of milliseconds, by `message_id`, after
-    /// the most punctual of the last 32 to 64 states. Zero for that state.
+    /// Time from the moment when the state was due until the thread had received it. It includes
+    /// the network, the kernel and waking up. A state is due a whole number of milliseconds, by
+    /// `message_id`, after the most punctual of the last 32 to 64 states. `late` is zero for that
+    /// state.
     pub late: Duration,
-    /// Time from the moment when the thread had the state to the departure of the command, when the
-    /// system call that sends it had returned.
+    /// Time from the receipt of the state until the command was sent, when the system call that
+    /// sends it had returned.
     pub turnaround: Duration,
-    /// Time left until the next state was due: 1 ms - `late` - `turnaround`. The way of the command
-    /// to the robot and of the state back must fit into this time.
+    /// Time left until the next state was due: 1 ms - `late` - `turnaround`. During this time, the
+    /// command must travel to the robot, and the next state must travel back.
     pub slack: Slack,
-    /// Times of the phases; `None` without the feature `cycle-phases`.
+    /// Times of the phases; `None` if the feature `cycle-phases` is off.
     pub phases: Option<Phases>,
 }
 
-/// The time until the next state is due, when a command leaves. A negative slack is an overrun: the
-/// command left after that time.
+/// Time from the departure of a command until the next state is due. A negative slack is an
+/// overrun: the command left after the next state was due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
@@ -37,7 +38,7 @@ pub struct Slack {
     nanos: i64,
 }
 
-/// The parts of one cycle, in their order.
+/// Times of the phases of one cycle, in their order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Phases {
@@ -45,16 +46,16 @@ pub struct Phases {
     pub orders: Duration,
     /// Time for decoding the state from its bytes.
     pub decode: Duration,
-    /// Time for the driver: law and guards, or a function of the user. Under active control, also
-    /// the time of the user's thread until it wrote its command.
+    /// Time for the driver: its law and guards, or a function of the user. Under active control it
+    /// includes the time until the user's thread wrote its command.
     pub program: Duration,
     /// Time for encoding the command into bytes and passing it to the kernel.
     pub send: Duration,
-    /// Time for work after the command: log, newest state, rings, events, wake-up. If it is long,
-    /// it delays the next cycle. Under active control this work comes before the command.
+    /// Time for work after the command: log, newest state, rings, events, wake-up. A long time
+    /// delays the next cycle. Under active control this work comes before the command.
     pub publish: Duration,
     /// Time for work on the next answer that does not need the next state: goals, plans, generator,
-    /// inverse kinematics. If it is long, it delays the next cycle.
+    /// inverse kinematics. A long time delays the next cycle.
     pub prepare: Duration,
 }
 
@@ -63,9 +64,9 @@ pub struct Phases {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Phase {
-    /// The state came late, or the thread woke up late: [`CycleTimes::late`].
+    /// The state arrived late, or the thread woke up late: [`CycleTimes::late`].
     Arrival,
-    /// All of the thread's work, if its phases are not timed: [`CycleTimes::turnaround`].
+    /// All work of the thread, if its phases are not timed: [`CycleTimes::turnaround`].
     Answer,
     /// Orders from outside the thread: [`Phases::orders`].
     Orders,
@@ -243,7 +244,7 @@ impl Words for CycleTimes {
     }
 }
 
-/// Returns a duration in nanoseconds, up to 585 years.
+/// Returns a duration in nanoseconds. Durations above 585 years saturate.
 fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

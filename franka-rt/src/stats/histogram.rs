@@ -6,11 +6,11 @@ use core::time::Duration;
 
 use super::Counter;
 
-/// A histogram of durations, and their exact minimum and maximum. Its resolution is 1/16 of a
-/// value, and 1 ns for the smallest values.
+/// A histogram of durations, with their exact minimum and maximum. Its resolution is 1/16 of a
+/// value, or 1 ns for the smallest values.
 ///
-/// A value with its highest bit at position `e >= 4` belongs to one of 16 equal buckets of `[2^e,
-/// 2^(e+1))` nanoseconds. Durations of 18 minutes (2^40 ns) and more share the last bucket.
+/// The values from `2^e` to below `2^(e+1)` nanoseconds belong to 16 equal buckets, for each `e >=
+/// 4`. All durations of 18 minutes (2^40 ns) and more share the last bucket.
 pub struct Histogram {
     buckets: Box<[AtomicU64]>,
     count: Counter,
@@ -19,7 +19,7 @@ pub struct Histogram {
 }
 
 impl fmt::Debug for Histogram {
-    /// Prints the number of durations and their quantiles, because there are hundreds of buckets.
+    /// Prints the number of durations and the quantiles instead of hundreds of buckets.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Histogram")
             .field("count", &self.count())
@@ -29,7 +29,7 @@ impl fmt::Debug for Histogram {
 }
 
 impl Default for Histogram {
-    /// Returns an empty histogram. Allocates its buckets (5 kB).
+    /// Returns an empty histogram. Allocates 5 kB for the buckets.
     fn default() -> Self {
         Self {
             buckets: (0..BUCKETS).map(|_| AtomicU64::new(0)).collect(),
@@ -41,8 +41,8 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Returns median, 99th percentile and maximum; `None` if no duration was counted. Not for the
-    /// real-time thread.
+    /// Returns the median, the 99th percentile and the maximum; `None` if the histogram is empty.
+    /// Do not call it on the real-time thread.
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some(Quantiles {
             p50: self.quantile(0.5)?,
@@ -51,11 +51,12 @@ impl Histogram {
         })
     }
 
-    /// Counts one duration. Only for the one writer. Constant time, no allocation.
+    /// Counts one duration, in constant time and without allocation. Only the one writer may call
+    /// it.
     pub(crate) fn note(&self, duration: Duration) {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         let bucket = &self.buckets[bucket_of(nanos)];
-        // Relaxed throughout: see the module on half-counted cycles.
+        // Relaxed throughout: the module describes partly counted cycles.
         bucket.store(
             bucket.load(Ordering::Relaxed).wrapping_add(1),
             Ordering::Relaxed,
@@ -76,20 +77,21 @@ impl Histogram {
         self.count.get()
     }
 
-    /// Returns the shortest duration, exactly; `None` if no duration was counted.
+    /// Returns the exact minimum; `None` if the histogram is empty.
     pub fn min(&self) -> Option<Duration> {
-        // The count is not used here: a reader may see it before the minimum.
+        // Do not use the count here: a reader may see it before it sees the minimum.
         let min = self.min.load(Ordering::Relaxed);
         (min != u64::MAX).then(|| Duration::from_nanos(min))
     }
 
-    /// Returns the longest duration, exactly; `None` if no duration was counted.
+    /// Returns the exact maximum; `None` if the histogram is empty.
     pub fn max(&self) -> Option<Duration> {
         (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
     }
 
-    /// Returns the quantile `quantile` (in `[0, 1]`), at most 1/16 above the exact quantile. `None`
-    /// if no duration was counted. Reads all buckets: not for the real-time thread.
+    /// Returns the quantile `quantile`, in `[0, 1]`. The result is at most 1/16 above the exact
+    /// quantile. `None` if the histogram is empty. Reads all buckets, so do not call it on the
+    /// real-time thread.
     pub fn quantile(&self, quantile: f64) -> Option<Duration> {
         let max = self.max()?;
         let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)
@@ -105,9 +107,9 @@ impl Histogram {
         Some(max)
     }
 
-    /// Returns each bucket that is not empty, shortest durations first: its longest duration, and
-    /// its number of durations. The longest duration is at most 1/16 above the shortest of the
-    /// bucket. Not for the real-time thread.
+    /// Returns the longest duration and the number of durations of each bucket that is not empty,
+    /// shortest durations first. The longest duration of a bucket is at most 1/16 above its
+    /// shortest. Do not call it on the real-time thread.
     pub fn buckets(&self) -> impl Iterator<Item = (Duration, u64)> + '_ {
         let counts = self.buckets.iter().enumerate();
         counts.filter_map(|(index, bucket)| {
@@ -121,11 +123,11 @@ impl Histogram {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quantiles {
-    /// The median, to 1/16.
+    /// Median, accurate to 1/16.
     pub p50: Duration,
-    /// The 99th percentile, to 1/16.
+    /// 99th percentile, accurate to 1/16.
     pub p99: Duration,
-    /// The longest duration, exactly.
+    /// Exact maximum.
     pub max: Duration,
 }
 
@@ -135,7 +137,7 @@ const FINENESS: u32 = 4;
 /// Buckets per power of two.
 const PER_OCTAVE: usize = 1 << FINENESS;
 
-/// log2 of the duration, in nanoseconds, from which on all durations share the last bucket.
+/// log2 of a duration, in nanoseconds. All durations from this value upwards share the last bucket.
 const OCTAVES_MAX: u32 = 40;
 
 const BUCKETS: usize = (OCTAVES_MAX - FINENESS + 1) as usize * PER_OCTAVE;
@@ -149,7 +151,7 @@ fn bucket_of(nanos: u64) -> usize {
     (shift as usize + 1) * PER_OCTAVE + (nanos >> shift) as usize - PER_OCTAVE
 }
 
-/// Returns the longest duration of a bucket, in nanoseconds.
+/// Returns the longest duration that belongs to a bucket, in nanoseconds.
 fn last_of(bucket: usize) -> u64 {
     if bucket < PER_OCTAVE {
         return bucket as u64;
@@ -206,7 +208,7 @@ mod tests {
     #[test]
     fn quantiles_are_within_a_sixteenth_of_the_sorted_values() {
         let histogram = Histogram::default();
-        // A multiplicative walk: 40..40 000 000 ns, unevenly spread and out of order.
+        // These values spread unevenly from 40 to 40 000 000 ns, out of order.
         let mut values: Vec<u64> = (0..5000u64)
             .map(|i| 40 + (i * 7919 % 5000).pow(2) * 8 / 5)
             .collect();

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::{Phase, Phases};
 
-/// Times the phases of one cycle, each from the end of the previous one. Without the feature it has
-/// no fields and reads no clock.
+/// Measures the phases of one cycle, each from the end of the previous phase. Without the feature
+/// it has no fields and reads no clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps {
     #[cfg(feature = "cycle-phases")]
@@ -24,12 +24,12 @@ impl Laps {
         }
     }
 
-    /// Ends a phase now. The times of a phase that occurs twice add up.
+    /// Ends a phase now. If a phase occurs twice, its times are added.
     pub(crate) fn end(&mut self, phase: Phase) {
         self.end_at(phase, Instant::now());
     }
 
-    /// Ends a phase at a time that was read already.
+    /// Ends a phase at `at`, for a caller that has already read the clock.
     pub(crate) fn end_at(&mut self, phase: Phase, at: Instant) {
         let taken = at.saturating_duration_since(self.last);
         self.last = at;
@@ -38,7 +38,7 @@ impl Laps {
         }
     }
 
-    /// Returns the phases timed so far.
+    /// Returns the times of the phases so far.
     pub(crate) fn phases(&self) -> Option<Phases> {
         Some(self.phases)
     }

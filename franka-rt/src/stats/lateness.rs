@@ -1,8 +1,5 @@
-//! Due times of states, and their lateness. `meter` counts lost states, and commands that
-//! left after the next state was due.
-//!
-//! A late state is answered like any other. A state that a newer one has overtaken is dropped in
-//! `exchange`.
+//! Lateness of states relative to their due times. A late state is answered like any other state.
+//! `exchange` drops a state if a newer state has overtaken it.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -11,18 +8,18 @@ use super::cycle::CYCLE_NANOS;
 
 /// Estimates when the next state is due, from the arrivals of earlier states.
 ///
-/// The robot sends one state per millisecond of its own clock, and no state arrives before it was
-/// sent. The offset between the two clocks is therefore taken from the most punctual state of a
-/// recent window. The lateness of another state is the delay of network, kernel and scheduler. The
-/// window is short, so that clock drift and pauses of a simulated robot are soon forgotten. A drift
-/// of 100 ppm makes 6 us in a window.
+/// The robot sends one state per millisecond of its own clock, and no state arrives before it is
+/// sent. The most punctual state of a recent window therefore determines the offset between the two
+/// clocks. The lateness of another state is the delay by network, kernel and scheduler. The window
+/// is short, so the estimate soon forgets clock drift and pauses of a simulated robot. A drift of
+/// 100 ppm changes the offset by 6 us within a window.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
-    /// `message_id` and arrival of the state from which all offsets are counted.
+    /// `message_id` and arrival time of the state that all offsets refer to.
     origin: Option<(u64, Instant)>,
-    /// Smallest offsets of the previous window and of this window so far, in nanoseconds.
+    /// Smallest offsets of the previous window and of the current window so far, in nanoseconds.
     earliest: [i64; 2],
-    /// Number of states in this window.
+    /// Number of states in the current window.
     counted: u32,
 }
 
@@ -46,7 +43,7 @@ impl Arrivals {
     }
 }
 
-/// Number of states in a window. The estimate covers between one window and two.
+/// Number of states in a window. The estimate covers one to two windows.
 const WINDOW: u32 = 32;
 
 #[cfg(test)]
@@ -55,7 +52,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Arrivals of a robot whose clock runs fast by `ppm`, each late by `late`, in microseconds.
+    /// Returns the lateness of states from a robot whose clock is fast by `ppm`, if each state
+    /// arrives late by `late`, in microseconds.
     fn lateness(times: core::ops::Range<u64>, ppm: i64, late: impl Fn(u64) -> u64) -> Vec<u64> {
         let start = Instant::now();
         let mut arrivals = Arrivals::default();

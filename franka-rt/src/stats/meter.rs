@@ -8,23 +8,22 @@ use super::lateness::Arrivals;
 use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 
-/// Arrival of a state: the time since the previous state, and since this state was due.
+/// Arrival of a state: time since the previous state, and lateness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Time since the previous state, by this host's clock; `None` for the first state.
     pub interval: Option<Duration>,
-    /// Time from the moment when the state was due to the moment when the thread had it: see
-    /// [`CycleTimes::late`].
+    /// Time by which the state was late: see [`CycleTimes::late`].
     pub late: Duration,
 }
 
-/// The writing side of [`Stats`], owned by the thread.
+/// The writing side of [`Stats`], which the thread owns.
 #[derive(Debug)]
 pub(crate) struct Meter {
     stats: Arc<Stats>,
     arrivals: Arrivals,
     newest: Option<Newest>,
-    /// The longest total of a cycle so far.
+    /// Longest total time of a cycle so far.
     longest: Duration,
     worst: SlotWriter<CycleTimes>,
     overran: SlotWriter<CycleTimes>,
@@ -40,7 +39,7 @@ struct Newest {
 }
 
 impl Meter {
-    /// Returns empty statistics. Allocates; no other method does.
+    /// Returns empty statistics. No other method allocates.
     pub(crate) fn new() -> Self {
         let (worst, worst_reader) = slot::slot();
         let (overran, overran_reader) = slot::slot();
@@ -83,12 +82,13 @@ impl Meter {
         &self.stats
     }
 
-    /// Returns the time at which the newest state was received.
+    /// Returns the time when the newest state was received.
     pub(crate) fn heard(&self) -> Option<Instant> {
         self.newest.map(|newest| newest.received)
     }
 
-    /// Counts a state, and `skipped` older states that arrived with it. Returns its arrival.
+    /// Counts a state and `skipped` older states that arrived with it. Returns the arrival of the
+    /// state.
     pub(crate) fn note_arrival(&mut self, time: u64, received: Instant, skipped: u64) -> Arrival {
         let late = self.arrivals.note(time, received);
         let before = self.newest.replace(Newest {
@@ -108,14 +108,14 @@ impl Meter {
         Arrival { interval, late }
     }
 
-    /// Returns the cycle of the newest state, whose command left at `departed`.
+    /// Returns the times of the cycle for the newest state, whose command left at `departed`.
     pub(crate) fn answered(&self, departed: Instant) -> CycleTimes {
         let newest = self.newest.expect("only a state that came is answered");
         let turnaround = departed.saturating_duration_since(newest.received);
         CycleTimes::new(newest.time, newest.late, turnaround)
     }
 
-    /// Notes a cycle with a command, and publishes the counts of the cycle's motion.
+    /// Adds a cycle that sent a command, and publishes the counts of its motion.
     pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes, motion: Option<&MotionStatistics>) {
         self.stats.commands.add(1);
         self.stats.turnaround.note(cycle.turnaround);
@@ -124,7 +124,8 @@ impl Meter {
             .note(cycle.slack.left().unwrap_or_default());
         if let Some(overrun) = cycle.slack.overrun() {
             self.overran.write(cycle);
-            // Count after the cycle is written: a reader that sees the count then finds the cycle.
+            // Count after writing the cycle, so that a reader that sees the count also finds the
+            // cycle.
             self.stats.overrun.note(overrun);
         }
         if cycle.total() > self.longest {

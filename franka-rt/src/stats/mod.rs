@@ -8,16 +8,16 @@
 //!                                                    |-------- slack ----------|   due
 //! ```
 //!
-//! The thread is the only writer. Readers may read anywhere, at any time, without a lock. Every
-//! counter is a separate atomic, so a reader may see a partly counted cycle: the numbers are for
-//! display. The histograms are arrays of atomics with logarithmic buckets. A reader of the
-//! `hdrhistogram` crate's plain cells would need a lock or a copy made by the thread. Values that
-//! must be consistent, a cycle or the counts of a motion, are passed through a
-//! [`slot`](crate::slot).
+//! Only the thread writes. Any thread may read at any time, without a lock. Every counter is a
+//! separate atomic, so a reader may see a partly counted cycle: the numbers are for display. The
+//! histograms are arrays of atomics with logarithmic buckets, because the plain cells of the
+//! `hdrhistogram` crate would need a lock or a copy by the thread. Values that must be consistent,
+//! such as a cycle or the counts of a motion, pass through a [`slot`](crate::slot).
 //!
-//! * [`Histogram`]: durations in logarithmic buckets. [`CycleTimes`]: one cycle and its phases.
-//! * [`MotionStatistics`]: counts over the running time of one motion.
-//! * `arrivals`: when the next state is due. `meter`: the writing side of all of them.
+//! * [`Histogram`]: durations in logarithmic buckets. [`CycleTimes`]: times of one cycle and its
+//!   phases.
+//! * [`MotionStatistics`]: counts of one motion while it runs.
+//! * `lateness`: when the next state is due. `meter`: the writing side of all statistics.
 
 mod cycle;
 mod histogram;
@@ -38,46 +38,46 @@ pub(crate) use meter::Meter;
 
 use crate::slot::{Read, SlotReader, Words};
 
-/// Counts and measurements of the loop since it started.
+/// Counts and times of the loop since it started.
 #[derive(Debug)]
 pub struct Stats {
-    /// Turns of the loop, with a state or without. While the number stands still, a control
-    /// function does not return, or the thread is not scheduled.
+    /// Turns of the loop, with or without a state. If the number does not change, a control
+    /// function has not returned, or the thread is not scheduled.
     pub turns: Counter,
     /// States received and passed to the driver.
     pub states: Counter,
     /// Commands sent.
     pub commands: Counter,
-    /// States that were received but skipped, because a newer state had arrived, too.
+    /// States that were received but skipped, because a newer state had also arrived.
     pub skipped: Counter,
-    /// States that never arrived, by the gaps in `message_id`, minus the skipped states.
+    /// States that never arrived: the gaps in `message_id` without the skipped states.
     pub lost: Counter,
-    /// States that are not newer than the newest: overtaken or duplicate states.
+    /// States that were not newer than the newest state: overtaken or duplicate states.
     pub stale: Counter,
-    /// Datagrams from other addresses than the robot's.
+    /// Datagrams from addresses other than the robot's.
     pub foreign: Counter,
-    /// Datagrams of the robot that are too short for a state, or cannot be decoded.
+    /// Datagrams from the robot that are too short for a state or cannot be decoded.
     pub malformed: Counter,
-    /// Receives that failed with an error. An empty socket is no error.
+    /// Receives that failed with an error. An empty socket does not count.
     pub receive_errors: Counter,
     /// Commands that could not be sent.
     pub send_errors: Counter,
-    /// Records dropped because their ring was full.
+    /// Records that were dropped because their ring was full.
     pub records_lost: Counter,
-    /// States dropped from the ring of all states because the ring was full. They were answered,
-    /// and the newest of them was published.
+    /// States that were dropped from the ring of all states because the ring was full. They were
+    /// answered all the same, and each was published if it was the newest state.
     pub states_lost: Counter,
-    /// Reports of the loop itself (not of the driver) that were dropped because the queue was full.
+    /// Reports of the loop itself, not of the driver, that were dropped because the queue was full.
     pub reports_lost: Counter,
-    /// Times between two consecutive states, by this host's clock.
+    /// Times between consecutive states, by this host's clock.
     pub interval: Histogram,
     /// Times from the receipt of a state to the departure of its command.
     pub turnaround: Histogram,
-    /// Times from the departure of a command to the moment when the next state was due: see
-    /// [`CycleTimes::slack`]. A command that left later than that counts as zero here, and also in
+    /// Times from the departure of a command until the next state was due: see
+    /// [`CycleTimes::slack`]. A command that left too late counts as zero here, and also counts in
     /// [`Self::overrun`].
     pub slack: Histogram,
-    /// Times by which commands left after the next state was due; one value per overrun.
+    /// Times by which commands left after the next state was due; one value for each overrun.
     pub overrun: Histogram,
     worst: SlotReader<CycleTimes>,
     overran: SlotReader<CycleTimes>,
@@ -91,21 +91,21 @@ impl Stats {
         newest(&self.worst)
     }
 
-    /// Returns the newest cycle whose command left after the next state was due; `None` without
-    /// such a cycle.
+    /// Returns the newest cycle whose command left after the next state was due; `None` if there
+    /// was no such cycle.
     pub fn newest_overrun(&self) -> Option<CycleTimes> {
         newest(&self.overran)
     }
 
-    /// Returns the counts of the present motion so far, or of the last one; `None` before the first
-    /// motion. The state that shows the end of a motion is not counted here, but in the motion's
-    /// report.
+    /// Returns the counts of the current motion so far, or of the last motion; `None` before the
+    /// first motion. The state that shows the end of a motion counts in the motion's report, but
+    /// not here.
     pub fn motion(&self) -> Option<MotionStatistics> {
         newest(&self.motion)
     }
 }
 
-/// Returns the newest value of a slot. Reads through a clone, because the reader itself is shared.
+/// Returns the newest value of a slot. Reads through a clone, because the reader is shared.
 fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     match slot.clone().read_retry(ATTEMPTS) {
         Read::Newer(value) => Some(value),
@@ -113,8 +113,7 @@ fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     }
 }
 
-/// Attempts to read. One attempt fails if this thread is delayed until the value was replaced
-/// twice.
+/// Number of attempts to read. An attempt fails if the value is replaced twice while it reads.
 const ATTEMPTS: usize = 16;
 
 /// A counter with one writer.
@@ -122,14 +121,14 @@ const ATTEMPTS: usize = 16;
 pub struct Counter(AtomicU64);
 
 impl Counter {
-    /// Returns the present count.
+    /// Returns the current count.
     pub fn get(&self) -> u64 {
-        // Relaxed: no other memory is read depending on this value.
+        // Relaxed: no other memory is read depending on this count.
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Adds to the count, wrapping. Only for the one writer: a load and a store are cheaper than a
-    /// read-modify-write.
+    /// Adds to the count and wraps. Only the one writer may call it, so it uses a load and a store,
+    /// which are cheaper than a read-modify-write.
     pub(crate) fn add(&self, more: u64) {
         if more != 0 {
             self.0

@@ -7,7 +7,7 @@ use franka_proto::RobotState;
 use super::{CycleTimes, Histogram, Slack};
 use crate::slot::Words;
 
-/// Counts over the running time of one motion.
+/// Counts of one motion while it runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -16,19 +16,19 @@ pub struct MotionStatistics {
     pub cycles: u64,
     /// Number of states that never arrived.
     pub lost_states: u64,
-    /// Number of states that were skipped, because a newer state had arrived, too.
+    /// Number of states that were skipped, because a newer state had also arrived.
     pub skipped_states: u64,
-    /// Lowest `control_command_success_rate` in the motion, in `[0, 1]`.
+    /// Lowest `control_command_success_rate` of the motion, in `[0, 1]`.
     pub success_rate_min: f64,
-    /// The newest rate, in `[0, 1]`; 1 before the first one.
+    /// Newest rate, in `[0, 1]`; 1 before the first rate.
     pub success_rate_newest: f64,
     success_rate_sum: f64,
     success_rate_count: u64,
-    /// `message_id` of the first and the last state.
+    /// `message_id` of the first state and of the last state.
     span: (u64, u64),
-    /// Number of commands that left.
+    /// Number of commands that were sent.
     pub commands: u64,
-    /// Number of commands that left after the next state was due.
+    /// Number of commands that were sent after the next state was due.
     pub overruns: u64,
     /// Longest time from the receipt of a state to the departure of its command.
     pub worst_turnaround: Duration,
@@ -57,8 +57,8 @@ impl Default for MotionStatistics {
 }
 
 impl MotionStatistics {
-    /// Returns the mean `control_command_success_rate`, in `[0, 1]`; 1 for a motion too short to
-    /// show it.
+    /// Returns the mean `control_command_success_rate`, in `[0, 1]`; 1 if the motion was too short
+    /// to report a rate.
     pub fn success_rate_avg(&self) -> f64 {
         if self.success_rate_count == 0 {
             1.0
@@ -73,8 +73,7 @@ impl MotionStatistics {
         self.span.1 - self.span.0
     }
 
-    /// Returns the least time that was left when a command departed; `None` before the first
-    /// command.
+    /// Returns the lowest slack of a command; `None` before the first command.
     pub fn slack_min(&self) -> Option<Slack> {
         (self.commands > 0).then_some(self.slack_min)
     }
@@ -84,8 +83,9 @@ impl MotionStatistics {
         (self.commands > 0).then_some(self.worst)
     }
 
-    /// Counts one state of the running motion, and the states lost and skipped before it. The first
-    /// and the final state of a motion always report a success rate of 0, so zeros do not count.
+    /// Counts one state of the running motion, and the states that were lost or skipped before it.
+    /// The first and the final state of a motion always report a success rate of 0, so rates of
+    /// zero do not count.
     pub(crate) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
         if self.cycles == 0 {
             self.span.0 = state.message_id;
@@ -103,7 +103,7 @@ impl MotionStatistics {
         }
     }
 
-    /// Counts one command that left.
+    /// Counts one command that was sent.
     pub(crate) fn note_cycle(&mut self, cycle: &CycleTimes) {
         if self.commands == 0 || cycle.slack < self.slack_min {
             self.slack_min = cycle.slack;
@@ -160,14 +160,14 @@ impl Words for MotionStatistics {
     }
 }
 
-/// Words of a motion's statistics before its worst cycle.
+/// Number of words of a motion's statistics before its worst cycle.
 const OWN_WORDS: usize = 13;
 
-/// Times of the cycles of one motion. Made outside the thread, written by the thread, read
-/// anywhere.
+/// Times of the cycles of one motion. They are allocated outside the thread, written by the thread,
+/// and readable anywhere.
 #[derive(Debug, Default)]
 pub struct MotionTimes {
-    /// Times between two consecutive states, by this host's clock.
+    /// Times between consecutive states, by this host's clock.
     pub interval: Histogram,
     /// Times from the receipt of a state to the departure of its command.
     pub turnaround: Histogram,

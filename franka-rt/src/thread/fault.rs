@@ -1,20 +1,20 @@
-//! Faults of the link: datagrams, receives and sends that fail.
+//! Faults of the link to the robot: bad datagrams, and receives or sends that failed.
 
 use franka_proto::DecodeError;
 
 use crate::exchange::SendError;
 use crate::sys;
 
-/// A datagram, a receive or a send that failed. The loop continues, because the next state may be
+/// Fault of a datagram, a receive or a send. The loop continues, because the next state may be
 /// good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkFault {
-    /// A datagram of the robot cannot be decoded. A datagram that is too short usually means that
-    /// the server has another version.
+    /// A datagram from the robot cannot be decoded. If it is too short, the server usually has
+    /// another version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
-    /// A state was dropped: its number exceeds the newest number by more than is possible for a
+    /// A state was dropped because its number is too far ahead of the newest number to come from a
     /// robot (see [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
     #[error(
         "dropped the robot state number {got}, expected a number close to {newest}, the newest"
@@ -25,7 +25,7 @@ pub enum LinkFault {
         /// `message_id` of the newest state, `[ms]`.
         newest: u64,
     },
-    /// A receive failed, with this errno value.
+    /// A receive failed with this errno value.
     #[error("libfranka: UDP receive: {}", sys::error_text(*.0))]
     Receive(i32),
     /// A command could not be sent.
@@ -33,12 +33,13 @@ pub enum LinkFault {
     Send(#[from] SendError),
 }
 
-/// Passes on the first of several equal faults in a row, so that a lasting fault is reported once.
+/// Passes on only the first of several equal faults in a row, so that a lasting fault is reported
+/// once.
 #[derive(Debug, Default)]
 pub(super) struct Latch(Option<LinkFault>);
 
 impl Latch {
-    /// Returns the fault of a cycle, if there was one, and if it differs from the previous fault.
+    /// Returns the fault of a cycle if it differs from the fault of the previous cycle.
     pub(super) fn pass(&mut self, fault: Option<LinkFault>) -> Option<LinkFault> {
         let news = if self.0 == fault { None } else { fault };
         self.0 = fault;
