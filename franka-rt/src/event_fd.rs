@@ -1,8 +1,8 @@
-//! The eventfd with which the thread wakes the receiver of its reports. Any reactor can poll it. On
-//! other systems than Linux, a pair of sockets replaces it.
+//! Eventfd with which the thread wakes the receiver of its reports. Any reactor can poll it. On
+//! systems other than Linux, a pair of sockets replaces it.
 //!
-//! Notifying is one non-blocking `write`, without a lock and without knowledge of the listener.
-//! Notifications add up until the listener drains them. A slow listener is therefore woken once,
+//! A notification is one non-blocking `write`, without a lock. The writer does not know the
+//! listener. Notifications add up until the listener drains them, so a slow listener is woken once,
 //! and then reads the slot and the queues.
 
 use std::io;
@@ -13,9 +13,9 @@ use crate::sys;
 
 /// An eventfd. Clones share one descriptor.
 ///
-/// With Tokio: `AsyncFd::new(event_fd)`, await `readable()`, call [`EventFd::drain`], then the
-/// guard's `clear_ready`, then read the queues. A notification in between is not lost: it makes the
-/// descriptor readable again.
+/// With Tokio, create `AsyncFd::new(event_fd)` and await `readable()`. Then call
+/// [`EventFd::drain`], then the guard's `clear_ready`, and then read the queues. A notification in
+/// between is not lost, because it makes the descriptor readable again.
 #[derive(Clone, Debug)]
 pub struct EventFd(Arc<sys::Wake>);
 
@@ -23,13 +23,13 @@ impl EventFd {
     /// Opens an eventfd without a notification.
     ///
     /// # Errors
-    /// The process or the system has no descriptor left.
+    /// Returns an error if the process or the system has no descriptor left.
     pub fn new() -> io::Result<Self> {
         Ok(Self(Arc::new(sys::Wake::new()?)))
     }
 
-    /// Makes the descriptor readable. Never blocks, and cannot fail in a relevant way: if pending
-    /// notifications leave no room, the descriptor is readable anyway.
+    /// Makes the descriptor readable. Never blocks. If pending notifications leave no room for
+    /// another, the descriptor is already readable, so the error is ignored.
     pub fn notify(&self) {
         self.0.notify();
     }

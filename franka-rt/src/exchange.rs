@@ -1,12 +1,11 @@
-//! The UDP side of a connection: receives the robot's newest state, and sends one command back to
-//! the sender of that state. Duplicates and states that a newer state has overtaken are dropped and
-//! counted.
+//! UDP side of a connection: receives the robot's newest state, and sends one command back to the
+//! sender of that state. Duplicate and overtaken states are dropped and counted.
 //!
-//! The robot sends one state per millisecond, and a delayed host finds several of them waiting. The
-//! newest state wins. [`Exchange::receive`] waits for a datagram, then reads all that are there. It
-//! keeps the state with the highest `message_id`, if that is above the last one kept and not
-//! impossibly far ahead of it. Datagrams from other addresses than the robot's are dropped and
-//! counted. Nothing here allocates after [`Exchange::new`].
+//! The robot sends one state per millisecond, so a delayed host finds several waiting states. Only
+//! the newest one is answered. [`Exchange::receive`] waits for a datagram, then reads all that have
+//! arrived. It keeps the state with the highest `message_id`, unless that number is not newer than
+//! the last kept state, or too far ahead of it to be genuine. Datagrams from addresses other than
+//! the robot's are dropped and counted. Nothing allocates after [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -16,34 +15,35 @@ use socket2::{SockAddr, Socket};
 
 use crate::sys;
 
-/// Opens the socket that `robot` sends its states to: any address of the robot's family, IPv4 or
-/// IPv6, and a free port, which `Connect` must announce. States that arrive before the thread
-/// starts wait in the kernel.
+/// Opens the socket for the states of `robot`, on any local address of the same family, IPv4 or
+/// IPv6. The system chooses a free port, which `Connect` must announce. States that arrive before
+/// the thread starts wait in the kernel.
 ///
 /// # Errors
-/// The system refuses a socket or a port.
+/// Returns an error if the system provides no socket or port.
 pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
-    // IPv4-mapped IPv6 counts as IPv4.
+    // An IPv4-mapped IPv6 address counts as IPv4.
     match robot.to_canonical() {
         IpAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
         IpAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),
     }
 }
 
-/// Longest wait of [`Exchange::receive`]. While the robot is silent, the thread therefore sees an
+/// Longest wait of [`Exchange::receive`]. So while the robot is silent, the thread receives an
 /// order or a request to stop within this time.
 pub const TICK: Duration = Duration::from_millis(20);
 
-/// Returns the time to wait for a state so that a silence of `link_timeout` is noticed: a quarter
-/// of it, and at most a [`TICK`].
+/// Returns the time to wait for a state so that a silence of `link_timeout` is noticed. It is a
+/// quarter of `link_timeout`, and at most a [`TICK`].
 ///
-/// A loss is noticed late by at most a quarter, and by two of the kernel's clock ticks (4 ms at 250
-/// Hz), in which the kernel counts such waits.
+/// The thread notices a loss late by at most a quarter of the timeout plus two of the kernel's
+/// clock ticks (4 ms at 250 Hz), because the kernel counts such waits in ticks.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
 
-/// The shortest wait. A wait that rounds to zero would be no wait, or last forever.
+/// Shortest wait. If a wait were rounded to zero, the receive would not wait, or would wait
+/// forever.
 const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// Receives states and sends commands.
@@ -51,54 +51,55 @@ const MIN_WAIT: Duration = Duration::from_millis(1);
 pub struct Exchange {
     socket: Socket,
     robot: IpAddr,
-    /// The newest state, in its first `state_size` bytes.
+    /// Newest state, in the first `state_size` bytes.
     newest: Box<[u8]>,
-    /// Buffer of the next datagram; swapped with `newest` if the datagram is newer.
+    /// Buffer for the next datagram, swapped with `newest` if the datagram is newer.
     incoming: Box<[u8]>,
     /// `message_id` of `newest`.
     message_id: Option<u64>,
-    /// Sender of `newest`, to which commands are sent.
+    /// Sender of `newest`, which receives the commands.
     reply_to: Option<SockAddr>,
     /// Longest time that each receive waits for a datagram.
     wait: Duration,
-    /// True if the last receive failed. Finding nothing is no failure.
+    /// True if the last receive failed. An empty socket does not count.
     failed: bool,
 }
 
 /// Result of one call of [`Exchange::receive`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reception {
-    /// True if there is a newer state than before; [`Exchange::state`] has it.
+    /// True if a newer state arrived. [`Exchange::state`] returns it.
     pub fresh: bool,
-    /// Number of states that were newer than before and were skipped for a still newer one.
+    /// Number of states that were newer than the previous state, but were skipped because an even
+    /// newer state arrived.
     pub skipped: u64,
-    /// Number of states that are not newer than the newest: overtaken or duplicate ones.
+    /// Number of states that were not newer than the newest state: overtaken or duplicate states.
     pub stale: u64,
-    /// Number of datagrams from other addresses than the robot's.
+    /// Number of datagrams from addresses other than the robot's.
     pub foreign: u64,
-    /// Number of datagrams of the robot that are too short for a state.
+    /// Number of datagrams from the robot that were too short for a state.
     pub short: u64,
-    /// Length in bytes of the last short datagram; 0 without one.
+    /// Length of the last short datagram, in bytes; 0 if there was none.
     pub short_length: usize,
     /// `message_id` of the last state that was dropped because it was more than [`LEAP_MAX`] above
-    /// the newest; `None` without such a state.
+    /// the newest; `None` if there was no such state.
     pub leap: Option<u64>,
-    /// Length of the wait, if no datagram came; zero otherwise.
+    /// Length of the wait if no datagram arrived, otherwise zero.
     pub waited: Duration,
-    /// errno value of a receive that failed. Finding nothing is no failure.
+    /// errno value of a receive that failed. An empty socket does not count.
     pub error: Option<i32>,
 }
 
 impl Exchange {
     /// Returns an exchange on the bound `socket`. `robot` is the robot's address. `state_size` is
-    /// the size of a state in bytes, including its leading `message_id` (8 bytes, little-endian),
-    /// which is the same in every protocol version.
+    /// the size of a state in bytes. In every protocol version, a state begins with its
+    /// `message_id` (8 bytes, little-endian), which the size includes.
     ///
     /// # Errors
-    /// The system refuses the options of the socket.
+    /// Returns an error if the system refuses the options of the socket.
     ///
     /// # Panics
-    /// If `state_size` has no room for a `message_id`.
+    /// Panics if `state_size` has no room for a `message_id`.
     pub fn new(socket: UdpSocket, robot: IpAddr, state_size: usize) -> io::Result<Self> {
         assert!(
             state_size >= MESSAGE_ID,
@@ -119,23 +120,23 @@ impl Exchange {
         })
     }
 
-    /// Makes each [`receive`](Self::receive) wait for `wait` at most, a millisecond or more,
-    /// instead of a [`TICK`].
+    /// Makes each [`receive`](Self::receive) wait for at most `wait` instead of a [`TICK`]. A
+    /// `wait` below a millisecond counts as a millisecond.
     ///
     /// # Errors
-    /// The system refuses the option.
+    /// Returns an error if the system refuses the option.
     pub fn with_wait(mut self, wait: Duration) -> io::Result<Self> {
         self.wait = wait.max(MIN_WAIT);
         self.socket.set_read_timeout(Some(self.wait))?;
         Ok(self)
     }
 
-    /// Returns the socket from which states come, for its options.
+    /// Returns the socket that receives states, to set its options.
     pub(crate) fn socket(&self) -> &Socket {
         &self.socket
     }
 
-    /// Returns the newest state's bytes; zeros before the first state.
+    /// Returns the bytes of the newest state; zeros before the first state.
     pub fn state(&self) -> &[u8] {
         &self.newest
     }
@@ -145,11 +146,12 @@ impl Exchange {
         self.message_id
     }
 
-    /// Waits for a datagram, up to [`TICK`] or the time given to [`with_wait`](Self::with_wait).
-    /// Then reads the waiting datagrams, up to [`DRAIN_MAX`] in all.
+    /// Waits for a datagram, for at most a [`TICK`] or the time passed to
+    /// [`with_wait`](Self::with_wait). Then reads the waiting datagrams, up to [`DRAIN_MAX`] in
+    /// total.
     ///
-    /// A receive that fails does not wait. After a failure, the next call therefore first sleeps
-    /// for a millisecond, so that a lasting error does not keep the processor busy.
+    /// A receive that fails does not wait. So after a failure, the next call first sleeps for a
+    /// millisecond. Otherwise a lasting error would keep the processor busy.
     pub fn receive(&mut self) -> Reception {
         if self.failed {
             sys::sleep_a_millisecond();
@@ -167,7 +169,8 @@ impl Exchange {
                 Ok((length, sender)) => self.sort(length, sender, &mut reception),
                 Err(error) => {
                     match error.kind() {
-                        // The socket was empty: after the wait, or at once.
+                        // The socket was empty when the wait ended, or immediately if there was no
+                        // wait.
                         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                             if flags == 0 {
                                 reception.waited = self.wait;
@@ -185,7 +188,7 @@ impl Exchange {
         reception
     }
 
-    /// Decides whether to keep the datagram of `length` bytes in `incoming`.
+    /// Keeps or drops the datagram of `length` bytes in `incoming`.
     fn sort(&mut self, length: usize, sender: Option<SocketAddr>, reception: &mut Reception) {
         let Some(sender) = sender.filter(|sender| sender.ip().to_canonical() == self.robot) else {
             reception.foreign += 1;
@@ -216,11 +219,11 @@ impl Exchange {
         core::mem::swap(&mut self.newest, &mut self.incoming);
     }
 
-    /// Sends a command to the sender of the newest state. Does not wait: a full send buffer is a
-    /// failure.
+    /// Sends a command to the sender of the newest state. Does not wait, so a full send buffer is
+    /// an error.
     ///
     /// # Errors
-    /// [`SendError`]; the next cycle may try with its own command.
+    /// Returns [`SendError`] if the command was not sent. The next cycle may send its own command.
     pub fn send(&self, command: &[u8]) -> Result<(), SendError> {
         let reply_to = self.reply_to.as_ref().ok_or(SendError::NobodyToAnswer)?;
         match self
@@ -241,28 +244,28 @@ impl Exchange {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SendError {
-    /// No state has been received, so there is no address to answer.
+    /// No state has been received, so there is no address to send to.
     #[error("libfranka: could not send UDP data")]
     NobodyToAnswer,
-    /// The system sent only a part. The text is libfranka's.
+    /// The system sent only a part of the command. The text is libfranka's.
     #[error("libfranka: could not send UDP data")]
     Short {
         /// Number of bytes sent.
         sent: usize,
-        /// Number of bytes of the command.
+        /// Length of the command in bytes.
         length: usize,
     },
-    /// The system refused; an errno value.
+    /// The system refused to send; contains the errno value.
     #[error("libfranka: UDP send: {}", sys::error_text(*.0))]
     Refused(i32),
 }
 
 /// Largest number of datagrams that one call reads, so that a flood cannot delay the cycle. The
-/// default receive buffer of Linux (212992 bytes) holds fewer states than that.
+/// default receive buffer of Linux (212992 bytes) holds fewer states.
 pub const DRAIN_MAX: usize = 256;
 
-/// Largest step of a state's `message_id` above the newest one, `[ms]` of the robot's clock: 49
-/// days. No connection outlives such a silence, so a number further ahead cannot be genuine.
+/// Largest step from the newest `message_id` to that of a new state, `[ms]` of the robot's clock:
+/// 49 days. No connection survives such a silence, so a larger step cannot be genuine.
 pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.

@@ -1,5 +1,5 @@
-//! One sender, one receiver, every value in order. Orders and chunks enter the thread by such
-//! queues; events, records, states and chunks leave it by them.
+//! Queue with one sender and one receiver that passes every value, in order. Queues pass orders and
+//! chunks into the thread, and events, records, states and chunks out of it.
 //!
 //! ```
 //! use franka_rt::queue::{self, Full};
@@ -14,37 +14,37 @@
 //! ```
 //!
 //! The ring is rtrb's: neither end ever waits for the other. Crossbeam's `ArrayQueue` is not
-//! suitable, because an end that finds the other in the middle of an operation spins until that is
-//! done. If the control thread has preempted the other end on the only processor available to both,
-//! it would spin forever.
+//! suitable, because an end spins while the other end is in the middle of an operation. If both
+//! share one processor and the control thread has preempted the other end, the control thread would
+//! spin forever.
 
 use core::hint::black_box;
 use core::mem::MaybeUninit;
 
-/// Returns a queue for `capacity` values, or one if that is zero. Its memory has been written to,
-/// so that no cycle causes a page fault in it.
+/// Returns a queue for `capacity` values, or for one value if `capacity` is zero. Its memory is
+/// written to, so that no cycle causes a page fault there.
 pub fn queue<T>(capacity: usize) -> (Sender<T>, Receiver<T>) {
     let capacity = capacity.max(1);
     let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);
     if let Ok(mut unused) = producer.write_chunk_uninit(capacity) {
-        // The second part is empty: a new ring begins at its start.
+        // The second part is empty, because a new ring begins at its start.
         let (elements, _) = unused.as_mut_slices();
         elements.fill_with(MaybeUninit::zeroed);
         black_box(elements);
-        // Nothing is committed: the ring stays empty.
+        // No element is committed, so the ring stays empty.
     }
     (Sender(producer), Receiver(consumer))
 }
 
-/// The sending end of a queue. Dropping it leaves the values to the receiver.
+/// Sending end of a queue. If it is dropped, the receiver can still read the waiting values.
 #[derive(Debug)]
 pub struct Sender<T>(rtrb::Producer<T>);
 
-/// The receiving end of a queue.
+/// Receiving end of a queue.
 #[derive(Debug)]
 pub struct Receiver<T>(rtrb::Consumer<T>);
 
-/// A queue has no room for a value.
+/// Error: the queue has no room for a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the queue is full")]
 pub struct Full<T>(
@@ -56,7 +56,7 @@ impl<T> Sender<T> {
     /// Appends a value. Never waits.
     ///
     /// # Errors
-    /// [`Full`] with the value.
+    /// Returns [`Full`] with the value if the queue has no room.
     pub fn push(&mut self, value: T) -> Result<(), Full<T>> {
         self.0
             .push(value)
@@ -64,7 +64,7 @@ impl<T> Sender<T> {
     }
 
     /// Appends the results of `next`, up to `count` values, while there is room. Calls `next` only
-    /// if there is room for its result. Returns the number of values appended.
+    /// if its result fits. Returns the number of appended values.
     pub fn push_from(&mut self, count: usize, next: impl FnMut() -> Option<T>) -> usize {
         let count = count.min(self.free());
         match self.0.write_chunk_uninit(count) {
@@ -73,12 +73,13 @@ impl<T> Sender<T> {
         }
     }
 
-    /// True if the receiver has been dropped.
+    /// True if the receiver was dropped.
     pub fn is_abandoned(&self) -> bool {
         self.0.is_abandoned()
     }
 
-    /// Returns the least number of values for which there is room.
+    /// Returns the number of values for which there is room. The receiver may make more room at any
+    /// time.
     pub fn free(&self) -> usize {
         self.0.slots()
     }
@@ -90,12 +91,12 @@ impl<T> Receiver<T> {
         self.0.pop().ok()
     }
 
-    /// Returns the least number of values that are waiting.
+    /// Returns the number of waiting values. The sender may add more at any time.
     pub fn waiting(&self) -> usize {
         self.0.slots()
     }
 
-    /// Drops the oldest `count` values, or all that are waiting if there are fewer.
+    /// Drops the oldest `count` values, or all waiting values if there are fewer.
     pub fn skip(&mut self, count: usize) {
         if let Ok(chunk) = self.0.read_chunk(count.min(self.waiting())) {
             chunk.commit_all();

@@ -1,14 +1,16 @@
-//! One writer, any number of readers, newest value only: how goals enter the thread and states
-//! leave it.
+//! Slot with one writer and any number of readers that passes only the newest value. Goals enter
+//! the thread and states leave it through slots.
 //!
-//! A sequence lock over two buffers of `AtomicU64` words, which the values fill in turns. The
-//! writer makes the count odd, stores the words of one buffer, and makes the count even. The
-//! previous value stays whole in the other buffer, so a writer that is delayed in the middle of a
-//! write keeps no reader from the newest whole value. A reader gets a torn copy, and discards it,
-//! only if the reader itself is delayed until the writer has finished the next value and begun
-//! another one. Writing never waits, and a read is one attempt, so neither side can delay the
-//! other, for any priorities. A cycle that reads a torn goal keeps the previous goal. A task
-//! outside the thread may try again with [`SlotReader::read_retry`].
+//! A slot is a sequence lock over two buffers of `AtomicU64` words, which the values use
+//! alternately. The writer makes the count odd, stores the words in one buffer, and makes the count
+//! even. The other buffer still contains the previous value. So if the writer is delayed in the
+//! middle of a write, readers can still read the newest whole value. A reader gets a torn copy, and
+//! discards it, only if it is delayed until the writer has finished the next value and begun
+//! another one.
+//!
+//! Writing never waits, and a read is one attempt, so neither side can delay the other, for any
+//! priorities. A cycle that reads a torn goal keeps the previous goal. A task outside the thread
+//! may try again with [`SlotReader::read_retry`].
 //!
 //! ```
 //! # use franka_rt::slot;
@@ -22,14 +24,15 @@
 //! assert_eq!(reader.read_newer(), Read::Same);
 //! ```
 //!
-//! The words are atomics, so a torn read is a wrong value and not a data race, and no `unsafe` is
-//! needed. The two loops explain their memory order; `tests/loom` explores the interleavings.
+//! The words are atomics, so a torn read returns a wrong value but is no data race, and no `unsafe`
+//! is needed. Comments in the two loops explain their memory order, and `tests/loom` explores the
+//! interleavings.
 //!
-//! The count has no separate cache line. The measurements used a reader on a second core, on a busy
-//! virtual machine with two cores, with the count padded to 128 bytes and not. A write of 330
-//! words, a state, takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The
-//! tails differ more between runs than between the two layouts. With one write per millisecond,
-//! padding saves nothing relevant.
+//! The count does not have its own cache line. Padding it to 128 bytes was measured on a busy
+//! virtual machine with two cores, with a reader on the second core. A write of a state (330 words)
+//! has a median of 71 ns in most runs, and a write of 64 words takes 29 ns. The tails differ more
+//! between runs than between the two layouts. With one write per millisecond, padding saves nothing
+//! relevant.
 
 use core::fmt;
 
@@ -44,19 +47,20 @@ use std::sync::{
     atomic::{AtomicU64, Ordering},
 };
 
-/// A plain value that is stored in the slot as a fixed number of words.
+/// A plain value that the slot stores as a fixed number of words.
 ///
-/// `load` must accept everything that `store` wrote. Neither may allocate or block when one end of
-/// the slot is on the real-time thread.
+/// `load` must accept every result of `store`. If one end of the slot is on the real-time thread,
+/// neither may allocate or block.
 pub trait Words: Sized {
     /// Number of words.
     const WORDS: usize;
 
-    /// Writes the value into `words`, which has [`Self::WORDS`] elements. All of them are
-    /// transferred; elements that are not written keep the content of an earlier value.
+    /// Writes the value into `words`, which contains [`Self::WORDS`] elements. All elements are
+    /// transferred. Elements that this function does not write keep the content of an earlier
+    /// value.
     fn store(&self, words: &mut [u64]);
 
-    /// Returns the value of the words that one call of [`Self::store`] wrote.
+    /// Returns the value that [`Self::store`] wrote into `words`.
     fn load(words: &[u64]) -> Self;
 }
 
@@ -86,7 +90,7 @@ impl<const N: usize> Words for [f64; N] {
     }
 }
 
-/// Makes an empty slot. This call allocates; the two ends never do.
+/// Returns an empty slot. This function allocates; the two ends never do.
 pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
     let shared = Arc::new(Shared {
         count: AtomicU64::new(0),
@@ -112,9 +116,9 @@ pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
 
 #[derive(Debug)]
 struct Shared {
-    /// Twice the number of values written, plus one during a write.
+    /// Twice the number of written values, plus one during a write.
     count: AtomicU64,
-    /// Buffers for the values with even and with odd numbers; the first value has number 1.
+    /// Buffers for the values with even and odd numbers. The first value has number 1.
     buffers: [Box<[AtomicU64]>; 2],
 }
 
@@ -124,32 +128,32 @@ impl Shared {
     }
 }
 
-/// The only writing end of a slot.
+/// Writing end of a slot; there is only one.
 #[derive(Debug)]
 pub struct SlotWriter<T> {
     shared: Arc<Shared>,
-    /// Number of values written.
+    /// Number of written values.
     written: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn(&T)>,
 }
 
 impl<T: Words> SlotWriter<T> {
-    /// Replaces the value. Wait-free: one store per word and two for the count.
+    /// Replaces the value. Wait-free: stores each word once and the count twice.
     pub fn write(&mut self, value: &T) {
         value.store(&mut self.scratch);
         let number = self.written + 1;
-        // Release, like the last store of the previous write: a reader that sees this one sees
+        // Release, like the last store of the previous write: a reader that sees this store sees
         // every word of that value.
         self.shared.count.store(2 * number - 1, Ordering::Release);
         for (word, &new) in self.shared.buffer(number).iter().zip(&self.scratch) {
-            // Release, pairs with the Acquire load of this word: a reader that sees it also sees
-            // the odd count.
+            // Release, pairs with the Acquire load of this word: a reader that sees this store also
+            // sees the odd count.
             word.store(new, Ordering::Release);
         }
         self.written = number;
-        // Release, pairs with the reader's first load of the count: a reader that sees it sees
-        // every word of this value.
+        // Release, pairs with the reader's first load of the count: a reader that sees this store
+        // sees every word of this value.
         self.shared.count.store(2 * number, Ordering::Release);
     }
 }
@@ -159,13 +163,13 @@ impl<T: Words> SlotWriter<T> {
 pub enum Read<T> {
     /// A value newer than the last value that this reader returned.
     Newer(T),
-    /// Nothing newer.
+    /// There is no newer value.
     Same,
-    /// The value was replaced twice while it was read. The next attempt may succeed.
+    /// The value was replaced twice during the read. The next attempt may succeed.
     Torn,
 }
 
-/// A reading end of a slot. A clone remembers independently which values it has returned.
+/// Reading end of a slot. Each clone remembers on its own which value it has returned.
 pub struct SlotReader<T> {
     shared: Arc<Shared>,
     /// Number of the last value that this reader returned.
@@ -192,21 +196,23 @@ impl<T> Clone for SlotReader<T> {
 }
 
 impl<T: Words> SlotReader<T> {
-    /// Reads the newest value if this reader has not returned it yet. Makes one attempt; wait-free.
+    /// Returns the newest value if this reader has not returned it yet. Makes one attempt;
+    /// wait-free.
     pub fn read_newer(&mut self) -> Read<T> {
-        // Acquire, pairs with both of the writer's stores: a count comes with every word of the
-        // newest whole value.
+        // Acquire, pairs with both of the writer's stores: a reader that sees a count sees every
+        // word of the newest whole value.
         let newest = self.shared.count.load(Ordering::Acquire) / 2;
         if newest == self.seen {
             return Read::Same;
         }
         for (copy, word) in self.scratch.iter_mut().zip(self.shared.buffer(newest)) {
-            // Acquire, pairs with the Release store of this word: if it belongs to a later value,
-            // the load of the count below sees that value's odd count or a later one.
+            // Acquire, pairs with the Release store of this word. If the word belongs to a later
+            // value, the load of the count below sees the odd count of that value, or a later
+            // count.
             *copy = word.load(Ordering::Acquire);
         }
         // Value `newest + 2` is the next in this buffer. Relaxed: the loads above come first in
-        // program order and are Acquire, so this one cannot move before them.
+        // program order and are Acquire, so this load cannot move before them.
         if self.shared.count.load(Ordering::Relaxed) > 2 * newest + 2 {
             return Read::Torn;
         }
@@ -214,9 +220,9 @@ impl<T: Words> SlotReader<T> {
         Read::Newer(T::load(&self.scratch))
     }
 
-    /// Like [`Self::read_newer`], with up to `attempts` attempts while the copies are torn. Not for
-    /// the real-time thread: on one core, a reader of higher priority would waste all attempts
-    /// because the writer cannot run.
+    /// Like [`Self::read_newer`], but makes up to `attempts` attempts while the copies are torn. Do
+    /// not call it on the real-time thread: on one core, a reader of higher priority would waste
+    /// all attempts, because the writer cannot run.
     pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
         for _ in 1..attempts {
             match self.read_newer() {
@@ -256,7 +262,7 @@ mod tests {
         );
     }
 
-    /// While a writer is delayed in the middle of a write, a reader gets the previous value.
+    /// If a writer is delayed in the middle of a write, a reader gets the previous value.
     #[test]
     fn an_unfinished_write_leaves_the_value_before_readable() {
         let (mut writer, mut reader) = slot::<[u64; 1]>();
@@ -275,10 +281,10 @@ mod tests {
         }
     }
 
-    /// Every word of a value is the same number, so a mix of two values would be noticed.
+    /// Every word of a value is the same number, so that the test notices a mixture of two values.
     #[test]
     fn a_reader_beside_a_busy_writer_sees_whole_values_in_order() {
-        // Miri is a thousand times as slow.
+        // Miri is a thousand times slower.
         const VALUES: u64 = if cfg!(miri) { 200 } else { 200_000 };
         let (mut writer, mut reader) = slot::<[u64; 300]>();
         let writing = std::thread::spawn(move || {

@@ -1,9 +1,9 @@
 //! Flag that makes the thread send a wake-up for every state.
 //!
-//! A wake-up per state runs a task of the async world a thousand times a second. This uses about
-//! one percent of a processor, half of it on the thread. A program that only reads the newest state
-//! now and then does not need these wake-ups. Listeners to every state request them. Without a
-//! request the thread sends a wake-up for every fiftieth state.
+//! A wake-up for every state runs an async task a thousand times per second. This uses about one
+//! percent of a processor, half of it on the thread. A program that only reads the newest state
+//! occasionally does not need these wake-ups; listeners to every state request them. Without a
+//! request, the thread sends a wake-up for every fiftieth state.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -16,10 +16,10 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// True if any subscriber needs a wake-up per state; initially true. Clones share the flag.
+/// True if any subscriber needs a wake-up for every state; initially true. Clones share the flag.
 ///
-/// The subscribers are counted elsewhere, for example by a channel; the thread reads only this
-/// flag.
+/// The thread reads only this flag. The subscribers are counted elsewhere, for example by a
+/// channel.
 #[derive(Clone, Debug)]
 pub struct StateWakeups(Arc<AtomicBool>);
 
@@ -30,9 +30,10 @@ impl Default for StateWakeups {
 }
 
 impl StateWakeups {
-    /// Requests wake-ups, for a subscriber that was counted before this call.
+    /// Requests wake-ups. The subscriber must be counted before this call.
     pub fn request(&self) {
-        // Release, with the Acquire in `release`: the thread that undoes this sees the count.
+        // Release, pairs with the Acquire in `release`: a thread that undoes this request sees the
+        // count.
         self.0.swap(true, Ordering::AcqRel);
     }
 
@@ -50,8 +51,8 @@ impl StateWakeups {
 
     /// True if the thread must send a wake-up for every state.
     pub fn are_wanted(&self) -> bool {
-        // Relaxed: nothing else is read because of it. A request takes effect one state later at
-        // worst.
+        // Relaxed: no other memory is read depending on it. A request takes effect at most one
+        // state later.
         self.0.load(Ordering::Relaxed)
     }
 }

@@ -1,5 +1,5 @@
-//! The system calls that neither std nor socket2 provides safely: the only module of this crate
-//! with `unsafe`.
+//! System calls that neither std nor socket2 provides safely. No other module of this crate uses
+//! `unsafe`.
 //!
 //! | module | content |
 //! |---|---|
@@ -7,12 +7,12 @@
 //! | `linux` | available on Linux only: scheduling, locked memory, polling, the eventfd |
 //! | `portable` | the same requests on other systems: refused, and a pair of sockets for the eventfd |
 //!
-//! The other systems are for development with simulated robots. With `--cfg franka_portable`, Linux
+//! The other systems serve development with simulated robots. With `--cfg franka_portable`, Linux
 //! builds and tests their code.
 
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod linux;
-// Its tests run on Linux, too.
+// Its tests also run on Linux.
 #[cfg(any(test, not(target_os = "linux"), franka_portable))]
 #[cfg_attr(all(target_os = "linux", not(franka_portable)), allow(dead_code))]
 mod portable;
@@ -29,14 +29,14 @@ pub(crate) use linux::*;
 #[cfg(any(not(target_os = "linux"), franka_portable))]
 pub(crate) use portable::*;
 
-/// Blocks signals on the calling thread only, so that the kernel delivers the signals of the
-/// process to other threads. Signals that report a fault of the thread itself stay unblocked.
+/// Blocks signals on the calling thread only, so that the kernel delivers the process's signals to
+/// other threads. Signals that report a fault of the thread itself stay unblocked.
 pub(crate) fn block_signals() {
     // SAFETY: `sigset_t` is a C bit array, for which all zeros is a valid value. It is a set once
     // `sigfillset` has filled it below.
     let mut signals: libc::sigset_t = unsafe { core::mem::zeroed() };
     // SAFETY: `signals` is valid for reads and writes, and each signal's number is a constant of
-    // the platform's, so no call can fail.
+    // the platform, so no call can fail.
     unsafe {
         libc::sigfillset(&raw mut signals);
         for fault in FAULTS {
@@ -48,8 +48,8 @@ pub(crate) fn block_signals() {
     unsafe { libc::pthread_sigmask(libc::SIG_BLOCK, &raw const signals, core::ptr::null_mut()) };
 }
 
-/// Signals that the kernel raises for a fault of a thread itself. If they were blocked, they would
-/// end the process without the handler that prints the cause.
+/// Signals that the kernel raises for a fault of a thread itself. If they were blocked, a fault
+/// would end the process without the handler that prints the cause.
 const FAULTS: [libc::c_int; 7] = [
     libc::SIGABRT,
     libc::SIGBUS,
@@ -60,7 +60,7 @@ const FAULTS: [libc::c_int; 7] = [
     libc::SIGTRAP,
 ];
 
-/// Sleeps for a millisecond, by `poll`.
+/// Sleeps for a millisecond, with `poll`.
 pub(crate) fn sleep_a_millisecond() {
     // SAFETY: no descriptors are passed, so nothing is read or written through the null pointer.
     unsafe { libc::poll(core::ptr::null_mut(), 0, 1) };
@@ -70,8 +70,8 @@ pub(crate) fn sleep_a_millisecond() {
 pub(crate) fn error_text(errno: i32) -> String {
     let mut text = [0u8; 128];
     // SAFETY: the buffer is valid for writes of the length passed with it. This is the POSIX
-    // `strerror_r` (libc maps the symbol so), which writes at most that many bytes, the terminating
-    // zero included.
+    // `strerror_r`, to which libc maps the symbol. It writes at most that many bytes, including the
+    // terminating zero.
     let failed = unsafe { libc::strerror_r(errno, text.as_mut_ptr().cast(), text.len()) };
     match CStr::from_bytes_until_nul(&text) {
         Ok(text) if failed == 0 => text.to_string_lossy().into_owned(),
@@ -79,8 +79,8 @@ pub(crate) fn error_text(errno: i32) -> String {
     }
 }
 
-/// Calls `recvfrom` with flags. Returns the received length, at most the length of `buffer`, and
-/// the sender.
+/// Calls `recvfrom` with flags. Returns the received length, which is at most the length of
+/// `buffer`, and the sender.
 pub(crate) fn recv_from(
     socket: &Socket,
     buffer: &mut [u8],
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(error_text(99_999), "Unknown error 99999");
     }
 
-    /// Threads that have run the handler below.
+    /// Number of times that the handler below has run.
     static HANDLED: AtomicUsize = AtomicUsize::new(0);
 
     extern "C" fn handle(_: libc::c_int) {
@@ -126,8 +126,8 @@ mod tests {
                 if blocks {
                     block_signals();
                 }
-                // SAFETY: the number is a signal's. It goes to this very thread, and a handler that
-                // runs has run when the call returns.
+                // SAFETY: the number is a valid signal. It is sent to this thread, and a handler
+                // that runs has run when the call returns.
                 unsafe { libc::raise(libc::SIGUSR2) };
             });
             thread.join().expect("no panic");

@@ -1,5 +1,5 @@
-//! Joint motions of several robots: they begin together, and a fault of one robot brakes the
-//! others.
+//! Joint motions of several robots: they begin together, and a fault of one robot brakes the other
+//! robots.
 //!
 //! ```text
 //!  Coordinator::begin --> Round: one goal for each member
@@ -12,15 +12,15 @@
 //! ```
 //!
 //! A joint motion of a team is a *round*. The state of the newest round is one atomic word, which
-//! all members load once in each of their own cycles. A member that sees a fault writes it there,
-//! by a compare-and-exchange. No thread waits for another one, and no async runtime is involved. A
-//! member begins to brake within two of its cycles after the thread of the faulty member has seen
-//! the fault. The first fault of a round stays. A newer round hides no stop: a member that has not
-//! looked yet still sees the stop. A round that begins before all members have seen a stop of the
-//! team is stopped by it.
+//! every member loads once in each of its own cycles. A member that detects a fault writes it into
+//! the word with a compare-and-exchange. No thread waits for another thread, and no async runtime
+//! is involved. A member begins to brake within two of its cycles after the thread of the faulty
+//! member has detected the fault. Later faults do not replace the first fault of a round. A newer
+//! round hides no stop: a member that has not checked yet still sees the stop. If a round begins
+//! before all members have seen a stop of the team, that stop also stops the round.
 //!
-//! [`together`](crate::together) has common starts of independent motions. Here, a session moves
-//! from goal to goal.
+//! [`together`](crate::together) contains common starts of independent motions. In a team, a
+//! session moves from goal to goal.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -36,19 +36,19 @@ use std::sync::{
 use core::num::NonZeroU32;
 use core::time::Duration;
 
-/// The most members of a team.
+/// Largest number of members in a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Default silence of a member's robot after which the other members brake. A robot that misses as
-/// many commands stops on its own. Detection may take up to 20 ms longer, one wait of the member's
-/// thread.
+/// Default time for which a member's robot may be silent before the other members brake. A robot
+/// that misses commands for this long stops on its own. Detection may take up to 20 ms longer,
+/// which is one wait of the member's thread.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
 /// Time for which a goal of a joint motion waits for the goals of the other members, by the clock
-/// of its robot. The arm is held meanwhile, or continues its previous motion.
+/// of its robot. Meanwhile the driver holds the arm, or the previous motion continues.
 pub const START_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// One joint motion of a team, by its number.
+/// Number of one joint motion of a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Round(NonZeroU32);
 
@@ -62,12 +62,12 @@ impl Round {
     }
 }
 
-/// Reason why the members of a team brake. Members count from 0, in the order of the team.
+/// Reason why the members of a team brake. Members are counted from 0, in the order of the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TeamStop {
-    /// Caller: the team was asked to stop.
+    /// Caller: a program asked the team to stop.
     Requested,
     /// A member has a fault; its own motion reports the details.
     Member {
@@ -83,20 +83,20 @@ pub enum TeamStop {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum MemberFault {
-    /// The member's robot ended the session: by a reflex, a user stop, or another client.
+    /// The member's robot ended the session because of a reflex, a user stop, or another client.
     RobotStopped,
-    /// The member's robot was silent for too long: [`SILENCE`].
+    /// The member's robot was silent for longer than the team allows; by default [`SILENCE`].
     Silent,
-    /// A command of the member could not be sent, and the robot was asked to stop.
+    /// A command of the member could not be sent, so the robot was asked to stop.
     Failed,
-    /// The member's session was dropped: the control thread has ended, or panicked.
+    /// The member's session was dropped, because the control thread ended or panicked.
     Gone,
-    /// The member's goal was given up: the arm was displaced or too fast, its path is blocked, or
+    /// The member's goal was given up. The arm was displaced or too fast, its path is blocked, or
     /// its deadman or its stream of targets is silent.
     GivenUp,
     /// The member's arm did not reach its target.
     NotReached,
-    /// The member's motion was dropped, cancelled or stopped, or yielded to another goal.
+    /// The member's motion was dropped, cancelled or stopped, or another goal replaced it.
     TakenBack,
     /// The member's goal was refused.
     Refused,
@@ -138,44 +138,44 @@ pub struct Coordinator {
 /// Progress of a member that carries an object together with its team.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carrying {
-    /// The remaining distance of the member's reference, `[m]`, rotations included.
+    /// Distance that the member's reference still has to move, `[m]`, rotations included.
     pub remaining: f64,
-    /// True if the member's arm is held back from its reference.
+    /// True if the member's arm lags behind its reference.
     pub lags: bool,
 }
 
-/// The membership of one session in a team. Dropping it is a fault, unless the member has left
-/// before.
+/// Membership of one session in a team. Dropping it is a fault, unless the member has left the
+/// team.
 #[derive(Debug)]
 #[must_use = "dropping a member stops the team"]
 pub struct Member {
     shared: Arc<Shared>,
     number: u8,
-    /// The newest round that the member has joined, and the time of joining, `[ms]` of its robot's
+    /// Newest round that the member has joined, and the time when it joined, `[ms]` of its robot's
     /// clock.
     arrived: Option<(Round, u64)>,
-    /// The newest stop that the member has seen.
+    /// Newest stop that the member has seen.
     seen: Word,
     has_left: bool,
 }
 
-/// Decision whether a goal of a round may be pursued.
+/// Decision whether the member may pursue a goal of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passage {
-    /// Not yet: not all members have a goal of the round.
+    /// Not yet, because some members have no goal of the round.
     Waiting,
-    /// The goal may be pursued.
+    /// The member may pursue the goal.
     Open,
-    /// The goal may not be pursued, for this reason.
+    /// The member may not pursue the goal, for this reason.
     Stopped(TeamStop),
 }
 
-/// Returns a team of `N` members, to pass to sessions.
+/// Returns a team of `N` members, one for each session.
 pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
     team_tolerating(SILENCE)
 }
 
-/// Returns a team whose members' robots may be silent for `silence`.
+/// Returns a team whose members' robots may be silent for at most `silence`.
 pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Member; N]) {
     const { assert!(0 < N && N <= MEMBERS_MAX, "a team has one member to 254") };
     let shared = Arc::new(Shared {
@@ -198,13 +198,13 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
 }
 
 impl Coordinator {
-    /// Begins a round: the members wait until each of them has a goal of the round. An earlier
-    /// round that has not begun never does. Goals of an older round that are under way continue
-    /// until the member's goal of this round begins.
+    /// Begins a round: the members wait until each of them has a goal of the round. If an earlier
+    /// round has not begun to move yet, it never will. If goals of an older round are under way,
+    /// each continues until the member's goal of this round begins.
     ///
-    /// A round is stopped at once and never opens in two cases: not every member has seen an
-    /// earlier [stop](Self::stop), or the session of a member has ended. A member looks in each
-    /// cycle of its robot. While one does not, every round ends in this way.
+    /// The round stops at once, and never opens, if a member has not seen an earlier
+    /// [stop](Self::stop) or the session of a member has ended. A member checks in each cycle of
+    /// its robot. Until it has checked, every new round stops in this way.
     pub fn begin(&self) -> Round {
         let word = self.shared.change(|word| {
             let next = word.next_round();
@@ -215,31 +215,31 @@ impl Coordinator {
     }
 
     /// Brakes all members within two of their cycles. They hold where they stop, until they receive
-    /// other goals. Wait-free except for the members' own changes.
+    /// new goals. Wait-free except for changes by the members.
     pub fn stop(&self) {
         self.shared.stop(CALLER, Cause::Requested);
     }
 
     /// Notes that the goal of `member` in this round was refused or has ended with an error. Has no
-    /// effect on a round that has stopped, or is not the newest.
+    /// effect if the round has stopped or is not the newest.
     pub fn refuse(&self, round: Round, member: usize) {
         let cause = Cause::Member(MemberFault::Refused);
         self.shared.stop_round(round, member as u8, cause);
     }
 
-    /// Brakes all members, if this round is the newest. Has no effect on a stopped round.
+    /// Brakes all members if this round is the newest. Has no effect if it has stopped.
     pub fn take_back(&self, round: Round) {
         self.shared.stop_round(round, CALLER, Cause::Requested);
     }
 
-    /// Returns the reason why the newest round has stopped; `None` if it has not.
+    /// Returns the reason why the newest round has stopped; `None` if it has not stopped.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.shared.look().stop()
     }
 }
 
 impl Member {
-    /// Returns the number of the member, from 0.
+    /// Returns the number of the member, counted from 0.
     pub fn number(&self) -> usize {
         self.number.into()
     }
@@ -249,12 +249,12 @@ impl Member {
         self.shared.silence
     }
 
-    /// Returns whether the goal of `round` may be pursued at `now`, `[ms]` of the robot's clock.
-    /// The first call is the arrival. Never waits.
+    /// Returns whether the member may pursue the goal of `round` at `now`, `[ms]` of the robot's
+    /// clock. With the first call, the member arrives in the round. Never waits.
     pub fn pass(&mut self, round: Round, now: u64) -> Passage {
         let since = match self.arrived {
             Some((arrived, since)) if arrived == round => since,
-            // The call is too late or too early: the arrival in another round is kept.
+            // The round is not the newest or has stopped, so keep the arrival in another round.
             _ if !self.shared.look().is_going(round) => return self.passage(round),
             _ => {
                 self.arrived = Some((round, now));
@@ -285,8 +285,8 @@ impl Member {
         }
     }
 
-    /// Returns the stop of the team, once per stop. A motion that this member has cancelled itself
-    /// does not count: its next motion continues.
+    /// Returns each stop of the team once. Does not return a stop of a motion that this member
+    /// cancelled itself: its next motion continues.
     pub fn take_stop(&mut self) -> Option<TeamStop> {
         let (word, stop) = self.shared.stop_after(self.seen)?;
         self.seen = word;
@@ -300,12 +300,13 @@ impl Member {
         (stop != own).then_some(stop)
     }
 
-    /// Stops `round` for a fault of this member in it. Has no effect on a round that has stopped.
+    /// Stops `round` because of a fault of this member in it. Has no effect if the round has
+    /// stopped.
     ///
-    /// If an arm failed under way, this also stops a newer round that has begun in the meantime:
-    /// the others may still pursue their goals of `round`, unless this member has seen that it
-    /// stopped. A goal that was cancelled, was refused or has waited too long stops only its own
-    /// round.
+    /// If an arm failed during the motion, this also stops a newer round that has begun in the
+    /// meantime, because the other members may still pursue their goals of `round`. It does not if
+    /// this member has seen that `round` stopped. A goal that was cancelled, was refused or has
+    /// waited too long stops only its own round.
     pub fn give_up(&self, round: Round, fault: MemberFault) {
         let cause = Cause::Member(fault);
         match fault {
@@ -319,7 +320,7 @@ impl Member {
         }
     }
 
-    /// Stops all motions of the other members, in a round or not.
+    /// Stops all motions of the other members, whether they belong to a round or not.
     pub fn stop(&self, fault: MemberFault) {
         self.shared.stop(self.number, Cause::Member(fault));
     }
@@ -329,12 +330,12 @@ impl Member {
         let micrometres = (carrying.remaining.max(0.0) * 1e6) as u64;
         let way = micrometres.min(WAY_MAX);
         let word = Round::to_word(Some(round)) << 32 | u64::from(carrying.lags) << 31 | way;
-        // Each member has its own word, which is complete in itself.
+        // Each member has its own word, which needs no other memory.
         self.shared.carrying[usize::from(self.number)].store(word, Ordering::Relaxed);
     }
 
-    /// Returns the progress of the other members of `round` together: the longest remaining
-    /// distance, and true if one of them lags. Members that have not reported their progress do not
+    /// Returns the combined progress of the other members of `round`: the longest remaining
+    /// distance, and true if one of them lags. Members that have not reported progress do not
     /// count.
     pub fn others(&self, round: Round) -> Carrying {
         let mut all = Carrying::default();
@@ -348,7 +349,7 @@ impl Member {
         all
     }
 
-    /// Leaves the team, which continues as long as no round needs a goal of this member.
+    /// Leaves the team. The team continues as long as no round needs a goal of this member.
     pub fn leave(&mut self) {
         self.has_left = true;
         self.shared.note_seen(self.number, GONE);
@@ -367,13 +368,13 @@ impl Drop for Member {
 #[derive(Debug)]
 struct Shared {
     word: AtomicU64,
-    /// The word of the newest stopped round, if a newer round has replaced it. Written after the
-    /// word.
+    /// The word of the newest stopped round, if a newer round has replaced it. It is written after
+    /// the new word.
     stopped: AtomicU64,
-    /// The newest stop that each member has seen; [`GONE`] for a member that has left.
+    /// Newest stop that each member has seen; [`GONE`] for a member that has left.
     seen: Box<[AtomicU64]>,
-    /// [`Carrying`] of each member. The low 31 bits have the remaining distance in micrometres; the
-    /// next bit is set if the member lags. The upper half has the round.
+    /// [`Carrying`] of each member. The low 31 bits contain the remaining distance in micrometres;
+    /// the next bit is set if the member lags. The upper half contains the round.
     carrying: Box<[AtomicU64]>,
     members: u8,
     silence: Duration,
@@ -386,7 +387,7 @@ impl Shared {
         Word(self.word.load(Ordering::Relaxed))
     }
 
-    /// Stops the newest round, or the motions after it if it has stopped before.
+    /// Stops the newest round or, if it has already stopped, the motions after it.
     fn stop(&self, member: u8, cause: Cause) {
         self.change(|word| {
             let going = match word.stop() {
@@ -410,7 +411,7 @@ impl Shared {
         });
     }
 
-    /// Returns the newest stop and its word, unless it is `seen`.
+    /// Returns the newest stop and its word, unless it equals `seen`.
     fn stop_after(&self, seen: Word) -> Option<(Word, TeamStop)> {
         let word = self.look();
         if let Some(stop) = word.stop() {
@@ -425,17 +426,17 @@ impl Shared {
         self.seen[usize::from(member)].store(word.0, Ordering::Relaxed);
     }
 
-    /// True if all members that are left have seen this stop, which is the newest.
+    /// True if all remaining members have seen this stop, which is the newest.
     fn have_all_seen(&self, stop: Word) -> bool {
         let seen = |by: &AtomicU64| [stop, GONE].contains(&Word(by.load(Ordering::Relaxed)));
         self.seen.iter().all(seen)
     }
 
-    /// Keeps a stop for the members that look after a newer round has begun.
+    /// Keeps a stop for members that check only after a newer round has begun.
     fn keep(&self, stop: Word) {
         let order = Ordering::Relaxed;
         let mut kept = Word(self.stopped.load(order));
-        // Two threads may come here in another order than they changed the word.
+        // Two threads may arrive here in a different order than they changed the word.
         while stop.is_newer_than(kept) {
             match self.stopped.compare_exchange(kept.0, stop.0, order, order) {
                 Ok(_) => return,
@@ -444,12 +445,12 @@ impl Shared {
         }
     }
 
-    /// Replaces the word, as long as `to` has a change; returns the newest word.
+    /// Replaces the word while `to` returns a new word. Returns the newest word.
     fn change(&self, to: impl Fn(Word) -> Option<Word>) -> Word {
         let mut word = self.look();
         while let Some(next) = to(word) {
-            // Strong: the exchange fails only if the word was changed meanwhile. In a round each
-            // member changes the word at most twice; other changes are calls from outside.
+            // Strong: the exchange fails only if another thread has changed the word. Each member
+            // changes it at most twice in a round; other changes are calls from outside.
             let order = Ordering::Relaxed;
             match self.word.compare_exchange(word.0, next.0, order, order) {
                 Ok(_) => {
@@ -471,9 +472,9 @@ enum Cause {
     Member(MemberFault),
 }
 
-/// Bytes, from the lowest: members present; the member that stopped the round; the reason (0 while
-/// the round continues). The lowest bit of the next byte is set if the stop holds for the team and
-/// not only for the round. The upper half has the round.
+/// The bytes contain, from the lowest: number of members present, number of the member that stopped
+/// the round, reason (0 while the round continues). The lowest bit of the next byte is set if the
+/// stop holds for the team, and not only for the round. The upper half contains the round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Word(u64);
 
@@ -506,7 +507,8 @@ impl Word {
     }
 
     fn next_round(self) -> Self {
-        // After four thousand million rounds the numbers begin anew; 0 stands for no round.
+        // After four thousand million rounds, the numbers start again at 1. 0 means that there is
+        // no round.
         let round = ((self.0 >> 32) as u32).wrapping_add(1).max(1);
         Self(u64::from(round) << 32)
     }
@@ -525,7 +527,7 @@ impl Word {
         Self(self.0 | OF_THE_TEAM)
     }
 
-    /// Returns this word, stopped for the same cause as `other`.
+    /// Returns this word, stopped for the same reason as `other`.
     fn stopped_as(self, other: Self) -> Self {
         Self(self.0 | other.0 & (0xffff << 8 | OF_THE_TEAM))
     }
@@ -537,7 +539,7 @@ impl Word {
     fn stopped(self, member: u8, cause: Cause) -> Self {
         let cause = match cause {
             Cause::Requested => REQUESTED,
-            // Every fault is in the list, as the test checks.
+            // The list contains every fault, as a test checks.
             Cause::Member(fault) => FAULTS
                 .iter()
                 .position(|it| *it == fault)
@@ -547,16 +549,16 @@ impl Word {
     }
 }
 
-/// The longest distance that can be reported, `[um]`.
+/// Longest distance that can be reported, `[um]`.
 const WAY_MAX: u64 = (1 << 31) - 1;
 
-/// Bit of a stop of the whole team, not of a round.
+/// Bit for a stop of the whole team instead of a round.
 const OF_THE_TEAM: u64 = 1 << 24;
 
-/// Value for a member that has left, as the newest stop that it has seen: it counts for any stop.
+/// Newest stop of a member that has left, as if it had seen every stop.
 const GONE: Word = Word(u64::MAX);
 
-/// Value for the caller, in the place of a member.
+/// Number that stands for the caller instead of a member.
 const CALLER: u8 = u8::MAX;
 
 /// Value that stands for [`TeamStop::Requested`] in a word.

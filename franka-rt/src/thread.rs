@@ -1,4 +1,5 @@
-//! The only loop: one real-time thread per robot, from connect to drop, in motion or not.
+//! One real-time thread per robot, with the only loop of the crate. It runs from connect to drop,
+//! whether or not a motion runs.
 //!
 //! ```text
 //! receive (wait <= 20 ms) -> orders -> decode -> Core::on_state -> encode -> send
@@ -7,21 +8,21 @@
 //!                                  +-> nothing came: on_silence
 //! ```
 //!
-//! The command leaves before anything is published. After [`spawn`] has returned, the loop neither
+//! The command is sent before anything is published. After [`spawn`] has returned, the loop neither
 //! allocates, frees, locks nor logs. Its only system calls are `recvfrom`, `sendto`, the clock and
-//! the `write` to the eventfd. A value that must be freed, for example a program that has ended,
-//! leaves inside an event.
+//! the `write` to the eventfd. An event carries away each value that must be freed, for example a
+//! program that has ended.
 //!
-//! The cycle can be lent out: a thread of the program then runs it in this thread's place, through
-//! a [`Lease`], until that thread returns the cycle.
+//! The loop can lend its cycle through a [`Lease`]: a thread of the program then runs the cycle
+//! instead of this thread, until it returns the cycle.
 //!
-//! This loop is the only reader of the clock in the crate. It measures the silence of the robot,
-//! the interval between its states, and the duration of an answer. With the feature `cycle-phases`
-//! it also measures each part of an answer. Control itself uses the robot's clock, in the core.
+//! No other part of the crate reads the clock. The loop measures how long the robot is silent, the
+//! interval between states, and the time that an answer takes. With the feature `cycle-phases` it
+//! also measures each part of an answer. The control itself, in the core, uses the robot's clock.
 //!
-//! A panic in the core ends the loop and nothing else. The robot then misses its commands and stops
-//! on its own, the eventfd is notified, and [`Thread::join`] returns the panic's message. The
-//! process's panic hook prints it.
+//! A panic in the core ends only the loop. The robot then receives no commands and stops on its
+//! own. The eventfd is notified, and [`Thread::join`] returns the panic's message, which the
+//! process's panic hook prints.
 
 mod borrower;
 mod cycle;
@@ -71,14 +72,14 @@ use crate::stats::{Laps, Meter};
 pub struct ThreadConfig {
     /// Requests to the operating system.
     pub scheduling: Scheduling,
-    /// Number of orders, notices and records that can wait.
+    /// Lengths of the queues for orders, notices, records and states.
     pub capacity: Capacity,
 }
 
 /// Lengths of the queues, each at least 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
-    /// Number of orders into the thread.
+    /// Number of orders to the thread.
     pub orders: usize,
     /// Number of notices from the thread.
     pub notices: usize,
@@ -89,8 +90,8 @@ pub struct Capacity {
 }
 
 impl Default for Capacity {
-    /// Returns 16 orders (a motion needs two) and 64 notices (a motion causes a handful). 2048
-    /// records are two seconds, and 1024 states are one second.
+    /// Returns lengths for 16 orders (a motion needs two), 64 notices (a motion causes a handful),
+    /// 2048 records (two seconds) and 1024 states (one second).
     fn default() -> Self {
         Self {
             orders: 16,
@@ -101,7 +102,7 @@ impl Default for Capacity {
     }
 }
 
-/// Reason why a thread could not be started.
+/// Reason why a thread was not started.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartError {
@@ -114,15 +115,16 @@ pub enum StartError {
     System(#[from] io::Error),
 }
 
-/// Starts the thread of one robot, on the socket whose port `Connect` announces (see
+/// Starts the thread of one robot. It uses the socket whose port `Connect` announces (see
 /// [`crate::exchange::bind`]).
 ///
-/// States count only if they come from `robot`, and commands go to the sender of the newest state.
-/// Returns when the thread has made the requests of `config` to the operating system. This blocks
-/// for well under a millisecond.
+/// Only states from `robot` count, and commands are sent to the sender of the newest state. Returns
+/// once the thread has made the requests of `config` to the operating system. This blocks for well
+/// under a millisecond.
 ///
 /// # Errors
-/// [`StartError`]; the core is then dropped.
+/// Returns [`StartError`] if the system refuses a request or provides no thread; the core is then
+/// dropped.
 pub fn spawn<C: Core>(
     config: ThreadConfig,
     core: C,
@@ -182,7 +184,7 @@ pub fn spawn<C: Core>(
             Ok(granted)
         });
         let refused = answer.is_err();
-        // Cannot fail, because the caller only waits for the answer.
+        // This cannot fail, because the caller still waits for the answer.
         let _ = granted.send(answer);
         drop(granted);
         let lifetime = cycle.lifetime.clone();

@@ -10,16 +10,16 @@
 //!         a member is dropped, ends, is taken back, or has waited too long
 //! ```
 //!
-//! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers
+//! A motion *arrives* when its robot shows the motion's modes. From then on, its thread answers
 //! every state with a command that holds the arm, until the last member has arrived. A robot
 //! requires such commands at the start of a motion. Each thread checks once in each of its own
 //! cycles, so the motions begin within a millisecond of each other. The robots' clocks are not
-//! synchronised, so no start can be more accurate than the next state of each robot.
+//! synchronised, so a start cannot be more accurate.
 //!
-//! The state is one atomic word, which leaves `waiting` at most once. No thread ever waits for
-//! another one. Checking is a load; arriving and leaving are a compare-and-exchange, repeated only
-//! if another member changed the word in between. Each member changes the word at most twice, which
-//! bounds the repetitions.
+//! The state is one atomic word, which leaves `waiting` at most once. No thread waits for another
+//! thread. A check is a load. Arriving and leaving are a compare-and-exchange, repeated only if
+//! another member has changed the word in between. Each member changes the word at most twice,
+//! which limits the repetitions.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -34,7 +34,7 @@ use std::sync::{
 
 use core::time::Duration;
 
-/// A common start of motions of several robots, before its tickets are given out.
+/// A common start of several robots' motions, before its tickets are distributed.
 ///
 /// ```
 /// use franka_rt::together::StartBarrier;
@@ -58,22 +58,22 @@ impl Default for StartBarrier {
 }
 
 impl StartBarrier {
-    /// Default time for which a motion waits for the other motions: twice the time in which a robot
-    /// must show the modes of a motion.
+    /// Default time for which a motion waits for the other motions. It is twice the time in which a
+    /// robot must show the modes of a motion.
     pub const TIMEOUT: Duration = Duration::from_secs(10);
 
     /// Largest number of members.
     pub const MEMBERS_MAX: usize = u16::MAX as usize;
 
-    /// Returns a start that waits for [`Self::TIMEOUT`] at most.
+    /// Returns a start whose motions wait for at most [`Self::TIMEOUT`].
     pub fn new() -> Self {
         Self {
             timeout: Self::TIMEOUT,
         }
     }
 
-    /// Replaces the time for which a motion waits for the other motions, counted from its own
-    /// arrival by its robot's clock.
+    /// Replaces the time for which a motion waits for the other motions. It is counted from the
+    /// motion's arrival, by its robot's clock.
     pub fn timeout(mut self, timeout: Duration) -> Self {
         self.timeout = timeout;
         self
@@ -86,11 +86,11 @@ impl StartBarrier {
         core::array::from_fn(|member| StartTicket::new(shared.clone(), member))
     }
 
-    /// Returns one ticket for each of `members` motions, if their number is not known to the
-    /// compiler.
+    /// Returns one ticket for each of `members` motions. Use it if the number is not known at
+    /// compile time.
     ///
     /// # Panics
-    /// More than [`Self::MEMBERS_MAX`] members.
+    /// Panics if there are more than [`Self::MEMBERS_MAX`] members.
     pub fn tickets_for(self, members: usize) -> Vec<StartTicket> {
         assert!(members <= Self::MEMBERS_MAX, "so many members fit");
         let shared = self.shared(members);
@@ -107,8 +107,8 @@ impl StartBarrier {
     }
 }
 
-/// The part of one motion in a common start. Dropping the ticket before the start ends the wait of
-/// the other motions with an error.
+/// Ticket of one motion for a common start. If it is dropped before the start, the wait of the
+/// other motions ends with an error.
 #[derive(Debug)]
 #[must_use = "dropping a ticket ends the common start"]
 pub struct StartTicket {
@@ -121,29 +121,29 @@ pub struct StartTicket {
 #[derive(Clone, Copy, Debug)]
 enum MemberState {
     Outside,
-    /// The member has waited since this time of its robot, `[ms]`.
+    /// The member has waited since this time, `[ms]` of its robot's clock.
     Arrived(u64),
     /// The wait of the member is over, with this result.
     Decided(Gate),
 }
 
-/// Gate of a motion in a common start: whether the motion may begin.
+/// Decision whether a motion of a common start may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gate {
     /// The motion may not begin yet.
     Closed,
-    /// The motion may begin now; the gate stays open.
+    /// The motion may begin. This decision is final.
     Open,
-    /// The motion will not begin, for this reason; the gate stays broken.
+    /// The motion will not begin, for this reason. This decision is final.
     Broken(StartFault),
 }
 
-/// Caller: the common start failed. Members count from 0, in the order of their tickets.
+/// Caller: the common start failed. Members are counted from 0, in the order of their tickets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartFault {
-    /// A ticket, or the motion that had it, was dropped before the motion was awaited. Or the
-    /// motion was refused before a request to its robot.
+    /// A ticket was dropped, or its motion was dropped before it was awaited, or its motion was
+    /// refused before anything was sent to the robot.
     #[error("member {member} of the common start was dropped or refused before the start")]
     Dropped {
         /// Number of the member.
@@ -155,8 +155,8 @@ pub enum StartFault {
         /// Number of the member.
         member: usize,
     },
-    /// A motion ended before the start: its robot refused it, stopped, or fell silent. The motion's
-    /// own error has the cause.
+    /// A motion ended before the start, because its robot refused it, stopped, or fell silent. The
+    /// motion's own error reports the cause.
     #[error("the motion of member {member} ended before the common start")]
     Ended {
         /// Number of the member.
@@ -173,13 +173,13 @@ pub enum StartFault {
         present: usize,
         /// Number of members.
         members: usize,
-        /// Time for which the first member to give up had waited.
+        /// Time for which the member that gave up first had waited.
         waited: Duration,
     },
 }
 
 impl StartFault {
-    /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of this error's row in the error chapter of the book, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Dropped { .. } => "start-dropped",
@@ -208,12 +208,12 @@ impl StartTicket {
         }
     }
 
-    /// Returns the number of the member, from 0 in the order of the tickets.
+    /// Returns the number of the member, counted from 0 in the order of the tickets.
     pub fn member(&self) -> usize {
         self.member.into()
     }
 
-    /// Returns the reason why the common start has failed; `None` if it has not.
+    /// Returns the reason why the common start has failed; `None` if it has not failed.
     pub fn fault(&self) -> Option<StartFault> {
         match self.shared.gate() {
             Gate::Broken(fault) => Some(fault),
@@ -221,8 +221,8 @@ impl StartTicket {
         }
     }
 
-    /// Returns whether the motion may begin at `now`, `[ms]` of its robot's clock. The first call
-    /// is the arrival. Never waits.
+    /// Returns whether the motion may begin at `now`, `[ms]` of its robot's clock. With the first
+    /// call, the motion arrives. Never waits.
     pub fn pass(&mut self, now: u64) -> Gate {
         let since = match self.state {
             MemberState::Decided(gate) => return gate,
@@ -250,7 +250,7 @@ impl StartTicket {
         !matches!(self.state, MemberState::Decided(_))
     }
 
-    /// Returns the reason why the common start failed for this motion; `None` if it did not.
+    /// Returns the reason why the common start failed for this motion; `None` if it did not fail.
     pub fn refusal(&self) -> Option<StartFault> {
         match self.state {
             MemberState::Decided(Gate::Broken(fault)) => Some(fault),
@@ -258,8 +258,8 @@ impl StartTicket {
         }
     }
 
-    /// Removes the motion from the common start: the motion continues alone. Ends the wait of the
-    /// other motions with an error.
+    /// Removes the motion from the common start, so that it continues alone. The wait of the other
+    /// motions ends with an error.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
@@ -267,7 +267,7 @@ impl StartTicket {
         }
     }
 
-    /// Notes that the motion has ended. If the other motions still wait, ends their wait with an
+    /// Notes that the motion has ended. If the other motions still wait, their wait ends with an
     /// error.
     pub fn end(&mut self) {
         self.leave(Cause::Ended);
@@ -294,12 +294,12 @@ struct Shared {
     timeout: Duration,
 }
 
-/// The content of the atomic word.
+/// Content of the atomic word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Word {
-    /// Waiting with `present` members arrived; open once all members have arrived.
+    /// Waiting; `present` members have arrived. Open once all members have arrived.
     Waiting { present: u16 },
-    /// `member` has left, when `present` members had arrived.
+    /// `member` has left when `present` members had arrived.
     Broken {
         present: u16,
         member: u16,
@@ -350,14 +350,14 @@ impl Shared {
         });
     }
 
-    /// Replaces the word unless it is open or broken, because both are final.
+    /// Replaces the word unless it is open or broken, which are final.
     fn change(&self, to: impl Fn(u16) -> Word) {
         let mut word = self.word.load(Ordering::Relaxed);
         while let Word::Waiting { present } = Word::from(word)
             && present < self.members
         {
-            // Strong: the exchange fails only if another member has changed the word, which each
-            // does at most twice.
+            // Strong: the exchange fails only if another member has changed the word. Each member
+            // does so at most twice.
             match self.word.compare_exchange(
                 word,
                 to(present).into(),
@@ -371,8 +371,8 @@ impl Shared {
     }
 }
 
-/// The lowest 16 bits are the number of members present. The next 16 are the number of the member
-/// that left. The next byte is the reason, 0 if no member has left.
+/// The lowest 16 bits contain the number of members present, the next 16 bits the number of the
+/// member that left. The next byte contains the reason; it is 0 if no member has left.
 impl From<Word> for u64 {
     fn from(word: Word) -> Self {
         match word {

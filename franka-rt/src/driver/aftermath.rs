@@ -1,4 +1,4 @@
-//! Work of the driver once a command has left.
+//! Work that the driver does after a command has left.
 
 use franka_proto::RobotState;
 
@@ -7,9 +7,8 @@ use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
-    /// Does the rest of the work for a state, once [`Self::on_state`] has read the state and the
-    /// command has left (or none was due). `sent` has the known times of the command, if a command
-    /// left.
+    /// Does the rest of the work for a state. Call it after [`Self::on_state`], once the command
+    /// has left or if none was due. `sent` contains the known times of the command, if one left.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
         self.references.write(&self.record);
         self.record.late = arrival.late;
@@ -33,7 +32,7 @@ impl Driver {
     }
 
     /// Computes the parts of the next answer that do not need the next state: the program's next
-    /// goal, plan and reference. Call it once everything that waits for this cycle is done.
+    /// goal, plan and reference. Call it after all other work of the cycle.
     pub fn prepare(&mut self) {
         if let Some(motion) = &mut self.motion
             && motion.phase == Phase::Running
@@ -42,8 +41,8 @@ impl Driver {
         }
     }
 
-    /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
-    /// counts of the current motion; `None` without a running motion.
+    /// Notes the times of a cycle whose command has left, once all times are known. Returns the
+    /// counts of the running motion; `None` if no motion runs.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         let motion = self.motion.as_ref().filter(|motion| motion.has_begun())?;
         self.statistics.note_cycle(cycle);
@@ -51,7 +50,7 @@ impl Driver {
         Some(&self.statistics)
     }
 
-    /// Returns the counts of the running motion; `None` without a running motion.
+    /// Returns the counts of the running motion; `None` if no motion runs.
     pub fn statistics(&self) -> Option<&MotionStatistics> {
         let begun = self.motion.as_ref().is_some_and(Execution::has_begun);
         begun.then_some(&self.statistics)

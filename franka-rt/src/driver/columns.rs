@@ -1,19 +1,20 @@
-//! The table of the columns of a cycle: names, units and shapes, for every recording.
+//! Table of the columns of a cycle: names, units and shapes, for all recordings.
 
 use franka_proto::{RobotError, RobotMode, RobotState};
 
 use super::record::Record;
 use crate::session::Guard;
 
-/// One quantity of every cycle, of the state or of the control thread's record.
+/// One quantity of a cycle, from the state or from the control thread's record.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Column {
-    /// Name of the column, in most cases the name of the field of the state or record.
+    /// Name of the column, usually the name of the field in the state or the record.
     pub name: &'static str,
     /// Unit of the column, or the meaning of its numbers if they have no unit.
     pub unit: &'static str,
-    /// Shape of the column in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
+    /// Shape of the column in one cycle: empty for one number, `[4, 4]` for a pose in row-major
+    /// order.
     pub shape: &'static [usize],
     /// Meaning of the column's numbers.
     pub kind: ColumnKind,
@@ -24,17 +25,17 @@ pub struct Column {
 /// Meaning of the numbers of a column.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnKind {
-    /// A measured or computed quantity.
+    /// Measured or computed quantity.
     Float,
-    /// A whole number.
+    /// Whole number.
     Count,
-    /// A truth value, 0 or 1.
+    /// Boolean, 0 or 1.
     Flag,
-    /// An index into this list of names; no name if it is beyond the end.
+    /// Index into this list of names; no name if it is beyond the end.
     Name(&'static [&'static str]),
 }
 
-/// Source of a column: appends its numbers in a cycle to a row.
+/// Source of a column: a function that appends the column's numbers in one cycle to a row.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnSource {
     /// The column is computed from the robot's state.
@@ -44,18 +45,18 @@ pub enum ColumnSource {
 }
 
 impl Column {
-    /// Returns all columns. The time of a cycle, the `message_id` of its state, is not among them,
-    /// because every recording has it anyway.
+    /// Returns all columns, except the time of the cycle (the `message_id` of its state), which
+    /// every recording stores anyway.
     pub fn all() -> &'static [Self] {
         &COLUMNS
     }
 
-    /// Returns the column of this name.
+    /// Returns the column with this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
     }
 
-    /// Returns how many numbers the column has in one cycle.
+    /// Returns the number of numbers in one cycle of the column.
     pub fn width(&self) -> usize {
         self.shape.iter().product()
     }
@@ -98,7 +99,7 @@ macro_rules! vector {
     };
 }
 
-/// Column of a matrix field of the state, column-major there and row-major here.
+/// Column of a matrix field of the state, which is column-major. The column is row-major.
 macro_rules! matrix {
     ($name:ident, $size:literal, $unit:literal) => {
         column(
@@ -114,7 +115,7 @@ macro_rules! matrix {
     };
 }
 
-/// Column of a single number of the state.
+/// Column of a scalar field of the state.
 macro_rules! number {
     ($name:ident, $unit:literal) => {
         column(
@@ -142,14 +143,14 @@ macro_rules! accelerometers {
     };
 }
 
-/// A column of the control thread's record.
+/// Column of the control thread's record.
 macro_rules! cycle {
     ($name:expr, $shape:expr, $unit:expr, $kind:expr, $read:expr) => {
         column($name, $shape, $unit, $kind, ColumnSource::Record($read))
     };
 }
 
-/// Column of the reference, which is zero throughout outside target control.
+/// Column of the reference, which is zero outside target control.
 macro_rules! reference {
     ($name:ident, $unit:literal) => {
         cycle!(
@@ -317,7 +318,7 @@ static COLUMNS: [Column; 77] = [
     binds!("speed_cap_binds", SpeedCap),
 ];
 
-/// Names of [`RobotMode`], by their bytes.
+/// Names of [`RobotMode`], in the order of their bytes.
 const MODES: [&str; RobotMode::ALL.len()] = [
     "other",
     "idle",
@@ -328,7 +329,7 @@ const MODES: [&str; RobotMode::ALL.len()] = [
     "automatic_error_recovery",
 ];
 
-/// Names of [`Activity`](super::Activity), in the order of their declaration.
+/// Names of [`Activity`](super::Activity), in the order of its variants.
 const ACTIVITIES: [&str; 6] = [
     "watching",
     "armed",
@@ -343,7 +344,7 @@ mod tests {
     use super::*;
     use crate::driver::Activity;
 
-    /// A name without the underscores, in one case.
+    /// Returns a name in lower case, without underscores.
     fn plain(name: &str) -> String {
         name.replace('_', "").to_lowercase()
     }

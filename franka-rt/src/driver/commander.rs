@@ -2,25 +2,25 @@
 
 use super::Program;
 
-/// Source of the commands of a motion. The source decides the meaning of the commands, and which
-/// settings exist.
+/// Source of the commands of a motion. It determines what the commands mean, and which settings
+/// exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Commander {
-    /// Target control: this driver computes commands on the way to goals.
+    /// Target control: this driver computes the commands that move the arm to goals.
     Goals,
     /// A control function of the user.
     Function,
-    /// A thread of the user that reads states and writes commands.
+    /// A thread of the user, which reads states and writes commands.
     Active,
-    /// Sparse joint targets between which the robot plans.
+    /// Sparse joint targets. The robot plans the motion between them.
     Asynchronous,
 }
 
 impl Commander {
-    /// True if each command is the position one cycle later, so that differences of commands are
-    /// the intended motion of the joints. False for targets between which the robot plans: only new
-    /// targets are sent.
+    /// True if each command is the position one cycle later, so that differences of commands show
+    /// the intended motion of the joints. False for sparse targets, which are only sent when they
+    /// are new.
     pub fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }

@@ -48,7 +48,7 @@ impl Default for LinkTimeout {
     }
 }
 
-/// Misuse: the timeout is out of range.
+/// Caller: the timeout is out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the link timeout is {got:?}, expected {:?} to {:?}",

@@ -1,8 +1,8 @@
-//! The state machine that returns the command for each robot state. The real-time thread runs it.
+//! State machine that returns the command for each robot state. The real-time thread runs it.
 //!
-//! Late states are answered like others ([`stats::arrivals`](crate::stats)), unless a newer state
-//! has overtaken them (`exchange`). Lost states are counted in [`Driver::on_state`]. A silent robot
-//! ends the motion in [`Driver::on_silence`].
+//! Late states are answered like other states ([`stats`](crate::stats) defines lateness), but
+//! `exchange` drops a state if a newer state has overtaken it. [`Driver::on_state`] counts lost
+//! states. [`Driver::on_silence`] ends the motion of a silent robot.
 //!
 //! ```text
 //!              Order::Arm            first state in the motion's modes
@@ -14,22 +14,22 @@
 //!              the state leaves the motion's modes, or the link falls silent
 //! ```
 //!
-//! A motion with a ticket for a common start of several robots (see [`together`](crate::together))
-//! first holds the arm until all robots are ready. If one robot withdraws, the motion finishes
-//! without its program.
+//! If a motion is part of a common start of several robots (see [`together`](crate::together)), the
+//! driver first holds the arm until all robots are ready. If one robot withdraws, the motion
+//! finishes without its program.
 //!
-//! Two phases are not in the picture. In `Silent`, no command is sent until the robot leaves the
-//! motion's modes: the program failed, a command was not finite, or a program that does not brake
-//! was abandoned (`Order::Abandon`). In `Unwanted`, an armed motion was abandoned; it ends when the
-//! states show that the robot did not begin it.
+//! The diagram omits two phases. In `Silent`, no command is sent until the robot leaves the
+//! motion's modes. The reason is that the program failed, that a command was not finite, or that a
+//! program that does not brake was abandoned (`Order::Abandon`). In `Unwanted`, an armed motion was
+//! abandoned. It ends when the states show that the robot did not begin it.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]. Outputs are
-//! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. Work that
-//! can wait until the command has left is done in [`Driver::after_send`], once for each state, and
-//! [`Driver::note_cycle`]. Work that needs no new state is done in [`Driver::prepare`]. The driver
-//! has no clock, socket, allocation or log: the thread, or a lockstep test, supplies the time and
-//! carries out the effects. A program that has ended is returned inside an [`Event`], so that its
-//! memory is freed elsewhere.
+//! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`].
+//! [`Driver::after_send`], called once for each state, and [`Driver::note_cycle`] do the work that
+//! can wait until the command has left. [`Driver::prepare`] does the work that needs no new state.
+//! The driver has no clock and no socket, and it neither allocates nor logs. The thread or a
+//! lockstep test supplies the time and carries out the effects. An [`Event`] returns a program that
+//! has ended, so that its memory is freed elsewhere.
 
 mod aftermath;
 mod columns;
@@ -71,20 +71,20 @@ use event::EventQueue;
 use motion::{Execution, Phase, UNWANTED_STATES};
 use program::CycleOutcome;
 
-/// The pure core of one robot's control thread.
+/// State machine of one robot's control thread, without I/O.
 #[derive(Debug)]
 pub struct Driver {
     version: Version,
-    /// The motion under way, in its phase; `None` while the driver watches.
+    /// The motion under way, and its phase; `None` while the driver watches.
     motion: Option<Execution>,
     /// `message_id` of the newest state; `None` before the first state.
     newest: Option<u64>,
-    /// The silence at which the link was given up, until a state revives it.
+    /// Length of the silence when the link was given up; `None` again after the next state.
     lost: Option<Duration>,
     link_timeout: LinkTimeout,
-    /// Number of states that were skipped for the next state.
+    /// Number of older states that were skipped in favour of the next state.
     skipped: u64,
-    /// Counts of the present motion, from its arming.
+    /// Counts of the current motion since it was armed.
     statistics: MotionStatistics,
     record: Record,
     references: ReferenceWriter,
@@ -111,7 +111,7 @@ impl Driver {
         }
     }
 
-    /// Replaces the silence after which the link counts as lost, [`LINK_TIMEOUT`] by default.
+    /// Replaces the silence after which the link counts as lost. The default is [`LINK_TIMEOUT`].
     #[must_use]
     pub fn with_link_timeout(mut self, timeout: LinkTimeout) -> Self {
         self.link_timeout = timeout;
@@ -133,18 +133,18 @@ impl Driver {
         &self.record
     }
 
-    /// Returns a reader of the newest reference, for another thread.
+    /// Returns a reader for the newest reference, for another thread.
     pub fn references(&self) -> ReferenceReader {
         self.reference_reader.clone()
     }
 
-    /// Returns and removes the oldest event.
+    /// Removes and returns the oldest event.
     pub fn take_event(&mut self) -> Option<Event> {
         self.events.pop()
     }
 
-    /// Carries out an order. An order that does not fit the phase is answered with an event, never
-    /// ignored.
+    /// Carries out an order. If an order does not fit the phase, the driver answers it with an
+    /// event instead of ignoring it.
     pub fn on_order(&mut self, order: Order) {
         match order {
             Order::Arm {
@@ -179,8 +179,8 @@ impl Driver {
                     }
                 }
             }
-            // Otherwise the motion has ended and has reported its end, or another motion is under
-            // way.
+            // In other cases the motion has ended and has reported its end, or another motion is
+            // under way.
             Order::Disarm { motion } => {
                 let armed = |it: &mut Execution| it.id == motion && it.phase == Phase::Armed;
                 if let Some(armed) = self.motion.take_if(armed) {
@@ -195,17 +195,17 @@ impl Driver {
         }
     }
 
-    /// Reports how many older states were skipped for the next one.
+    /// Notes the number of older states that were skipped in favour of the next state.
     pub fn on_skipped(&mut self, states: u64) {
         self.skipped = states;
     }
 
-    /// Processes a newly received state and returns the command that answers it, if one is due.
+    /// Processes a new state and returns the command that answers it, if one is due.
     ///
-    /// The work is bounded: at most one step of the program. A state that is not newer than the
-    /// newest state so far is ignored, because the robot numbers its cycles strictly upwards. A
-    /// motion does not answer a state with a non-finite value that its program needs. The robot
-    /// bridges the gap, or stops on its own if more such states follow.
+    /// The work is bounded by one step of the program. A state that is not newer than the newest
+    /// state is ignored, because the robot numbers its cycles in increasing order. If a value that
+    /// the program needs is not finite, the motion does not answer the state. The robot bridges the
+    /// gap, or stops on its own if more such states follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -227,7 +227,7 @@ impl Driver {
                     motion: motion.id,
                     time: state.message_id,
                 });
-                // States lost before the motion's first one are not counted.
+                // Do not count states that were lost before the motion's first state.
                 self.statistics.note_state(state, 0, 0);
                 self.run(state)
             }
@@ -277,12 +277,13 @@ impl Driver {
         }
     }
 
-    /// Returns a command for the newest state of a motion under [`Program::Active`], to be sent at
-    /// once. The last command is `finished`; the driver then repeats it with every state until the
-    /// robot has left the motion's modes.
+    /// Returns the command to send at once for the newest state of a motion under
+    /// [`Program::Active`]. For the last command, `finished` is true. The driver then repeats this
+    /// command with every state until the robot has left the motion's modes.
     ///
     /// # Errors
-    /// [`WriteError`]; send nothing then. The motion continues.
+    /// Returns [`WriteError`] if the motion does not accept the command. Then send nothing; the
+    /// motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
         let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);
@@ -303,7 +304,7 @@ impl Driver {
     }
 
     /// Reports that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
-    /// the other robots of a team brake. At the link timeout a motion ends with
+    /// the other robots of a team brake. After the link timeout, the motion ends with
     /// [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
@@ -353,7 +354,7 @@ impl Driver {
         }
     }
 
-    /// Sends no more commands to the motion, because its program cannot continue.
+    /// Stops sending commands to the motion, because its program cannot continue.
     fn fail(&mut self, failure: Failure) -> Option<RobotCommand> {
         let motion = self.motion.as_mut()?;
         motion.program.fail_team(MemberFault::Failed);
@@ -365,7 +366,7 @@ impl Driver {
         None
     }
 
-    /// Ends the motion with the state that shows its end. That state needs no answer, so the log
+    /// Ends the motion with the state that shows the end. This state needs no answer, so the log
     /// notes it at once.
     fn end_at(&mut self, state: &RobotState, ending: Ending) -> Option<RobotCommand> {
         self.motion.as_mut()?.log.note_state(state);

@@ -1,4 +1,4 @@
-//! The motion that the driver runs, and its phase.
+//! The motion that the driver runs, with its phase.
 
 use std::sync::Arc;
 
@@ -13,25 +13,25 @@ use crate::together::{Gate, StartTicket};
 /// Phase of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
-    /// The motion is requested; the robot has not shown its modes yet.
+    /// The motion is requested, and the robot has not shown its modes yet.
     Armed,
-    /// The motion was abandoned while it was armed. The number counts the states in a row since
-    /// then that show no motion. The robot may still begin the motion. Nothing is sent.
+    /// The motion was abandoned while it was armed, but the robot may still begin it. Nothing is
+    /// sent. The number counts the consecutive states since then that show no motion.
     Unwanted(u32),
     Running,
     /// The finishing command is repeated until the robot leaves the motion's modes.
     Finishing,
-    /// The program has failed, or was abandoned: nothing is sent until the robot leaves the
-    /// motion's modes.
+    /// The program has failed or was abandoned. Nothing is sent until the robot leaves the motion's
+    /// modes.
     Silent,
 }
 
-/// Number of states in a row without a motion, after a stop request, from which the robot counts as
-/// not beginning the motion any more. A reply and a state that cross on the network are less than
-/// that apart.
+/// Number of consecutive states without a motion, after a stop request, after which the robot can
+/// no longer begin the motion. If a reply and a state cross on the network, they are fewer states
+/// apart.
 pub(super) const UNWANTED_STATES: u32 = 20;
 
-/// State of a motion from arming to its end.
+/// A motion from arming to its end.
 #[derive(Debug)]
 pub(super) struct Execution {
     pub(super) id: MotionId,
@@ -41,13 +41,13 @@ pub(super) struct Execution {
     pub(super) ticket: Option<StartTicket>,
     pub(super) times: Arc<MotionTimes>,
     pub(super) observer: Option<Observer>,
-    /// The newest command that was sent; zeros before the first command.
+    /// Newest command that was sent; zeros before the first command.
     pub(super) sent: RobotCommand,
     pub(super) phase: Phase,
 }
 
 impl Execution {
-    /// Returns whether the motion may begin, or has begun, at this state.
+    /// Returns whether the motion may begin with this state, or has begun.
     pub(super) fn gate(&mut self, state: &RobotState) -> Gate {
         let Some(ticket) = &mut self.ticket else {
             return Gate::Open;
@@ -58,7 +58,7 @@ impl Execution {
         ticket.pass(state.message_id)
     }
 
-    /// True if the robot has begun the motion, and has not left it.
+    /// True if the robot has begun the motion and has not left it.
     pub(super) fn has_begun(&self) -> bool {
         matches!(
             self.phase,
@@ -66,8 +66,8 @@ impl Execution {
         )
     }
 
-    /// Gives the motion up: it ends once the robot has left it. A program that brakes without the
-    /// robot continues until then.
+    /// Gives the motion up, so that it ends once the robot has left it. A program that brakes
+    /// without the robot's help continues until then.
     pub(super) fn abandon(&mut self) {
         self.phase = match self.phase {
             Phase::Armed => Phase::Unwanted(0),
@@ -77,14 +77,14 @@ impl Execution {
         self.leave();
     }
 
-    /// Leaves the common start, so that the other robots do not wait.
+    /// Leaves the common start, so that the other robots stop waiting.
     pub(super) fn leave(&mut self) {
         if let Some(ticket) = &mut self.ticket {
             ticket.end();
         }
     }
 
-    /// Brakes the other members of the motion's team if the motion ends otherwise than asked.
+    /// Brakes the other members of the motion's team, unless the motion ends as requested.
     pub(super) fn tell_team(&mut self, ending: Ending) {
         match ending {
             Ending::Finished => {}

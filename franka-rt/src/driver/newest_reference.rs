@@ -6,12 +6,12 @@ use super::Record;
 use crate::session::{Bindings, GoalId};
 use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 
-/// Reference of target control, and the progress of its goal, in one cycle.
+/// Reference of target control and progress of its goal, in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceState {
     /// `message_id` of the state that the reference answers, `[ms]` of the robot's clock.
     pub time: u64,
-    /// The goal that is followed.
+    /// The goal that the reference follows.
     pub goal: GoalId,
     /// Reference joint positions, `[rad]`.
     pub q: [f64; 7],
@@ -23,14 +23,14 @@ pub struct ReferenceState {
     pub elapsed: Duration,
     /// See [`Record::remaining`].
     pub remaining: Duration,
-    /// The guards that limited the command of this cycle or of a recent one. The set covers at
-    /// least the last [`Self::GUARDS_MS`], and at most twice that.
+    /// Guards that limited the command of this cycle or of a recent cycle. The set covers at least
+    /// the last [`Self::GUARDS_MS`], and at most twice that.
     pub guards: Bindings,
 }
 
 impl ReferenceState {
-    /// Time for which a guard that has limited a command stays listed, `[ms]` of the robot's clock.
-    /// Readers look a few dozen times per second.
+    /// Time for which a guard remains listed after it has limited a command, `[ms]` of the robot's
+    /// clock. Readers poll a few dozen times per second.
     pub const GUARDS_MS: u64 = 100;
 
     fn of(record: &Record, guards: Bindings) -> Self {
@@ -51,7 +51,7 @@ impl ReferenceState {
 #[derive(Debug)]
 pub(super) struct ReferenceWriter {
     newest: SlotWriter<ReferenceState>,
-    /// The guards that have limited a command since `begin`, and the guards of the period before.
+    /// The guards that limited a command since `begin`, and in the period before `begin`.
     guards: [Bindings; 2],
     begin: u64,
 }
@@ -117,8 +117,7 @@ impl Words for ReferenceState {
     }
 }
 
-/// Attempts to read. One attempt fails if this thread is delayed until the value was replaced
-/// twice.
+/// Number of attempts to read. An attempt fails if the value is replaced twice while it reads.
 const ATTEMPTS: usize = 16;
 
 /// Reads the newest reference. Clones read independently of each other.
@@ -129,7 +128,8 @@ impl ReferenceReader {
     /// Returns the reference of the newest cycle; `None` if target control did not answer that
     /// cycle.
     pub fn newest(&self) -> Option<ReferenceState> {
-        // A clone has read nothing yet, and so finds the present value whether or not it is new.
+        // A clone has not returned any value yet, so it finds the current value even if that is not
+        // new.
         match self.0.clone().read_retry(ATTEMPTS) {
             Read::Newer(newest) => Some(newest).filter(|newest| newest.goal != GoalId::default()),
             Read::Same | Read::Torn => None,
@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(at(begin + 199, &[]), both);
         assert_eq!(at(begin + 200, &[]), Bindings::of(&[Guard::Clearance]));
         assert!(at(begin + 300, &[]).is_empty());
-        // A guard that bound a command before a gap in the states no longer counts.
+        // A guard that limited a command before a gap in the states no longer counts.
         at(begin + 399, &[Guard::Leash]);
         assert!(at(begin + 700, &[]).is_empty());
     }

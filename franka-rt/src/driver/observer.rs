@@ -1,4 +1,4 @@
-//! A function of the user that sees every cycle of a motion.
+//! A function of the user that observes every cycle of a motion.
 
 use core::any::Any;
 use core::fmt;
@@ -11,14 +11,14 @@ use crate::panic;
 
 type Function = dyn FnMut(&Record, &RobotState) + Send;
 
-/// Sees every cycle of a motion on the control thread, once the command has left. Its arguments are
-/// the record of the cycle and the state.
+/// Observes every cycle of a motion on the control thread, after the command has left. The function
+/// receives the record of the cycle and the state.
 ///
-/// The function has some 300 us and must not lock, allocate, print or wait. If the function panics,
-/// it is not called again; the motion continues.
+/// The function may run for about 300 us, and must not lock, allocate, print or wait. If it panics,
+/// it is not called again, and the motion continues.
 pub struct Observer {
     function: Box<Function>,
-    /// Payload of the function's panic, kept to be freed elsewhere.
+    /// Payload of the function's panic, kept so that another thread frees it.
     panicked: Option<Box<dyn Any + Send>>,
 }
 
@@ -31,20 +31,21 @@ impl Observer {
         }
     }
 
-    /// Calls the function with a cycle. Returns true if the function panics, which happens once.
+    /// Calls the function with a cycle. Returns true if the function panics now, which can happen
+    /// only once.
     pub(super) fn see(&mut self, record: &Record, state: &RobotState) -> bool {
         if self.panicked.is_some() {
             return false;
         }
-        // A function that has panicked is never called again, so no caller sees its half-finished
-        // state.
+        // A function that has panicked is never called again, so its inconsistent state is never
+        // read.
         let seen = catch_unwind(AssertUnwindSafe(|| (self.function)(record, state)));
         self.panicked = seen.err();
         self.panicked.is_some()
     }
 }
 
-/// Frees the function, which must not happen on the thread: see
+/// Frees the function. This must not happen on the control thread: see
 /// [`Event::Ended`](super::Event::Ended).
 impl Drop for Observer {
     fn drop(&mut self) {

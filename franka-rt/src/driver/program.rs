@@ -1,4 +1,4 @@
-//! Program of a running motion, which answers its states.
+//! Programs of running motions, which answer their states.
 
 use core::time::Duration;
 
@@ -10,16 +10,16 @@ use crate::session::{SessionCommand, SessionEvent, Target, TargetSession, Trace}
 use crate::team::MemberFault;
 use crate::together::Gate;
 
-/// Program that answers the states of a running motion. Built and freed outside the thread.
+/// Program that answers the states of a running motion. It is created and freed outside the thread.
 #[derive(Debug)]
 pub enum Program {
-    /// Goals from a slot, which the session turns into torques.
+    /// Goals, which the session turns into torques.
     Target(Box<TargetSession>),
     /// A function of the user, called with every state.
     Callback(Box<Callback>),
-    /// Commands from a thread of the user, see [`Driver::write`](super::Driver::write).
+    /// Commands from the user's thread: see [`Driver::write`](super::Driver::write).
     Active(ActiveControl),
-    /// Sparse targets between which the robot plans.
+    /// Sparse joint targets. The robot plans the motion between them.
     Asynchronous(AsynchronousPositions),
 }
 
@@ -27,15 +27,15 @@ pub enum Program {
 pub(super) enum CycleOutcome {
     /// Send this command; it is the last one if `finished`.
     Command { command: Command, finished: bool },
-    /// Send nothing now; a command may be written before the next state.
+    /// Send nothing now. The user's thread may write a command before the next state.
     Open,
-    /// Send no command now, and none later.
+    /// Send no command now or later.
     Failed(Failure),
 }
 
 impl Program {
-    /// True if all values of `state` that the program computes with are finite. A command computed
-    /// from non-finite values must not reach the motors.
+    /// True if all values of `state` that the program uses are finite. A command that was computed
+    /// from other values must not reach the motors.
     pub(super) fn can_read(&self, state: &RobotState) -> bool {
         let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
         let finite = numbers.copied().all(f64::is_finite);
@@ -46,8 +46,8 @@ impl Program {
             }
     }
 
-    /// True if the first goal of the motion has been cancelled or replaced. Called only while the
-    /// motion waits for other robots.
+    /// True if the first goal of the motion was cancelled or replaced. Called only while the motion
+    /// waits for other robots.
     pub(super) fn is_withdrawn(&mut self) -> bool {
         match self {
             Self::Target(session) => session.is_withdrawn(),
@@ -62,30 +62,30 @@ impl Program {
         }
     }
 
-    /// Brakes the other members of the team, if there is one, when the robot has been silent for
-    /// too long.
+    /// Brakes the other members of the program's team, if it has one and the robot has been silent
+    /// for too long.
     pub(super) fn on_silence(&mut self, silence: Duration) {
         if let Self::Target(session) = self {
             session.on_silence(silence);
         }
     }
 
-    /// Leaves the team, if there is one, without a fault.
+    /// Leaves the program's team, if it has one, without a fault.
     pub(super) fn leave_team(&mut self) {
         if let Self::Target(session) = self {
             session.leave_team();
         }
     }
 
-    /// True if the program itself stops an arm that moves, without the robot, once its goal asks
-    /// for that.
+    /// True if the program itself stops a moving arm, without the robot's help, when its goal
+    /// requires this.
     pub(super) fn brakes(&self) -> bool {
         matches!(self, Self::Target(_))
     }
 
-    /// Answers a state. Holds the arm while the gate of a common start is closed, and finishes
-    /// where the arm is if the start has failed. [`Command::datagram`] checks that the command is
-    /// finite. A report of the program is left in `event`.
+    /// Answers a state. While the gate of a common start is closed, it holds the arm. If the start
+    /// has failed, it finishes at the current position. [`Command::datagram`] checks that the
+    /// command is finite. Stores an event of the program in `event`.
     pub(super) fn step(
         &mut self,
         gate: Gate,

@@ -1,4 +1,4 @@
-//! The driver, with states and programs that a test makes up.
+//! Tests of the driver with artificial states and programs.
 
 use std::sync::Arc;
 
@@ -43,14 +43,14 @@ fn session(target: Target, backend: Backend) -> Program {
     Program::Target(Box::new(session.with_backend(backend)))
 }
 
-/// A target of the joints, a tenth of a radian from the ready posture.
+/// Returns a joint target, a tenth of a radian from the ready posture.
 fn nearby() -> Target {
     let mut target: [f64; 7] = READY.into();
     target[0] += 0.1;
     Target::Joints(target)
 }
 
-/// Runs a cycle in which nothing takes time.
+/// Runs a cycle whose phases take no time.
 fn answer(driver: &mut Driver, state: &RobotState) -> Option<RobotCommand> {
     let command = driver.on_state(state);
     let sent = command.map(|_| times(state.message_id, 0, 0));
@@ -159,7 +159,7 @@ fn session_with_non_finite_command_fails_and_sends_nothing() {
     assert_eq!(answer(&mut driver, &moving(103)), None);
 }
 
-/// A state at rest, after a motion.
+/// Returns a state at rest after a motion.
 fn resting(time: u64) -> RobotState {
     RobotState {
         message_id: time,
@@ -315,7 +315,7 @@ fn written_command_answers_newest_state_and_is_logged_next() {
             .map(|sent| sent.message_id),
         Ok(104)
     );
-    // The last command leaves at once, and again with every state.
+    // The last command is sent at once, and again with every state.
     assert!(answer(&mut driver, &moving(105)).is_none());
     let last = driver.write(&command(3.0), true).expect("it fits");
     assert!(last.torque_command_finished);

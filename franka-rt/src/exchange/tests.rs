@@ -1,4 +1,4 @@
-//! States and commands over loopback.
+//! Tests of states and commands over loopback.
 
 use std::os::fd::OwnedFd;
 use std::time::Instant;
@@ -40,7 +40,7 @@ impl Bench {
         }
     }
 
-    /// Sends states in this order. On return, loopback has queued them all.
+    /// Sends states in this order. When the function returns, loopback has queued them all.
     fn states(&self, message_ids: &[u64]) {
         for &id in message_ids {
             self.robot.send(&state(id)).expect("loopback");
@@ -207,7 +207,7 @@ fn the_wait_follows_the_link_timeout() {
     let Bench { exchange, .. } = Bench::new();
     let wait = Duration::from_millis(5);
     let mut exchange = exchange.with_wait(wait).expect("an option");
-    // The kernel rounds the wait up, but not to a tick.
+    // The kernel rounds the wait up, but not as far as a tick.
     let option = exchange.socket.read_timeout().expect("an option");
     assert!(option >= Some(wait) && option < Some(TICK), "{option:?}");
     assert_eq!(exchange.receive().waited, wait);
@@ -229,12 +229,11 @@ fn ipv6_and_mapped_robot_addresses_are_known_and_answered() {
     let v6 = IpAddr::from(Ipv6Addr::LOCALHOST);
     let v4 = IpAddr::from(Ipv4Addr::LOCALHOST);
     let mapped = IpAddr::from(Ipv4Addr::LOCALHOST.to_ipv6_mapped());
-    // The address that the robot sends from, its known address, and the family of the receiving
-    // socket.
+    // Sending address of the robot, known address of the robot, and family of the receiving socket.
     for (from, known, socket) in [
         (v6, v6, v6),
         (v4, mapped, v4),
-        // A socket of both families sees IPv4 senders as mapped ones.
+        // A socket of both families shows IPv4 senders as mapped addresses.
         (v4, v4, v6),
         (v4, mapped, v6),
     ] {
@@ -249,7 +248,7 @@ fn ipv6_and_mapped_robot_addresses_are_known_and_answered() {
         let mut answer = [0; 2];
         assert_eq!(robot.recv(&mut answer).expect("an answer"), 1);
     }
-    // Another family is another host.
+    // An address of another family belongs to another host.
     let socket = bind(v6).expect("a free port");
     let port = socket.local_addr().expect("bound").port();
     let stranger = UdpSocket::bind((v4, 0)).expect("a free port");
@@ -280,7 +279,7 @@ fn a_command_answers_the_sender_of_the_newest_state() {
     let mut bench = Bench::new();
     assert_eq!(bench.exchange.send(&[1]), Err(SendError::NobodyToAnswer));
     bench.states(&[1]);
-    // The same robot sends from another port, as after a restart of its process.
+    // The robot sends from another port, as after a restart of its process.
     let moved = UdpSocket::bind("127.0.0.1:0").expect("a free port");
     let port = bench
         .exchange

@@ -1,4 +1,4 @@
-//! Weighted least squares from records to friction, bias and load.
+//! Estimates friction, bias and load from records, with weighted least squares.
 
 use franka_model::{JointVector, Load, Model};
 use franka_proto::RobotState;
@@ -12,9 +12,9 @@ use crate::session::Guard;
 #[derive(Clone, Debug)]
 pub struct Fit {
     model: Model,
-    /// Load and end effector together, as set at the robot.
+    /// Sum of the load and the end effector, as configured at the robot.
     total: Load,
-    /// Load as set at the robot: mass and moment.
+    /// Load as configured at the robot: mass and moment.
     declared: Vector4<f64>,
     /// Acceleration of gravity in the base frame, `[m/s²]`.
     gravity: Vector3<f64>,
@@ -22,16 +22,16 @@ pub struct Fit {
     windows: Vec<Window>,
 }
 
-/// The present stretch of steady motion.
+/// Current stretch of steady motion.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steady {
-    /// Direction of each joint, -1 or 1; 0 for joints that are too slow.
+    /// Direction of each joint, -1 or 1; 0 if the joint is too slow.
     signs: JointVector,
     /// Time of the last record, `[ms]`.
     time: u64,
     /// Number of cycles of the stretch so far.
     cycles: u32,
-    /// Number of cycles of the stretch that are summed, and their sums.
+    /// Number of summed cycles of the stretch, and their sums.
     summed: u32,
     q: JointVector,
     dq: JointVector,
@@ -44,9 +44,9 @@ struct Steady {
 #[derive(Clone, Copy, Debug)]
 struct Window {
     signs: JointVector,
-    /// Torques of the joints that the model does not explain, `[N m]`.
+    /// Joint torques that the model does not explain, `[N m]`.
     takes: JointVector,
-    /// Torques of the joints per mass and moment of a load.
+    /// Joint torques per mass and per moment of a load.
     gravity: SMatrix<f64, 7, 4>,
     stroke: u32,
 }
@@ -55,26 +55,27 @@ struct Window {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
-    /// A joint has hardly moved as planned: something held the arm, or records were missed.
+    /// A joint hardly moved as planned, because something held the arm or records were missed.
     #[error(
         "joint {joint} moved steadily in one direction for {got} intervals, expected at least \
          {expected}: something held the arm, or the program was too slow"
     )]
     TooLittle {
-        /// The joint, 1 to 7.
+        /// Number of the joint, 1 to 7.
         joint: usize,
-        /// Number of intervals of a quarter of a second, in one direction.
+        /// Number of intervals of a quarter of a second in one direction.
         got: usize,
-        /// Least number of intervals.
+        /// Least number of intervals that is required.
         expected: usize,
     },
-    /// The torques of a joint do not fit any friction, bias and load: something pushed the arm.
+    /// The torques of a joint do not fit any friction, bias and load, because something pushed the
+    /// arm.
     #[error(
         "the torques of joint {joint} differ by {got:.2} N m (rms) from the fitted friction, bias \
          and load, expected {expected} N m at most: something pushed the arm"
     )]
     Disturbed {
-        /// The joint, 1 to 7.
+        /// Number of the joint, 1 to 7.
         joint: usize,
         /// Root mean square of the unexplained torque, `[N m]`.
         got: f64,
@@ -87,8 +88,8 @@ pub enum FitError {
 type Unknowns = SVector<f64, 18>;
 
 impl Fit {
-    /// Returns a fit for an arm of this model in this state. End effector, declared load and base
-    /// must not change.
+    /// Returns a fit for an arm of this model in this state. Do not change the end effector, the
+    /// declared load or the mounting of the base afterwards.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
         let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
@@ -103,7 +104,7 @@ impl Fit {
     }
 
     /// Adds the record of a cycle. Do not add records of motions under the robot's own controller.
-    /// Slower motions, cycles in which a guard limits the command, and missed records do no harm.
+    /// Slower motions, cycles in which a guard limits the command, and missing records do no harm.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
@@ -153,7 +154,7 @@ impl Fit {
     /// Returns the identified values of the arm.
     ///
     /// # Errors
-    /// [`FitError`].
+    /// Returns [`FitError`] if the records do not identify the arm.
     pub fn finish(&self) -> Result<Identified, FitError> {
         for joint in 0..7 {
             for way in [1.0, -1.0] {
@@ -185,12 +186,12 @@ impl Fit {
         Ok(self.identified(&fitted.0, &fitted.1))
     }
 
-    /// Returns the most likely unknowns, given these deviations of the windows of a stroke, and the
-    /// variances of the unknowns.
+    /// Returns the most likely unknowns and their variances. `noise` is the deviation of each
+    /// joint's windows within a stroke.
     fn solve(&self, noise: &JointVector) -> (Unknowns, Unknowns) {
         let mut information = SMatrix::<f64, 18, 18>::from_diagonal(&prior());
         let mut right = Unknowns::zeros();
-        // Windows of one stroke have the same errors: together they count as one.
+        // Windows of one stroke have the same errors, so together they count as one.
         let strokes = self.windows.chunk_by(|a, b| a.stroke == b.stroke).count();
         let share = strokes as f64 / self.windows.len() as f64;
         for window in &self.windows {
@@ -207,7 +208,8 @@ impl Fit {
         (inverse * right, inverse.diagonal())
     }
 
-    /// Returns the deviation of each joint's windows from the prediction of the unknowns, `[N m]`.
+    /// Returns the deviation of each joint's windows from the prediction with these unknowns, `[N
+    /// m]`.
     fn residuals(&self, unknowns: &Unknowns) -> JointVector {
         JointVector::from_fn(|joint, _| {
             let off = self.windows.iter().filter_map(|window| {
@@ -252,7 +254,8 @@ impl Fit {
 }
 
 impl Window {
-    /// Returns the torque of a joint per unknown; `None` for a joint that was too slow.
+    /// Returns the derivative of a joint's torque with respect to the unknowns; `None` if the joint
+    /// was too slow.
     fn row(&self, joint: usize) -> Option<Unknowns> {
         let sign = self.signs[joint];
         (sign != 0.0).then(|| {
@@ -265,7 +268,7 @@ impl Window {
     }
 }
 
-/// Returns the prior knowledge of any arm: the inverse of the variances of the unknowns.
+/// Returns the prior knowledge that holds for any arm: the inverse variances of the unknowns.
 fn prior() -> Unknowns {
     Unknowns::from_fn(|i, _| {
         let deviation: f64 = match i {
@@ -278,7 +281,7 @@ fn prior() -> Unknowns {
     })
 }
 
-/// Guards under which the torques are not the arm's alone.
+/// Guards under which the torques do not come from the arm alone.
 const HOLDING: [Guard; 5] = [
     Guard::Leash,
     Guard::ForceCap,
@@ -287,14 +290,14 @@ const HOLDING: [Guard; 5] = [
     Guard::TorqueRate,
 ];
 
-/// Velocity of the reference above which a joint counts, `[rad/s]`: slower joints have another
-/// friction.
+/// Velocity of the reference above which a joint counts, `[rad/s]`. At lower velocities the
+/// friction differs.
 const FAST: f64 = 0.75 * Plan::SPEED;
 
-/// Acceleration of the reference below which its motion is steady, `[rad/s^2]`.
+/// Acceleration of the reference below which the motion is steady, `[rad/s^2]`.
 const STEADY: f64 = 0.02;
 
-/// Cycles of steady motion after which the transients of the arm have decayed.
+/// Number of cycles of steady motion after which the transients of the arm have decayed.
 const SETTLES: u32 = 150;
 
 /// Length of a window, in cycles.
@@ -306,19 +309,19 @@ const GAP: u64 = 20;
 /// Number of windows that each joint needs in each direction.
 const INTERVALS: usize = 12;
 
-/// Number of iterations in which the weights of the joints are computed from the residuals.
+/// Number of iterations that compute the weights of the joints from the residuals.
 const REWEIGHTED: usize = 3;
 
-/// Least standard deviation of a joint's windows, `[N m]`: the resolution of its sensor.
+/// Least standard deviation of a joint's windows, `[N m]`. It is the resolution of the joint's
+/// sensor.
 const RESIDUAL_MIN: f64 = 0.01;
 
-/// Torque larger than a joint can have, `[N m]`. Larger numbers, and values that are not numbers,
-/// do not count.
+/// Torque that no joint can reach, `[N m]`. Larger values and NaN are ignored.
 const ABSURD: f64 = 1e3;
 
-/// Greatest standard deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
+/// Largest standard deviation of a joint's windows if nothing has pushed the arm, `[N m]`.
 const RESIDUAL_MAX: f64 = 0.5;
 
-/// Effect of an error of the robot's own masses, `[kg]` and `[kg m]`.
+/// Assumed error of the robot's own masses, `[kg]`, and moments, `[kg m]`.
 const MODEL_MASS: f64 = 0.05;
 const MODEL_MOMENT: f64 = 0.01;

@@ -1,16 +1,16 @@
-//! Friction and bias of the joints and the load at the flange, measured in a minute of small
-//! motions.
+//! Measures friction and bias of the joints, and the load at the flange, with small motions that
+//! take a minute.
 //!
 //! ```text
 //! RobotState -> Plan -> a session runs its motions -> Record -> Fit -> Identified
 //!                                   later connections: Lifecycle::knowing <---'
 //! ```
 //!
-//! A `Plan` lists the motions. While its motions run, a `Fit` collects the record of every cycle.
-//! In steady motion the torque of a joint that the model does not explain is `direction * friction
-//! + bias + G(q) load`. The part that changes with the pose, as the gravity of a load does, is
-//! load; the rest belongs to the joint. The load that is set at the robot counts as part of the
-//! load. Gravity has the direction in the state, `O_ddP_O`. Nothing here is sent to a robot.
+//! A `Plan` lists the motions. While they run, a `Fit` collects the record of every cycle. In
+//! steady motion, the part of a joint's torque that the model does not explain is `direction *
+//! friction + bias + G(q) load`. The part that changes with the pose is attributed to the load, and
+//! the rest to the joint. The load includes the load that is configured at the robot. The state's
+//! `O_ddP_O` determines the direction of gravity. This module sends nothing to a robot.
 
 mod fit;
 mod plan;
@@ -37,32 +37,31 @@ pub struct Estimate {
 }
 
 impl fmt::Display for Estimate {
-    /// Prints `0.842 ± 0.031`; with a precision, to that number of digits.
+    /// Prints `0.842 ± 0.031`, or another number of digits if a precision is given.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(3);
         write!(f, "{:.digits$} ± {:.digits$}", self.value, self.deviation)
     }
 }
 
-/// Torques of one joint that the robot's model does not have.
+/// Torques of one joint that the robot's model does not contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
-    /// Friction at `Plan::SPEED`, viscous part included, beyond the robot's own compensation, `[N
-    /// m]`.
+    /// Friction at `Plan::SPEED` that exceeds the robot's own compensation, including the viscous
+    /// part, `[N m]`.
     pub friction: Estimate,
-    /// Torque in either direction and in every pose, for example the zero error of the torque
-    /// sensor, `[N m]`.
+    /// Torque that is the same in both directions and in every pose, for example the zero error of
+    /// the torque sensor, `[N m]`.
     pub bias: Estimate,
 }
 
-/// Load of the flange in addition to the end effector that the robot is configured with (`m_ee`).
-/// It includes a declared load, and the weight by which a real end effector exceeds the configured
-/// one.
+/// Load of the flange in addition to the end effector that is configured at the robot (`m_ee`). It
+/// includes the declared load, and the difference between the real and the configured end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedLoad {
-    /// Mass, `[kg]`; may be slightly negative without a load.
+    /// Mass, `[kg]`. Without a load it may be slightly negative.
     pub mass: Estimate,
     /// Mass times centre of mass, in the flange frame, `[kg m]`.
     pub moment: [Estimate; 3],
@@ -70,8 +69,8 @@ pub struct IdentifiedLoad {
 
 impl IdentifiedLoad {
     /// Returns the centre of mass in the flange frame, `[m]`. `None` if the mass is less than three
-    /// of its standard deviations, because the centre is then unknown. Mass and centre are
-    /// arguments of `set_load`.
+    /// of its standard deviations, because the centre is then unknown. `set_load` accepts the mass
+    /// and this centre.
     pub fn center(&self) -> Option<[Estimate; 3]> {
         let Estimate { value, deviation } = self.mass;
         (value > 3.0 * deviation).then(|| {
@@ -86,9 +85,9 @@ impl IdentifiedLoad {
     }
 }
 
-/// Properties of an arm, measured by the motions of a `Plan`.
+/// Properties of an arm, measured with the motions of a `Plan`.
 ///
-/// `Display` prints a table to read. With the feature `serde` the value can be stored.
+/// `Display` prints a readable table. With the feature `serde`, the value can be stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Identified {
@@ -96,22 +95,22 @@ pub struct Identified {
     pub kind: RobotKind,
     /// Joints of the arm, base to flange.
     pub joints: [IdentifiedJoint; 7],
-    /// Load of the arm's flange.
+    /// Load at the flange.
     pub load: IdentifiedLoad,
 }
 
-/// Reason why an [`Identified`] cannot be used.
+/// Reason why [`Identified`] values cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KnownError {
-    /// The values are of another kind of robot.
+    /// The values belong to another kind of robot.
     #[error(
         "the identified values belong to another kind of robot: got {got:?}, expected {expected:?}"
     )]
     Kind {
-        /// Kind of robot of the values.
+        /// Kind of robot that the values belong to.
         got: RobotKind,
-        /// Kind of robot that is connected.
+        /// Kind of the connected robot.
         expected: RobotKind,
     },
     /// A number is implausible for any arm.
@@ -121,7 +120,7 @@ pub enum KnownError {
     Number {
         /// Name of the number, with its unit.
         name: &'static str,
-        /// The number.
+        /// Value of the number.
         got: f64,
         /// The lowest accepted value.
         least: f64,
@@ -131,10 +130,11 @@ pub enum KnownError {
 }
 
 impl Identified {
-    /// Checks that a robot of this kind may be controlled with these values.
+    /// Checks that these values are plausible and suit this kind of robot.
     ///
     /// # Errors
-    /// [`KnownError`] for another kind, non-finite or implausible numbers.
+    /// Returns [`KnownError`] if the values belong to another kind, or if a number is not finite or
+    /// implausible.
     pub fn check(&self, expected: RobotKind) -> Result<(), KnownError> {
         let got = self.kind;
         if got != expected {
@@ -171,7 +171,7 @@ impl Identified {
         Ok(())
     }
 
-    /// Returns the initial values of the law at the robot's present state: the part of the load
+    /// Returns the initial values of the law for the robot's current state. The part of the load
     /// that is not declared there counts as bias.
     pub(crate) fn learned(&self, model: &Model, state: &RobotState) -> Learned {
         let IdentifiedLoad { mass, moment } = self.load;
@@ -209,9 +209,9 @@ impl fmt::Display for Identified {
     }
 }
 
-/// Returns the torques that hold a load, per mass and per mass times centre of mass, flange frame,
-/// `[N m/kg]` and `[N m/(kg m)]`: the torques are linear in both. `gravity` is in the base frame,
-/// `[m/s²]`.
+/// Returns the torques that hold a load, per mass and per mass times centre of mass in the flange
+/// frame, `[N m/kg]` and `[N m/(kg m)]`. The torques are linear in both. `gravity` is in the base
+/// frame, `[m/s²]`.
 fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatrix<f64, 7, 4> {
     let at = |com: Vector3<f64>| {
         let load = Load {
@@ -227,7 +227,7 @@ fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatr
     SMatrix::from_columns(&[mass, x, y, z])
 }
 
-/// Returns mass and moment of the load that is set at the robot, `[kg]` and `[kg m]`.
+/// Returns mass and moment of the load that is configured at the robot, `[kg]` and `[kg m]`.
 fn declared(state: &RobotState) -> Vector4<f64> {
     let (mass, [x, y, z]) = (state.m_load, state.F_x_Cload);
     Vector4::new(1.0, x, y, z) * mass
@@ -236,7 +236,7 @@ fn declared(state: &RobotState) -> Vector4<f64> {
 /// Largest plausible friction and bias of a joint, `[N m]`.
 const TORQUE_MAX: f64 = 20.0;
 
-/// Largest plausible mass `[kg]` and moment `[kg m]` of a load.
+/// Largest plausible mass, `[kg]`, and moment, `[kg m]`, of a load.
 const MASS_MAX: f64 = 20.0;
 
 #[cfg(test)]
@@ -316,7 +316,7 @@ mod tests {
         assert!((joint(&state) + 0.3).abs() < 1e-9);
     }
 
-    /// The robot reports the acceleration of its base, which is gravity, in the axes of the base.
+    /// The robot reports gravity as the acceleration of its base, in the axes of the base.
     #[test]
     fn a_load_pulls_where_the_base_is_mounted_to() {
         let model = Model::fr3();

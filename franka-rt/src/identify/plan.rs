@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 
 use crate::session::{Budget, Tolerance};
 
-/// Motions around the present joint positions of the arm. In each of a few poses all joints move to
-/// and fro twice; then they return to the start.
+/// Motions around the current joint positions of the arm. In each of a few poses, all joints move
+/// back and forth twice. Then they return to the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     start: [f64; 7],
@@ -20,14 +20,14 @@ pub struct Plan {
     reach: Reach,
 }
 
-/// One motion of a `Plan`, from rest to rest. `Display` prints a line that announces the motion.
+/// One motion of a `Plan`, from rest to rest. `Display` prints a line that announces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedMotion {
     /// Joint positions before the motion, `[rad]`.
     pub from: [f64; 7],
     /// Joint positions after the motion, `[rad]`.
     pub to: [f64; 7],
-    /// Duration of the motion, arrival included.
+    /// Duration of the motion, including the arrival.
     pub duration: Duration,
 }
 
@@ -41,15 +41,14 @@ impl fmt::Display for PlannedMotion {
     }
 }
 
-/// Distances that the motions move the arm from its present position, according to their
-/// references.
+/// Largest distances of the planned motions from the arm's current position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reach {
     /// Largest distance of each joint, in either direction, `[rad]`.
     pub joints: [f64; 7],
     /// Largest distance of the end effector, `[m]`.
     pub end_effector: f64,
-    /// Largest distance of the end effector downwards, base frame, `[m]`.
+    /// Largest distance by which the end effector moves down, in the base frame, `[m]`.
     pub down: f64,
 }
 
@@ -57,13 +56,14 @@ impl Plan {
     /// Velocity of the joints in steady motion, `[rad/s]`.
     pub const SPEED: f64 = 0.2;
 
-    /// Tolerance of an arrival: an arm without identified values need not be accurate.
+    /// Tolerance of an arrival. It is wide, because an arm without identified values need not be
+    /// accurate.
     pub const TOLERANCE: Tolerance = Tolerance {
         translation: 0.02,
         rotation: 0.05,
     };
 
-    /// Plans motions for an arm of this model in this state. Joints near a limit first move away
+    /// Returns the plan for an arm of this model in this state. Joints near a limit first move away
     /// from it.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let limits = model.joint_limits();
@@ -110,12 +110,12 @@ impl Plan {
         &self.motions
     }
 
-    /// Returns the budget of the motions: their limits of velocity, acceleration and jerk.
+    /// Returns the velocity, acceleration and jerk limits of the motions.
     pub fn budget(&self) -> Budget {
         self.budget
     }
 
-    /// Returns the reach of the motions.
+    /// Returns the largest distances that the motions move the arm.
     pub fn reach(&self) -> Reach {
         self.reach
     }
@@ -134,7 +134,7 @@ impl PlannedMotion {
             let generator = Generator::towards(State::at_rest(from), limits, Some(&to))?;
             Ok(generator.duration())
         });
-        // Not planned if the state is not finite; the session refuses such a goal.
+        // If the state is not finite, nothing is planned; the session refuses such a goal.
         let duration = planned.unwrap_or_default() + ARRIVAL;
         Self {
             from,
@@ -174,19 +174,19 @@ impl Reach {
     }
 }
 
-/// Distance that a joint moves to and fro, `[rad]`: almost a second of steady motion, in which a
-/// torque ripple passes through several periods.
+/// Distance that a joint moves back and forth, `[rad]`. It takes almost a second of steady motion,
+/// which covers several periods of a torque ripple.
 const STROKE: f64 = 0.2;
 
-/// Directions of the joints on a stroke. Each joint is measured separately. With mixed directions
-/// the end effector moves less far than with equal ones.
+/// Directions of the joints on a stroke. Each joint is measured separately. Mixed directions move
+/// the end effector less far than equal directions.
 const WAY: [f64; 7] = [1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
 
-/// Distance of the middle of the strokes from the start in a pose, `[rad]`. A load is identified by
-/// the change of its gravity between poses; joint 1 does not change it.
+/// Distance between the start and the middle of the strokes in a pose, `[rad]`. The load is
+/// identified by how its gravity changes between poses. Joint 1 does not change it.
 const SHIFT: [f64; 7] = [0.0, 0.12, 0.1, 0.15, 0.25, 0.25, 0.25];
 
-/// The poses.
+/// Shift of each joint in each pose, as a multiple of [`SHIFT`].
 const POSES: [[f64; 7]; 6] = [
     [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
     [0.0, 1.0, -1.0, 1.0, -1.0, -1.0, -1.0],
@@ -196,14 +196,14 @@ const POSES: [[f64; 7]; 6] = [
     [0.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0],
 ];
 
-/// Least distance from the joint limits, `[rad]`.
+/// Least distance from the joint limits that the motions keep, `[rad]`.
 const MARGIN: f64 = 0.1;
 
-/// Time from the arrival of the reference to the arrival of the arm, `[s]`: rest for a quarter of a
-/// second, after the transients of the arm have decayed.
+/// Time from the arrival of the reference to the arrival of the arm, `[s]`. The transients of the
+/// arm decay, then it rests for a quarter of a second.
 const ARRIVAL: f64 = 0.45;
 
-/// Number of points of a motion at which its reach is evaluated.
+/// Number of points of a motion at which its reach is computed.
 const STEPS: u32 = 8;
 
 #[cfg(test)]

@@ -19,8 +19,8 @@ impl Scheduling {
     ///
     /// # Errors
     /// Under [`Realtime::Enforce`], returns the first refusal; requests that were granted before it
-    /// stay in force. Under either [`Realtime`](super::Realtime), returns an error if an option is
-    /// out of range, and then makes no request.
+    /// stay in force. Under either [`Realtime`], returns an error if an option is out of range, and
+    /// then makes no request.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.enter_on(Kernel::read)
     }

@@ -43,14 +43,14 @@ pub enum SchedError {
         /// errno value with the reason.
         errno: i32,
     },
-    /// Misuse: the duration is out of range. A longer busy poll would leave the thread no time.
+    /// Caller: the duration is out of range. A longer busy poll would leave the thread no time.
     /// Refused under either [`Realtime`](super::Realtime).
     #[error("the busy poll is {} us, expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
         /// The requested duration.
         got: Duration,
     },
-    /// Misuse: the stack to touch is larger than allowed. Refused under either
+    /// Caller: the stack to touch is larger than allowed. Refused under either
     /// [`Realtime`](super::Realtime).
     #[error("the stack to prefault has {got} bytes, expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {

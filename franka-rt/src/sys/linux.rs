@@ -54,7 +54,7 @@ pub(crate) fn pin_to(cpu: usize) -> Result<(), i32> {
     }
 }
 
-/// Locks every page of the process, present and future, into memory. The error is an errno value.
+/// Locks all present and future pages of the process into memory. The error is an errno value.
 pub(crate) fn lock_memory() -> Result<(), i32> {
     // SAFETY: the function takes flags only. It changes which pages may be evicted, not their
     // content.
@@ -87,7 +87,7 @@ pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i3
     }
 }
 
-/// Returns how long receives from `socket` poll, `[us]`. The error is an errno value.
+/// Returns the time for which receives from `socket` poll, `[us]`. The error is an errno value.
 #[cfg(test)]
 pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
     let mut us: libc::c_int = 0;
@@ -119,7 +119,7 @@ impl Wake {
     }
 
     /// Adds 1 to the count, which makes the descriptor readable. Never blocks. At the largest count
-    /// the kernel refuses the write, and the descriptor is readable anyway.
+    /// the kernel refuses the write, but the descriptor is already readable.
     pub(crate) fn notify(&self) {
         let _ = (&self.0).write(&1u64.to_ne_bytes());
     }
@@ -129,7 +129,7 @@ impl Wake {
         let mut count = [0; 8];
         match (&self.0).read(&mut count) {
             Ok(8) => u64::from_ne_bytes(count),
-            // An eventfd gives eight bytes or, with a count of 0, the error `WouldBlock`.
+            // A read returns eight bytes or, if the count is 0, the error `WouldBlock`.
             _ => 0,
         }
     }

@@ -1,12 +1,12 @@
-//! Requests on other systems, which are not known to grant anything. Every request is refused,
-//! which `Realtime::Enforce` makes an error and `Realtime::Ignore` notes.
+//! Requests on systems that are not known to grant any. Every request is refused.
+//! `Realtime::Enforce` returns this as an error; `Realtime::Ignore` accepts it.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::net::UnixStream;
 
-/// Refuses: no priority is known that a control thread could rely on.
+/// Refuses, because no priority is known that a control thread could rely on.
 pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
     Err(libc::ENOTSUP)
 }
@@ -16,7 +16,7 @@ pub(crate) fn set_fifo(_: i32) -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// Refuses: a thread cannot be bound to a processor here.
+/// Refuses, because a thread cannot be bound to a processor here.
 pub(crate) fn pin_to(_: usize) -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
@@ -47,8 +47,8 @@ impl Wake {
         Ok(Self { listener, notifier })
     }
 
-    /// Makes the descriptor readable. Never blocks: with a full buffer the write is refused, and
-    /// the descriptor is readable anyway.
+    /// Makes the descriptor readable. Never blocks. If the buffer is full the write is refused, but
+    /// the descriptor is already readable.
     pub(crate) fn notify(&self) {
         let _ = (&self.notifier).write(&[1]);
     }
@@ -61,7 +61,7 @@ impl Wake {
             match (&self.listener).read(&mut bytes) {
                 Ok(length) if length > 0 => notifications += length as u64,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                // Nothing is left in the buffer. The other end stays open as long as this one.
+                // The buffer is empty. The other end stays open as long as this end.
                 _ => return notifications,
             }
         }

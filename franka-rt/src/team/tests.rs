@@ -1,4 +1,4 @@
-//! Members of one team, in one thread.
+//! Tests of the members of one team, on one thread.
 
 use super::*;
 
@@ -35,8 +35,8 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     assert_eq!(first.take_stop(), Some(stop));
     assert_eq!(first.take_stop(), None);
     assert_eq!(first.pass(round, 1), Passage::Stopped(stop));
-    // The next round starts afresh: an arm that fails while it brakes for the stop of an earlier
-    // round does not stop it.
+    // The next round starts afresh: if an arm fails while it brakes for the stop of an earlier
+    // round, it does not stop the next round.
     assert_eq!(second.take_stop(), Some(stop));
     let next = coordinator.begin();
     second.give_up(round, MemberFault::NotReached);
@@ -45,7 +45,7 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     // A goal of the earlier round comes too late.
     let late = stop_of(2, MemberFault::TakenBack);
     assert_eq!(third.pass(round, 3), Passage::Stopped(late));
-    // The cancel counts for neither round, even if its member already waits in the next one.
+    // The cancellation stops neither round, even if its member already waits in the next one.
     assert_eq!(second.pass(next, 4), Passage::Waiting);
     let late = stop_of(1, MemberFault::TakenBack);
     assert_eq!(second.pass(round, 5), Passage::Stopped(late));
@@ -74,7 +74,7 @@ fn stop_is_seen_by_each_member_despite_new_rounds() {
     second.pass(round, 0);
     coordinator.stop();
     assert_eq!(first.take_stop(), Some(TeamStop::Requested));
-    // The second member has not looked yet.
+    // The second member has not checked yet.
     let next = coordinator.begin();
     assert_eq!(coordinator.stopped(), Some(TeamStop::Requested));
     let stopped = Passage::Stopped(TeamStop::Requested);
@@ -115,7 +115,7 @@ fn a_member_that_never_looks_stops_each_round_until_it_has_left() {
         );
         first.take_stop();
     }
-    // A session that has left may still look.
+    // A session that has left may still check.
     second.leave();
     assert_eq!(second.take_stop(), Some(TeamStop::Requested));
     coordinator.stop();
@@ -198,7 +198,7 @@ fn report_of_a_member_reaches_the_others_of_its_round() {
     assert_eq!(first.others(older), Carrying::default());
     second.tell(older, told(0.25, true));
     assert_eq!(first.others(round), told(0.125, false));
-    // Whole micrometres, and no more than there is room for.
+    // Distances are whole micrometres, up to the largest value.
     for (way, read) in [
         (-1.0, 0.0),
         (f64::NAN, 0.0),

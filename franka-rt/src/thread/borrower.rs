@@ -1,4 +1,4 @@
-//! Watch on the borrower of the cycle, to notice a borrower that does not run it.
+//! Watchdog for a borrower of the cycle that does not run it.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -7,14 +7,14 @@ use super::lifetime::Lifetime;
 use crate::event_fd::EventFd;
 use crate::exchange::TICK;
 
-/// Counts the turns of one borrower while the thread waits for its cycle. Reports when no turn has
-/// come for the link timeout. The watch ends when this value is dropped.
+/// Counts the turns of one borrower while the thread waits for its cycle. Reports if no turn has
+/// come for the link timeout. Dropping the watch ends it.
 pub(super) struct BorrowerWatch<'a> {
     lifetime: &'a Lifetime,
     event_fd: &'a EventFd,
     timeout: Duration,
     turns: u64,
-    /// Time without a turn so far.
+    /// Time since the last turn.
     idle: Duration,
     /// Time of the last check.
     looked: Instant,
@@ -41,9 +41,9 @@ impl<'a> BorrowerWatch<'a> {
         }
     }
 
-    /// Checks, at `now`, whether there was a turn since the last check. One tick is due between two
-    /// checks. If more time has passed, the host has delayed this thread, and perhaps the borrower
-    /// as well.
+    /// Checks whether there was a turn since the last check. `now` is the time of this check.
+    /// Checks are one tick apart. If more time has passed, the host has delayed this thread, and
+    /// perhaps also the borrower, so only one tick counts.
     pub(super) fn look(&mut self, now: Instant) {
         let turns = self.lifetime.turns();
         if turns == self.turns {
@@ -56,7 +56,7 @@ impl<'a> BorrowerWatch<'a> {
         self.set(self.idle >= self.timeout);
     }
 
-    /// Notifies of a change, including a change by the borrower's own turn.
+    /// Sets the flag, and notifies if it changed, also if a turn of the borrower changed it.
     fn set(&mut self, stalled: bool) {
         if self.lifetime.set_stalled(stalled) || self.stalled != stalled {
             self.stalled = stalled;
@@ -85,7 +85,8 @@ mod tests {
             watch.look(now);
             (lifetime.is_stalled(), event_fd.drain() > 0)
         };
-        // One long stop of the process, then four ticks in which the borrower could run a turn.
+        // The process stops once for a long time. Then come four ticks in which the borrower could
+        // run a turn.
         let stop = Duration::from_secs(10);
         for pause in [stop, TICK, TICK, TICK] {
             assert_eq!(look_after(pause), (false, false));

@@ -1,5 +1,5 @@
-//! One turn of the loop: receive, answer, publish, prepare, count. `exchange` decides which state
-//! is the newest.
+//! One turn of the loop: receive, answer, publish, prepare, count. `exchange` chooses the newest
+//! state.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -28,30 +28,31 @@ pub(super) struct Cycle<C: Core> {
     pub(super) orders: Receiver<C::Order>,
     pub(super) notices: Sender<Notice<C::Event, C::Record>>,
     pub(super) records: Sender<C::Record>,
-    /// Queue of all states, as they came.
+    /// Queue of all states, in the order of their arrival.
     pub(super) sequence: Sender<Datagram>,
-    /// Publisher of all cycles, for attached readers.
+    /// Publishes all cycles to attached readers.
     pub(super) cycles: CyclePublisher<C::Record>,
     /// Slot of the newest state.
     pub(super) states: SlotWriter<Datagram>,
-    /// Buffer from which a state is copied into queue and slot.
+    /// Buffer from which a state is copied into the queue and the slot.
     pub(super) datagram: Box<Datagram>,
     pub(super) meter: Meter,
     /// Times the phases of the cycle.
     pub(super) laps: Laps,
     pub(super) event_fd: EventFd,
     pub(super) state_wakeups: StateWakeups,
-    /// Number of states since the last wake-up for a state.
+    /// Number of states since the last wake-up.
     pub(super) states_since_wake: u32,
     pub(super) lifetime: Arc<Lifetime>,
-    /// Time at which the cycle was made.
+    /// Time at which the cycle was created.
     pub(super) started: Instant,
     pub(super) receive_faults: Latch,
     pub(super) send_faults: Latch,
 }
 
 impl<C: Core> Cycle<C> {
-    /// Waits for a state, up to a tick, and runs one cycle. Returns true if a readable state came.
+    /// Waits up to a tick for a state, and runs one cycle. Returns true if a state came that can be
+    /// decoded.
     pub(super) fn turn(&mut self) -> bool {
         let begun = Instant::now();
         self.stats().turns.add(1);
@@ -71,8 +72,8 @@ impl<C: Core> Cycle<C> {
             sent = self.answer(state, now, reception.skipped);
             self.publish(now);
         } else {
-            // Only time spent in the receive counts as silence. If the host delayed this thread
-            // after the receive, states may be in the socket: the next turn reads them first.
+            // Only time inside the receive counts as silence. If the host delayed this thread
+            // afterwards, states may wait in the socket, and the next turn reads them first.
             let listened = now.min(begun + reception.waited);
             let heard = self.meter.heard().unwrap_or(self.started);
             self.core
@@ -94,8 +95,8 @@ impl<C: Core> Cycle<C> {
         readable
     }
 
-    /// Sends the command of the core for a state, if there is one, then does the work that may
-    /// follow the command. Returns the times of the command.
+    /// Sends the core's command for a state, if there is one. Then does the work that may follow
+    /// the command. Returns the times of the command.
     fn answer(
         &mut self,
         state: &RobotState,
@@ -115,16 +116,16 @@ impl<C: Core> Cycle<C> {
         sent
     }
 
-    /// Sends a command that answers the newest state, outside of a turn.
+    /// Sends a command for the newest state, outside of a turn.
     pub(super) fn send(&mut self, command: &RobotCommand) -> Result<(), SendError> {
-        // The time since the end of the turn is the user's computation.
+        // The user's code ran from the end of the turn until now.
         self.laps.end(Phase::Program);
         let departed = self.transmit(command)?;
         self.note(self.meter.answered(departed));
         Ok(())
     }
 
-    /// Notes a cycle whose command has left, when all of its phases have ended.
+    /// Adds a cycle whose command has left, after all of its phases have ended.
     fn note(&mut self, cycle: CycleTimes) {
         let cycle = CycleTimes {
             phases: self.laps.phases(),
@@ -134,7 +135,7 @@ impl<C: Core> Cycle<C> {
         self.meter.note_cycle(&cycle, motion);
     }
 
-    /// Returns the newest state; `None` if it cannot be decoded.
+    /// Returns the newest state; `None` if the state cannot be decoded.
     pub(super) fn state(&self) -> Option<RobotState> {
         RobotState::decode(self.version, self.exchange.state()).ok()
     }
@@ -148,7 +149,7 @@ impl<C: Core> Cycle<C> {
         }
     }
 
-    /// Passes a command to the kernel and returns the time when that was done.
+    /// Passes a command to the kernel. Returns the time when the system call returned.
     fn transmit(&mut self, command: &RobotCommand) -> Result<Instant, SendError> {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
         let size = command
@@ -217,7 +218,7 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// True if a wake-up for a state is due: for every state if that is requested, otherwise for
+    /// True if a wake-up for a state is due: for every state if this is requested, otherwise for
     /// every [`STATES_PER_WAKE_MAX`]th state.
     fn is_wakeup_due(&mut self) -> bool {
         self.states_since_wake += 1;
@@ -228,7 +229,7 @@ impl<C: Core> Cycle<C> {
         due
     }
 
-    /// Queues a fault of the receiving side if the fault is new; returns true if it was queued.
+    /// Queues a fault of the receiving side if it is new. Returns true if it was queued.
     fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
         if !fresh && fault.is_none() {
             return false; // A tick without any datagram is neither a fault nor the end of one.
@@ -238,32 +239,32 @@ impl<C: Core> Cycle<C> {
             .is_some_and(|fault| self.queue(fault))
     }
 
-    /// Queues a report of the loop; returns true if there was room.
+    /// Queues a report of the loop. Returns true if there was room.
     fn queue(&mut self, fault: LinkFault) -> bool {
         let queued = self.notices.push(Notice::Link(fault)).is_ok();
         self.stats().reports_lost.add(u64::from(!queued));
         queued
     }
 
-    /// Queues the core's events, while there is room; returns true if there was one.
+    /// Queues the core's events while there is room. Returns true if there was an event.
     fn pass_events_on(&mut self) -> bool {
         let event = || self.core.take_event().map(Notice::Core);
         self.notices.push_from(EVENTS_PER_CYCLE, event) > 0
     }
 
-    /// Passes on the ring of a reader of cycles that was dropped; returns true if there was one.
+    /// Queues the ring of a reader of cycles that was dropped. Returns true if there was one.
     fn detach(&mut self) -> bool {
         let detached = || self.cycles.take_detached().map(Notice::Detached);
         self.notices.push_from(1, detached) > 0
     }
 }
 
-/// Number of states after which a wake-up is sent without a request. The rings of the thread hold
-/// far more. These wake-ups, twenty a second, use less than a thousandth of a core.
+/// Number of states after which a wake-up is sent without a request. The thread's rings have room
+/// for many more states. These twenty wake-ups per second use less than a thousandth of a core.
 const STATES_PER_WAKE_MAX: u32 = 50;
 
 /// Largest number of orders per cycle; further orders wait for the next cycle.
 const ORDERS_PER_CYCLE: usize = 8;
 
-/// Largest number of events passed on per cycle; further events wait for the next cycle.
+/// Largest number of events queued per cycle; further events wait for the next cycle.
 const EVENTS_PER_CYCLE: usize = 8;

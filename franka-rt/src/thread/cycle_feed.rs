@@ -1,4 +1,5 @@
-//! Every cycle of a control thread, for readers that come and go while it runs: recorders.
+//! Passes every cycle of a control thread to readers, such as recorders, that are attached and
+//! dropped while it runs.
 //!
 //! ```text
 //! CycleFeed::attach --queue--> CyclePublisher: READERS_MAX rings at most ----> a CycleReader each
@@ -7,8 +8,8 @@
 //! ```
 //!
 //! Each reader has its own ring, whose memory is allocated when the reader is attached. The thread
-//! copies each cycle into every ring and neither waits, allocates nor frees: a full ring drops the
-//! cycle and counts it.
+//! copies each cycle into every ring, and neither waits, allocates nor frees. If a ring is full,
+//! the cycle is dropped and counted.
 
 use core::time::Duration;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -21,10 +22,10 @@ use super::handle::Datagram;
 use crate::driver::Record;
 use crate::queue::{self, Full, Receiver, Sender};
 
-/// Largest number of readers of one control thread at a time.
+/// Largest number of simultaneous readers of one control thread.
 pub const READERS_MAX: usize = 4;
 
-/// One cycle of the control thread: a state, and the work of the driver for it.
+/// One cycle of the control thread: a state, and the record of the driver for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CapturedCycle<R = Record> {
@@ -32,14 +33,14 @@ pub struct CapturedCycle<R = Record> {
     pub record: R,
     /// The state.
     pub state: RobotState,
-    /// Time at which the thread had received it, by this host's monotonic clock.
+    /// Time when the thread had received the state, by this host's monotonic clock.
     pub received: Instant,
-    /// Number of cycles just before this one that did not fit into this reader's ring.
+    /// Number of cycles just before this cycle that did not fit into the reader's ring.
     pub lost: u64,
 }
 
 impl<R> CapturedCycle<R> {
-    /// Returns a cycle that follows the previous one without loss.
+    /// Returns a cycle without lost cycles before it.
     pub fn new(record: R, state: RobotState, received: Instant) -> Self {
         Self {
             record,
@@ -68,38 +69,38 @@ impl<R> Clone for CycleFeed<R> {
     }
 }
 
-/// State shared by both ends of a feed.
+/// State that both ends of a feed share.
 #[derive(Debug, Default)]
 struct Shared {
     /// Number of readers.
     readers: AtomicUsize,
-    /// Flag that is set, with Release, when no further cycle will come.
+    /// True if no further cycle will come. Set with Release.
     ended: AtomicBool,
 }
 
 impl Shared {
     /// Acquire, pairs with the Release in the drop of [`CyclePublisher`]: a reader that sees the
-    /// end finds every cycle that was pushed before the end.
+    /// flag finds every cycle that was pushed before.
     fn has_ended(&self) -> bool {
         self.ended.load(Ordering::Acquire)
     }
 }
 
-/// Reason why no reader was attached.
+/// Reason why a reader was not attached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachError {
-    /// The number of readers is at its maximum. Drop a reader first.
+    /// There are already as many readers as possible. Drop a reader first.
     #[error("got one reader of cycles too many, expected {READERS_MAX} at most: drop one first")]
     TooMany,
-    /// The ring cannot have this length.
+    /// The requested length of the ring is out of range.
     #[error("the ring of the reader has {got} cycles, expected 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
     Capacity {
-        /// The requested capacity.
+        /// The requested length.
         got: usize,
     },
-    /// The thread has not accepted the readers that were attached before. Another thread has
-    /// borrowed its cycle and does not run it.
+    /// The thread has not accepted earlier readers yet, because another thread has borrowed its
+    /// cycle and does not run it.
     #[error(
         "the control thread has not accepted the previous readers yet: another thread has \
          borrowed its cycle"
@@ -111,18 +112,19 @@ pub enum AttachError {
 }
 
 impl<R: Send + 'static> CycleFeed<R> {
-    /// Default length of a ring, in cycles: 4 s, 12 MB.
+    /// Default length of a ring, in cycles: 4 s, which need 12 MB.
     pub const DEFAULT_CAPACITY: usize = 4096;
 
-    /// Largest length of a ring, in cycles: a minute, 200 MB.
+    /// Largest length of a ring, in cycles: a minute, which needs 200 MB.
     pub const CAPACITY_MAX: usize = 65_536;
 
-    /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. The
-    /// reader receives every cycle from shortly after the call. Allocates the ring and writes to
-    /// all of it, which takes some milliseconds.
+    /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. Soon
+    /// after the call, the reader begins to receive every cycle. The call allocates the ring and
+    /// writes to all of it, which takes some milliseconds.
     ///
     /// # Errors
-    /// [`AttachError`].
+    /// Returns [`AttachError`] if the capacity is out of range or the thread cannot accept the
+    /// reader.
     pub fn attach(&self, capacity: usize) -> Result<CycleReader<R>, AttachError> {
         if !(1..=Self::CAPACITY_MAX).contains(&capacity) {
             return Err(AttachError::Capacity { got: capacity });
@@ -136,7 +138,7 @@ impl<R: Send + 'static> CycleFeed<R> {
         counted.map_err(|_| AttachError::TooMany)?;
         let (queue, receiver) = queue::queue(capacity);
         let lost = Arc::<AtomicU64>::default();
-        // Its drop counts one reader less, after an error as well.
+        // Dropping the reader subtracts one from the count, also after an error.
         let reader = CycleReader {
             queue: receiver,
             lost: lost.clone(),
@@ -160,8 +162,8 @@ impl<R: Send + 'static> CycleFeed<R> {
     }
 }
 
-/// Receives the cycles of a control thread, each once and in order. For an ordinary thread or task.
-/// Dropping the reader detaches it.
+/// Receives the cycles of a control thread, each once and in order. Use it on an ordinary thread or
+/// task. Dropping the reader detaches it.
 #[derive(Debug)]
 pub struct CycleReader<R = Record> {
     queue: Receiver<Entry<R>>,
@@ -174,7 +176,7 @@ impl<R> CycleReader<R> {
     /// Removes and returns the oldest cycle. Never waits.
     pub fn pop(&mut self) -> Option<CapturedCycle<R>> {
         let entry = self.queue.pop()?;
-        // The thread passes on only what it has decoded itself.
+        // The thread only passes on states that it has decoded itself.
         let state =
             RobotState::decode(self.version, &entry.datagram.0[..self.version.state_size()])
                 .ok()?;
@@ -187,12 +189,12 @@ impl<R> CycleReader<R> {
     }
 
     /// Blocks this thread until there is a cycle. Returns false if none has come within `timeout`,
-    /// or no further one will come. Checks every 5 ms, because the control thread wakes no one for
-    /// this.
+    /// or none will come any more. Checks every 5 ms, because the control thread does not wake
+    /// readers.
     pub fn wait(&self, timeout: Duration) -> bool {
         let begun = Instant::now();
         loop {
-            // Read the flag first, so that the cycles from before the end are then found.
+            // Read the flag first: then all cycles from before the end are found.
             let ended = self.shared.has_ended();
             if self.waiting() > 0 {
                 return true;
@@ -220,7 +222,7 @@ impl<R> CycleReader<R> {
         Arc::ptr_eq(&self.shared, &other.shared)
     }
 
-    /// True if the thread has ended and every cycle was read.
+    /// True if the thread has ended and every cycle has been read.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended() && self.waiting() == 0
     }
@@ -232,16 +234,16 @@ impl<R> Drop for CycleReader<R> {
     }
 }
 
-/// Time between two checks of a waiting reader.
+/// Time between two checks of a reader that waits.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// The writing end of a reader's ring, for the thread. It owns memory, so the thread passes it on
-/// to be freed.
+/// Writing end of a reader's ring, which the thread owns. It contains memory, so the thread passes
+/// it on to be freed.
 #[derive(Debug)]
 pub struct CycleWriter<R = Record> {
     queue: Sender<Entry<R>>,
     lost: Arc<AtomicU64>,
-    /// Number of cycles lost since the last cycle that fitted.
+    /// Number of cycles lost since the last cycle that fitted into the ring.
     gap: u64,
 }
 
@@ -266,7 +268,7 @@ impl<R: Copy> CycleWriter<R> {
     }
 }
 
-/// A cycle in a ring. The reader decodes the state, which saves the thread a conversion.
+/// A cycle in a ring. The reader decodes the state, so the thread does not have to convert it.
 #[derive(Debug)]
 struct Entry<R> {
     record: R,
@@ -275,8 +277,8 @@ struct Entry<R> {
     datagram: Datagram,
 }
 
-/// Passes cycles on to the attached readers: the thread's end of a feed. No method allocates, frees
-/// or waits; dropping it does, when the thread ends.
+/// Passes cycles to the attached readers: the thread's end of a feed. No method allocates, frees or
+/// waits. Dropping it does, when the thread ends.
 #[derive(Debug)]
 pub struct CyclePublisher<R = Record> {
     attached: Receiver<CycleWriter<R>>,
@@ -286,7 +288,7 @@ pub struct CyclePublisher<R = Record> {
     datagram: Box<Datagram>,
 }
 
-/// Returns the two ends of the feed of one control thread, whose robot has protocol `version`.
+/// Returns the two ends of the feed of a control thread whose robot uses protocol `version`.
 pub fn cycle_feed<R>(version: Version) -> (CycleFeed<R>, CyclePublisher<R>) {
     let (attached, receiver) = queue::queue(READERS_MAX);
     let shared = Arc::<Shared>::default();
@@ -312,7 +314,8 @@ impl<R: Copy> CyclePublisher<R> {
         }
     }
 
-    /// Passes on a cycle: the record, the bytes of its state and their time of receipt.
+    /// Passes on a cycle: the record, the bytes of its state, and the time when the state was
+    /// received.
     pub fn push(&mut self, record: R, state: &[u8], received: Instant) {
         if self.writers.iter().all(Option::is_none) {
             return;
@@ -323,7 +326,7 @@ impl<R: Copy> CyclePublisher<R> {
         }
     }
 
-    /// Returns the writing end of a ring whose reader was dropped, to be freed outside the thread.
+    /// Returns the writing end of a ring whose reader was dropped, so that another thread frees it.
     pub fn take_detached(&mut self) -> Option<CycleWriter<R>> {
         let detached = |writer: &mut CycleWriter<R>| writer.queue.is_abandoned();
         self.writers

@@ -1,4 +1,4 @@
-//! The control thread as seen from outside.
+//! The control thread, as other threads use it.
 
 use core::time::Duration;
 use std::any::Any;
@@ -24,48 +24,48 @@ use crate::thread::{Core, Lender, LinkFault};
 /// and may be moved out.
 #[derive(Debug)]
 pub struct Handle<C: Core = Driver> {
-    /// Orders for the core. The thread reads them with the next state, or within
-    /// [`crate::exchange::TICK`] while the robot is silent.
+    /// Orders to the core. The thread reads them with the next state, or within
+    /// [`crate::exchange::TICK`] if the robot is silent.
     pub orders: Sender<C::Order>,
-    /// Reports of the core and the loop, oldest first.
+    /// Reports from the core and the loop, oldest first.
     pub notices: Receiver<Notice<C::Event, C::Record>>,
-    /// One record per state, oldest first. Records that find the queue full are lost, and counted
-    /// in [`Stats::records_lost`].
+    /// One record per state, oldest first. If the queue is full, a record is lost and counted in
+    /// [`Stats::records_lost`].
     pub records: Receiver<C::Record>,
     /// The newest state.
     pub states: StateReader,
-    /// All states, oldest first. States that find the queue full are lost, and counted in
+    /// All states, oldest first. If the queue is full, a state is lost and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
-    /// Attaches readers of all cycles while the thread runs.
+    /// Attaches readers of all cycles.
     pub cycles: CycleFeed<C::Record>,
-    /// Wakes the listener: after every cycle that left a notice, or a state while wake-ups are
-    /// requested; after every fiftieth state without a request; and when the thread ends.
+    /// Wakes the listener after every cycle with a notice, after every state while wake-ups are
+    /// requested, otherwise after every fiftieth state, and when the thread ends.
     pub event_fd: EventFd,
     /// Flag that requests a wake-up for every state; initially true.
     pub state_wakeups: StateWakeups,
     /// Counts and times of the loop.
     pub stats: Arc<Stats>,
-    /// Result of the thread's requests to the operating system.
+    /// Results of the thread's requests to the operating system.
     pub granted: Granted,
     /// Lends the cycle to threads of the user.
     pub lender: Lender<C>,
-    /// Stops the thread, at the latest when dropped.
+    /// The running thread. Dropping it stops the thread.
     pub thread: Thread<C>,
 }
 
 /// Report of the thread.
 #[derive(Debug)]
 pub enum Notice<E, R = Record> {
-    /// An event of the core. None is lost: events wait in the core while the queue is full.
+    /// An event of the core. None is lost, because events wait in the core while the queue is full.
     Core(E),
-    /// A fault of the link. Reported once when it begins, not in every cycle.
+    /// A fault of the link, reported once when it begins.
     Link(LinkFault),
-    /// A reader of cycles was dropped. The notice carries the memory of its ring.
+    /// A reader of cycles was dropped. The notice carries the memory of its ring, to be freed.
     Detached(CycleWriter<R>),
 }
 
-/// The running thread. Dropping it asks the thread to stop and does not wait.
+/// The running thread. Dropping it asks the thread to stop, but does not wait.
 #[derive(Debug)]
 pub struct Thread<C> {
     pub(super) shared: Arc<Lifetime>,
@@ -74,31 +74,31 @@ pub struct Thread<C> {
 }
 
 impl<C> Thread<C> {
-    /// Asks the thread to stop. The thread stops before its next cycle, within
-    /// [`crate::exchange::TICK`] if the robot is silent. A running motion is not finished first:
-    /// the robot will miss its commands.
+    /// Asks the thread to stop before its next cycle, or within [`crate::exchange::TICK`] if the
+    /// robot is silent. Does not finish a running motion first, so the robot will miss its
+    /// commands.
     pub fn stop(&self) {
         self.shared.ask_to_stop();
     }
 
-    /// True if the loop has ended, because it was stopped or because the core panicked. The eventfd
-    /// is notified after the end.
+    /// True if the loop has ended, because it was stopped or the core panicked. The eventfd is
+    /// notified afterwards.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
     }
 
-    /// Returns the link timeout if a thread that has borrowed the cycle has not run it for that
-    /// long. Meanwhile no state is received or published, and the loss of the link goes unseen. The
-    /// eventfd is notified after each change.
+    /// Returns the link timeout if a thread has borrowed the cycle and has not run it for that
+    /// long. Meanwhile the thread receives and publishes no state, and cannot detect the loss of
+    /// the link. The eventfd is notified after each change.
     pub fn stalled(&self) -> Option<Duration> {
         self.shared.is_stalled().then_some(self.link_timeout)
     }
 
-    /// Stops the thread, waits for its end and returns the core. Blocks for a cycle or a tick: in
-    /// async code, call it where blocking is allowed.
+    /// Stops the thread, waits for its end and returns the core. Blocks for a cycle or a tick, so
+    /// in async code call it where blocking is allowed.
     ///
     /// # Errors
-    /// [`Lost`] if the core has panicked or is lent.
+    /// Returns [`Lost`] if the core has panicked or is lent.
     pub fn join(mut self) -> Result<C, Lost> {
         self.stop();
         let joiner = self
@@ -118,22 +118,23 @@ impl<C> Drop for Thread<C> {
     }
 }
 
-/// Reason why an ended thread has no core to return.
+/// Reason why an ended thread cannot return its core.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Lost {
-    /// The core panicked, which ended the thread: no command is sent any more. This is a defect;
-    /// the process continues.
+    /// The core panicked, which ended the thread, so no more commands are sent. This is a defect.
+    /// The process continues.
     #[error("the control thread panicked: {message}")]
     Panicked {
-        /// The message of the panic.
+        /// Message of the panic.
         message: String,
     },
-    /// The cycle was lent when the thread was stopped. It ends with its [`Lease`](super::Lease).
+    /// The cycle was lent when the thread was stopped. Dropping the [`Lease`](super::Lease)
+    /// destroys it.
     #[error("another thread had borrowed the control cycle and did not return it")]
     Lent,
     /// The core panicked in a thread that had borrowed the cycle, which ended the control thread.
-    /// This is a defect; the process continues.
+    /// This is a defect. The process continues.
     #[error("the control cycle panicked in a thread that had borrowed it")]
     Spoilt,
 }
@@ -166,11 +167,11 @@ pub struct StateReader {
 impl StateReader {
     /// Returns the newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// Also returns `None` if this thread was delayed in the middle of each of a few attempts;
-    /// another wake-up follows then.
+    /// Also returns `None` if this thread was delayed in the middle of every attempt. Another
+    /// wake-up follows in this case.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
-            // The thread publishes only what it has decoded itself.
+            // The thread only publishes states that it has decoded itself.
             Read::Newer(datagram) => {
                 RobotState::decode(self.version, &datagram.0[..self.size]).ok()
             }
@@ -191,12 +192,12 @@ impl StateSequence {
     /// Removes and returns the oldest state. Never waits.
     pub fn pop(&mut self) -> Option<RobotState> {
         let datagram = self.queue.pop()?;
-        // The thread passes on only what it has decoded itself.
+        // The thread only passes on states that it has decoded itself.
         RobotState::decode(self.version, &datagram.0[..self.size]).ok()
     }
 
-    /// Returns the number of waiting states. Each of them was readable as the newest state before
-    /// it counts here.
+    /// Returns the number of waiting states. A state counts only after it was readable as the
+    /// newest state.
     pub fn waiting(&self) -> usize {
         self.queue.waiting()
     }
@@ -207,19 +208,18 @@ impl StateSequence {
     }
 }
 
-/// Attempts to read. One attempt fails if this thread is delayed until the state was replaced
-/// twice.
+/// Number of attempts to read. An attempt fails if the state is replaced twice while it reads.
 const ATTEMPTS: usize = 16;
 
-/// The bytes of a state, at the front of the array. Each reader decodes them, which saves the
-/// thread a conversion.
+/// Bytes of a state, at the front of the array. Each reader decodes them, so the thread does not
+/// have to convert the state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
 
 impl Datagram {
     pub(super) const ZERO: Self = Self([0; RobotState::MAX_SIZE]);
 
-    /// Copies the bytes of a state into the front; the rest stays as it was.
+    /// Copies the bytes of a state to the front; the rest does not change.
     pub(super) fn set(&mut self, state: &[u8]) {
         self.0[..state.len()].copy_from_slice(state);
     }
@@ -245,7 +245,7 @@ impl Words for Datagram {
     }
 }
 
-/// Bytes in a word.
+/// Number of bytes in a word.
 const WORD: usize = size_of::<u64>();
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Lends a value of the thread that owns it to other threads, one at a time.
+//! Lends a value from its owner's thread to other threads, one at a time.
 //!
 //! ```text
 //!   owner:     Running --lend--> Offered              Returned --> Running
@@ -6,8 +6,8 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! This file does not depend on the type of the value: `tests/loom` includes it and explores the
-//! hand-overs.
+//! This file does not depend on the type of the value, because `tests/loom` includes it and
+//! explores the hand-overs.
 
 use std::sync::PoisonError;
 #[cfg(not(loom))]
@@ -23,7 +23,7 @@ use loom::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// The place where a value passes from the owner to a borrower and back.
+/// Place where a value passes from the owner to a borrower and back.
 pub(super) struct Handoff<T> {
     wanted: AtomicBool,
     state: Mutex<HandoffState<T>>,
@@ -31,7 +31,7 @@ pub(super) struct Handoff<T> {
     tick: Duration,
 }
 
-/// Place of the value at present.
+/// Where the value is.
 enum HandoffState<T> {
     /// The owner has the value.
     Running,
@@ -41,14 +41,15 @@ enum HandoffState<T> {
     Lent,
     /// The value is on its way back.
     Returned(T),
-    /// The value is destroyed: the owner has ended, or a borrower has left the value invalid.
+    /// The value is destroyed, because the owner has ended or a borrower has left the value
+    /// invalid.
     Ended,
 }
 
-/// Reason why a lent value does not come back.
+/// Reason why a lent value does not return.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NotReturned {
-    /// The owner stopped waiting while the borrower still has the value.
+    /// The owner stopped waiting, and the borrower still has the value.
     Lent,
     /// The borrower has left the value invalid.
     Spoilt,
@@ -67,8 +68,7 @@ pub enum BorrowError {
 }
 
 impl<T> Handoff<T> {
-    /// Returns a handoff whose owner, while it waits for its value, polls the stop flag every
-    /// `tick`.
+    /// Returns a handoff. While the owner waits for its value, it polls the stop flag every `tick`.
     pub(super) fn new(tick: Duration) -> Self {
         Self {
             wanted: AtomicBool::new(false),
@@ -78,20 +78,20 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// True if a borrower waits. Relaxed: the hand-over itself is ordered by the lock.
+    /// True if a borrower waits. Relaxed, because the lock orders the hand-over itself.
     pub(super) fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }
 
-    /// Offers the owner's value to a borrower and returns the value when it is back. Asks
-    /// `stop_wanted` every tick whether to stop waiting.
+    /// Offers the owner's value to a borrower, and returns it when it is back. Asks `stop_wanted`
+    /// every tick whether to stop waiting.
     pub(super) fn lend(
         &self,
         value: T,
         mut stop_wanted: impl FnMut() -> bool,
     ) -> Result<T, NotReturned> {
         let mut state = self.lock();
-        // Store this under the lock: a later borrower finds the value offered, or lent.
+        // Store under the lock, so that a later borrower finds the value offered or lent.
         self.wanted.store(false, Ordering::Relaxed);
         *state = HandoffState::Offered(value);
         self.changed.notify_all();
@@ -113,7 +113,8 @@ impl<T> Handoff<T> {
     /// Makes the owner refuse all further borrowers.
     pub(super) fn close(&self) {
         let mut state = self.lock();
-        // A value that a borrower has returned meanwhile is freed here, after the last turn.
+        // If a borrower has returned a value in the meantime, it is freed here, after the last
+        // turn.
         *state = HandoffState::Ended;
         self.changed.notify_all();
     }
@@ -137,12 +138,12 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// Returns the borrowed value to the owner; `None` if it must not be used any more.
+    /// Returns the borrowed value to the owner. `None` if the owner must not use it any more.
     pub(super) fn give_back(&self, value: Option<T>) {
         let mut state = self.lock();
         *state = match (&*state, value) {
             (HandoffState::Lent, Some(value)) => HandoffState::Returned(value),
-            // The value is invalid, or the owner has ended: the value is freed here.
+            // The value is invalid or the owner has ended, so the value is freed here.
             _ => HandoffState::Ended,
         };
         self.changed.notify_all();
@@ -153,13 +154,13 @@ impl<T> Handoff<T> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for a change, for a tick at most.
+    /// Waits for a change, for at most a tick.
     fn wait_a_tick<'a>(
         &'a self,
         state: MutexGuard<'a, HandoffState<T>>,
     ) -> MutexGuard<'a, HandoffState<T>> {
         // loom has no time. Its condition variable ends a wait with a timeout of zero once another
-        // thread has run, and never ends other waits.
+        // thread has run. It never ends other waits.
         #[cfg(loom)]
         if self.tick.is_zero() {
             drop(state);

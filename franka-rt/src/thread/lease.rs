@@ -1,13 +1,13 @@
-//! The cycle of the control thread, lent to a thread of the program.
+//! Lends the cycle of the control thread to a thread of the program.
 //!
 //! ```text
 //!             borrow                        drop
 //!   Running ----------> Lent (this thread waits) ------> Running
 //! ```
 //!
-//! The thread passes the cycle on between two turns and waits until the cycle comes back, or until
-//! the thread is asked to stop. The lock of the [`Handoff`] is taken only at the two hand-overs; a
-//! turn takes no lock, on either thread.
+//! The control thread lends the cycle between two turns. It then waits until the cycle comes back,
+//! or until it is asked to stop. Only the two hand-overs take the lock of the [`Handoff`]; a turn
+//! takes no lock on either thread.
 
 use std::sync::Arc;
 
@@ -30,11 +30,11 @@ impl<C: Core> Lender<C> {
         Self { handoff }
     }
 
-    /// Borrows the cycle from its thread. Blocks until the thread has finished its turn: a cycle,
-    /// or a [`TICK`](crate::exchange::TICK) while the robot is silent.
+    /// Borrows the cycle from its thread. Blocks until the thread has finished its turn, which
+    /// lasts a cycle, or a [`TICK`](crate::exchange::TICK) if the robot is silent.
     ///
     /// # Errors
-    /// [`BorrowError`].
+    /// Returns [`BorrowError`] if another borrower has the cycle or the control thread has ended.
     pub fn borrow(&self) -> Result<Lease<C>, BorrowError> {
         Ok(Lease {
             cycle: Some(self.handoff.borrow()?),
@@ -58,28 +58,28 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 
 /// The cycle of a control thread, borrowed by another thread. Dropping the lease returns the cycle.
 ///
-/// While the lease exists, states are read, published and counted only in its turns. If it runs no
-/// turn for the link timeout, [`Thread::stalled`](super::Thread::stalled) reports this.
+/// While the lease exists, only its turns read, publish and count states. If it runs no turn for
+/// the link timeout, [`Thread::stalled`](super::Thread::stalled) reports this.
 ///
-/// A panic of the borrowing thread returns the cycle as well. If the core itself panics, in a
+/// If the borrowing thread panics, the cycle is returned as well. If the core itself panics, in a
 /// [`turn`](Self::turn) or a [`write`](Lease::write), the cycle is destroyed and the control thread
 /// ends.
 pub struct Lease<C: Core = Driver> {
     handoff: Arc<Handoff<Box<Cycle<C>>>>,
-    /// The cycle; `None` only while the lease is being dropped.
+    /// The cycle; `None` only while the lease is dropped.
     cycle: Option<Box<Cycle<C>>>,
-    /// True while a method of the core is being called, or if such a call has panicked.
+    /// True while a method of the core runs, and if a method has panicked.
     is_unsound: bool,
 }
 
 impl<C: Core> Lease<C> {
-    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK). Then does
-    /// the work of the thread: orders, the core, sending the core's command if there is one,
-    /// publishing. Returns `None` if no state came.
+    /// Waits up to a [`TICK`](crate::exchange::TICK) for a state that is newer than all previous
+    /// states. Then does the work of the thread: carries out orders, calls the core, sends the
+    /// core's command if there is one, and publishes. Returns `None` if no state came.
     ///
     /// # Errors
-    /// [`BorrowError::Ended`] if the thread was asked to stop, or the core has panicked: drop the
-    /// lease then.
+    /// Returns [`BorrowError::Ended`] if the thread was asked to stop or the core has panicked.
+    /// Then drop the lease.
     pub fn turn(&mut self) -> Result<Option<RobotState>, BorrowError> {
         if self.cycle().lifetime.stop_wanted() || self.is_unsound {
             return Err(BorrowError::Ended);
@@ -88,7 +88,7 @@ impl<C: Core> Lease<C> {
         Ok(self.guarded(|cycle| cycle.turn().then(|| cycle.state()).flatten()))
     }
 
-    /// Calls methods of the core. If a call panics, the cycle counts as unsound from then on.
+    /// Calls methods of the core. If a call panics, the cycle remains marked as unsound.
     fn guarded<T>(&mut self, call: impl FnOnce(&mut Cycle<C>) -> T) -> T {
         self.is_unsound = true;
         let returned = call(self.cycle());
@@ -96,7 +96,7 @@ impl<C: Core> Lease<C> {
         returned
     }
 
-    /// Returns the core, read-only.
+    /// Returns the core.
     pub fn core(&self) -> &C {
         let cycle = self.cycle.as_ref();
         &cycle.expect("it is there until the drop").core
@@ -123,7 +123,7 @@ impl Lease<Driver> {
     /// Sends a command for the newest state: see [`Driver::write`].
     ///
     /// # Errors
-    /// [`WriteFault`]; the motion continues.
+    /// Returns [`WriteFault`] if the command was not sent; the motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteFault> {
         if self.is_unsound {
             return Err(WriteError::NotRunning.into());

@@ -1,7 +1,7 @@
 //! Flags that the thread and its owner share.
 //!
-//! This file does not depend on the thread: `tests/loom` includes it and explores the order that
-//! the flags impose.
+//! This file does not depend on the thread, because `tests/loom` includes it and explores the order
+//! of the flags.
 
 #[cfg(not(loom))]
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -9,8 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[cfg(loom)]
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Flags: a stop is requested, the thread has ended, the borrower of its cycle does not run the
-/// cycle.
+/// Three flags: a stop is requested, the thread has ended, or the borrower does not run the cycle.
 #[derive(Debug, Default)]
 pub(super) struct Lifetime {
     stop: AtomicBool,
@@ -21,7 +20,7 @@ pub(super) struct Lifetime {
 }
 
 impl Lifetime {
-    /// Requests a stop. Relaxed here and in [`Self::stop_wanted`]: no other memory is read
+    /// Requests a stop. Relaxed here and in [`Self::stop_wanted`], because no other memory is read
     /// depending on this flag.
     pub(super) fn ask_to_stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
@@ -41,9 +40,9 @@ impl Lifetime {
         self.ended.load(Ordering::Acquire)
     }
 
-    /// Counts a turn of a borrower, which ends a stall. There is one borrower at a time, so a load
-    /// and a store are enough. Relaxed, as all below: no other memory is read depending on these
-    /// values.
+    /// Counts a turn of a borrower, which ends a stall. A load and a store are enough, because
+    /// there is only one borrower at a time. Relaxed here and below, because no other memory is
+    /// read depending on these values.
     pub(super) fn note_turn(&self) {
         let turns = self.turns.load(Ordering::Relaxed);
         self.turns.store(turns.wrapping_add(1), Ordering::Relaxed);
@@ -54,7 +53,7 @@ impl Lifetime {
         self.turns.load(Ordering::Relaxed)
     }
 
-    /// Sets the flag of a stall. Returns true if this is a change.
+    /// Sets whether the borrower has stalled. Returns true if this is a change.
     pub(super) fn set_stalled(&self, stalled: bool) -> bool {
         self.stalled.swap(stalled, Ordering::Relaxed) != stalled
     }

@@ -1,4 +1,4 @@
-//! Tickets of one start, in one thread.
+//! Tests of the tickets of one start, on one thread.
 
 use super::*;
 
@@ -14,13 +14,13 @@ fn the_gate_opens_for_all_when_the_last_has_arrived() {
     for ticket in &mut tickets {
         assert_eq!(ticket.pass(4), Gate::Open);
     }
-    // The end of a member no longer concerns the others.
+    // The end of a member no longer affects the other members.
     drop(tickets.remove(0));
     tickets[0].end();
     for ticket in &mut tickets {
         assert_eq!((ticket.pass(5), ticket.fault()), (Gate::Open, None));
     }
-    // The end of a member that has not seen the start yet concerns no other either.
+    // The end of a member that has not seen the start yet affects no other member either.
     let [mut first, mut second] = StartBarrier::new().tickets();
     assert_eq!(first.pass(0), Gate::Closed);
     assert_eq!(second.pass(0), Gate::Open);
@@ -53,7 +53,7 @@ fn a_member_that_leaves_lets_the_others_go_with_its_number() {
             assert_eq!(first.fault(), Some(fault));
             assert_eq!(first.pass(1), Gate::Broken(fault));
             assert_eq!(first.refusal(), Some(fault));
-            // A later member receives the fault, too; its next calls change nothing.
+            // A later member also receives the fault, and its next calls change nothing.
             assert_eq!(third.pass(1), Gate::Broken(fault));
             drop(third);
             assert_eq!(first.pass(2), Gate::Broken(fault));
