@@ -55,7 +55,6 @@ pub struct Exchange {
     newest: Box<[u8]>,
     /// Buffer for the next datagram, swapped with `newest` if the datagram is newer.
     incoming: Box<[u8]>,
-    /// `message_id` of `newest`.
     message_id: Option<u64>,
     /// Sender of `newest`, which receives the commands.
     reply_to: Option<SockAddr>,
@@ -169,8 +168,7 @@ impl Exchange {
                 Ok((length, sender)) => self.sort(length, sender, &mut reception),
                 Err(error) => {
                     match error.kind() {
-                        // The socket was empty when the wait ended, or immediately if there was no
-                        // wait.
+                        // The socket was empty, after the wait or immediately.
                         io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut => {
                             if flags == 0 {
                                 reception.waited = self.wait;
@@ -223,7 +221,7 @@ impl Exchange {
     /// an error.
     ///
     /// # Errors
-    /// Returns [`SendError`] if the command was not sent. The next cycle may send its own command.
+    /// Returns [`SendError`] if the command was not sent. The next cycle may send its own.
     pub fn send(&self, command: &[u8]) -> Result<(), SendError> {
         let reply_to = self.reply_to.as_ref().ok_or(SendError::NobodyToAnswer)?;
         match self

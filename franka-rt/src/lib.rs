@@ -31,7 +31,7 @@
 //! identify a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Without Unix there is no thread, so the items that only the thread uses are unused.
+// Only the thread uses these items.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;

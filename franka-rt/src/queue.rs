@@ -1,5 +1,5 @@
-//! Queue with one sender and one receiver that passes every value, in order. Queues pass orders and
-//! chunks into the thread, and events, records, states and chunks out of it.
+//! Queue with one sender and one receiver that passes every value, in order. Orders and chunks
+//! enter the thread through queues; events, records, states and chunks leave it through them.
 //!
 //! ```
 //! use franka_rt::queue::{self, Full};
@@ -56,7 +56,7 @@ impl<T> Sender<T> {
     /// Appends a value. Never waits.
     ///
     /// # Errors
-    /// Returns [`Full`] with the value if the queue has no room.
+    /// Returns [`Full`] with the value if there is no room.
     pub fn push(&mut self, value: T) -> Result<(), Full<T>> {
         self.0
             .push(value)
@@ -78,8 +78,7 @@ impl<T> Sender<T> {
         self.0.is_abandoned()
     }
 
-    /// Returns the number of values for which there is room. The receiver may make more room at any
-    /// time.
+    /// Returns the number of values that certainly fit.
     pub fn free(&self) -> usize {
         self.0.slots()
     }
@@ -91,7 +90,7 @@ impl<T> Receiver<T> {
         self.0.pop().ok()
     }
 
-    /// Returns the number of waiting values. The sender may add more at any time.
+    /// Returns the number of values that are certainly waiting.
     pub fn waiting(&self) -> usize {
         self.0.slots()
     }

@@ -33,7 +33,7 @@ pub enum Realtime {
 /// Requests to the operating system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scheduling {
-    /// What to do when a request is refused.
+    /// What to do about refusals.
     pub realtime: Realtime,
     /// `SCHED_FIFO` priority, 1 to 99; the system's maximum if `None`.
     pub priority: Option<i32>,
@@ -52,10 +52,9 @@ pub struct Scheduling {
     /// Time for which a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`),
     /// in whole microseconds, at most 900 (`BUSY_POLL_MAX`). If `None`, receives do not poll.
     ///
-    /// Polling avoids the latency of the interrupt and the wake-up, but it occupies the processor.
-    /// It works only for network cards whose driver supports it, so not for the loopback device.
-    /// `CAP_NET_ADMIN` is required to raise the time above the system's default
-    /// (`net.core.busy_read`, 0).
+    /// Polling avoids the latency of interrupt and wake-up, but occupies the processor. It only
+    /// works for network cards whose driver supports it, not for the loopback device. Raising the
+    /// time above the system's default (`net.core.busy_read`, 0) requires `CAP_NET_ADMIN`.
     pub busy_poll: Option<Duration>,
 }
 

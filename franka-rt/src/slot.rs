@@ -1,5 +1,5 @@
-//! Slot with one writer and any number of readers that passes only the newest value. Goals enter
-//! the thread and states leave it through slots.
+//! Slot for the newest value, with one writer and any number of readers. Goals enter the thread
+//! through slots, and states leave it.
 //!
 //! A slot is a sequence lock over two buffers of `AtomicU64` words, which the values use
 //! alternately. The writer makes the count odd, stores the words in one buffer, and makes the count
@@ -220,9 +220,9 @@ impl<T: Words> SlotReader<T> {
         Read::Newer(T::load(&self.scratch))
     }
 
-    /// Like [`Self::read_newer`], but makes up to `attempts` attempts while the copies are torn. Do
-    /// not call it on the real-time thread: on one core, a reader of higher priority would waste
-    /// all attempts, because the writer cannot run.
+    /// Like [`Self::read_newer`], but makes up to `attempts` attempts. Do not call it on the
+    /// real-time thread: on one core, a reader of higher priority would waste all attempts, because
+    /// the writer cannot run.
     pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
         for _ in 1..attempts {
             match self.read_newer() {

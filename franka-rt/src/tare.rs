@@ -11,8 +11,8 @@
 //! According to the vendor's documentation, `O_F_ext_hat_K` acts on the stiffness frame, in axes of
 //! the base. In recordings of both robots, however, its moment is about the origin of the base, so
 //! it changes with the position of the arm. The moment of `K_F_ext_hat_K` is about the stiffness
-//! frame in the documentation and in the recordings. The tare therefore takes its moments from
-//! `K_F_ext_hat_K` and rotates them into axes of the base.
+//! frame in either case. The tare therefore uses the moment of `K_F_ext_hat_K`, rotated into axes
+//! of the base.
 
 use core::time::Duration;
 
@@ -89,8 +89,7 @@ pub enum TareRefused {
     /// A goal is under way. Even if the arm stands still, the law may push it against friction.
     #[error("a motion is running, expected none: await its end before the tare")]
     UnderWay,
-    /// The robot's mode is not one in which the arm holds itself, so the estimate is no measure of
-    /// the offset.
+    /// The robot is in a mode in which its torques do not measure the offset.
     #[error(
         "the robot is in mode {got}, expected idle or move: the arm must hold itself, untouched"
     )]
@@ -133,7 +132,7 @@ impl Taring {
     /// Returns a taring that averages states over `duration`, by the robot's clock.
     ///
     /// # Errors
-    /// Returns [`TareRefused::Duration`] if `duration` is not between 20 ms and 60 s.
+    /// Returns [`TareRefused::Duration`] if `duration` is out of range.
     pub fn over(duration: Duration) -> Result<Self, TareRefused> {
         let range = Duration::from_millis(20)..=Duration::from_secs(60);
         if !range.contains(&duration) {
@@ -190,7 +189,6 @@ impl Taring {
     }
 }
 
-/// Checks that the arm rests, keeps its position, and is not touched.
 fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     if !matches!(state.robot_mode, RobotMode::Idle | RobotMode::Move) {
         return Err(TareRefused::Mode {

@@ -15,9 +15,9 @@
 //! every member loads once in each of its own cycles. A member that detects a fault writes it into
 //! the word with a compare-and-exchange. No thread waits for another thread, and no async runtime
 //! is involved. A member begins to brake within two of its cycles after the thread of the faulty
-//! member has detected the fault. Later faults do not replace the first fault of a round. A newer
-//! round hides no stop: a member that has not checked yet still sees the stop. If a round begins
-//! before all members have seen a stop of the team, that stop also stops the round.
+//! member has detected the fault. Only the first fault of a round counts. A newer round hides no
+//! stop: a member that has not checked yet still sees the stop. A stop of the team also stops a
+//! round that begins before all members have seen it.
 //!
 //! [`together`](crate::together) contains common starts of independent motions. In a team, a
 //! session moves from goal to goal.
@@ -40,8 +40,8 @@ use core::time::Duration;
 pub const MEMBERS_MAX: usize = 254;
 
 /// Default time for which a member's robot may be silent before the other members brake. A robot
-/// that misses commands for this long stops on its own. Detection may take up to 20 ms longer,
-/// which is one wait of the member's thread.
+/// that misses commands for this long stops on its own. Detection may take one wait of the member's
+/// thread longer, up to 20 ms.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
 /// Time for which a goal of a joint motion waits for the goals of the other members, by the clock
@@ -198,9 +198,9 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
 }
 
 impl Coordinator {
-    /// Begins a round: the members wait until each of them has a goal of the round. If an earlier
-    /// round has not begun to move yet, it never will. If goals of an older round are under way,
-    /// each continues until the member's goal of this round begins.
+    /// Begins a round: the members wait until each of them has a goal of the round. An earlier
+    /// round that has not opened never opens. If goals of an older round are under way, each
+    /// continues until the member's goal of this round begins.
     ///
     /// The round stops at once, and never opens, if a member has not seen an earlier
     /// [stop](Self::stop) or the session of a member has ended. A member checks in each cycle of
@@ -472,9 +472,9 @@ enum Cause {
     Member(MemberFault),
 }
 
-/// The bytes contain, from the lowest: number of members present, number of the member that stopped
-/// the round, reason (0 while the round continues). The lowest bit of the next byte is set if the
-/// stop holds for the team, and not only for the round. The upper half contains the round.
+/// Bytes, from the lowest: number of members present; number of the member that stopped the round;
+/// reason (0 while the round continues). The lowest bit of the next byte is set if the stop holds
+/// for the team and not only for the round. The upper half contains the round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Word(u64);
 

@@ -1,5 +1,5 @@
-//! One real-time thread per robot, with the only loop of the crate. It runs from connect to drop,
-//! whether or not a motion runs.
+//! The only loop of the crate: one real-time thread per robot, from connect to drop, with or
+//! without a motion.
 //!
 //! ```text
 //! receive (wait <= 20 ms) -> orders -> decode -> Core::on_state -> encode -> send
@@ -72,7 +72,7 @@ use crate::stats::{Laps, Meter};
 pub struct ThreadConfig {
     /// Requests to the operating system.
     pub scheduling: Scheduling,
-    /// Lengths of the queues for orders, notices, records and states.
+    /// Lengths of the queues, each at least 1.
     pub capacity: Capacity,
 }
 
@@ -123,8 +123,7 @@ pub enum StartError {
 /// under a millisecond.
 ///
 /// # Errors
-/// Returns [`StartError`] if the system refuses a request or provides no thread; the core is then
-/// dropped.
+/// Returns [`StartError`] if the thread cannot start; the core is then dropped.
 pub fn spawn<C: Core>(
     config: ThreadConfig,
     core: C,

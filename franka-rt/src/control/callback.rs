@@ -41,8 +41,7 @@ struct Source<T> {
 
 impl Callback {
     /// Returns a program that commands only torques, with the default shaping. If the protocol has
-    /// no motions with torques alone, a motion generator runs too, and its commands make the arm
-    /// stand still.
+    /// no such motions, a motion generator also runs, whose commands make the arm stand still.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,

@@ -39,8 +39,7 @@ impl<T> Next<T> {
         }
     }
 
-    /// Combines both commands. The result is finished if either is finished, and given up if either
-    /// is given up.
+    /// Combines both commands. The result finishes or gives up if either does.
     pub fn zip<U>(self, other: Next<U>) -> Next<(T, U)> {
         match (self.into_parts(), other.into_parts()) {
             (Ok((first, last)), Ok((second, also_last))) => {

@@ -15,7 +15,7 @@ use crate::together::{StartFault, StartTicket};
 #[derive(Debug)]
 pub enum Event {
     /// A state shows the modes of the motion, so the motion has started. The first command answers
-    /// this state.
+    /// it.
     Started {
         /// The motion.
         motion: MotionId,
@@ -53,8 +53,7 @@ pub enum Event {
     /// The motion has ended for the thread. The event carries the program, so that the receiver
     /// frees it.
     Ended(Ended),
-    /// No state has come during the link timeout, so the link counts as lost. If a later state
-    /// arrives, the link counts as alive again.
+    /// No state has come for the link timeout, so the link counts as lost until a state arrives.
     LinkLost {
         /// Length of the silence so far.
         silence: Duration,
@@ -117,9 +116,9 @@ pub enum Ending {
 /// Queue of events that the thread has not published yet.
 ///
 /// A motion causes at most `Started`, one report per goal, `Failed` or `Finishing`, `Ended` and
-/// `LinkLost`. It starts only if the thread receives orders. The thread empties the queue in every
-/// cycle, unless the receiver has stopped listening. A link that is lost repeatedly in the meantime
-/// fills only one slot. The queue therefore always has room for the end of a motion.
+/// `LinkLost`, and needs orders from outside. The thread empties the queue in every cycle, unless
+/// the receiver has stopped listening. Meanwhile, a link that is lost repeatedly fills only one
+/// slot. So the queue always has room for the end of a motion.
 #[derive(Debug, Default)]
 pub(super) struct EventQueue {
     slots: [Option<Event>; EventQueue::CAPACITY],

@@ -18,9 +18,9 @@ impl LinkTimeout {
     /// bridges shorter gaps.
     pub const MIN: Duration = Duration::from_millis(20);
 
-    /// Longest timeout, 10 s. Use more than [`LINK_TIMEOUT`] only for a simulated robot on a busy
-    /// host, which may delay states for longer. A real robot that receives no commands stops on its
-    /// own long before such a timeout.
+    /// Longest timeout, 10 s. More than [`LINK_TIMEOUT`] is only useful for a simulated robot on a
+    /// busy host, which may delay states for longer. A real robot without commands stops on its own
+    /// long before.
     pub const MAX: Duration = Duration::from_secs(10);
 
     /// Returns a link timeout of length `timeout`.

@@ -26,8 +26,7 @@ impl LogEntry {
     }
 }
 
-/// Log of the last cycles of one motion, oldest first. It keeps at most as many cycles as its
-/// capacity.
+/// Log of the last cycles of one motion, oldest first, up to a capacity.
 ///
 /// The log allocates its memory when it is created. Writing neither allocates nor frees.
 #[derive(Clone, Default)]

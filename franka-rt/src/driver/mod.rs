@@ -282,8 +282,8 @@ impl Driver {
     /// command with every state until the robot has left the motion's modes.
     ///
     /// # Errors
-    /// Returns [`WriteError`] if the motion does not accept the command. Then send nothing; the
-    /// motion continues.
+    /// Returns [`WriteError`] if the motion refuses the command. Then send nothing; the motion
+    /// continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
         let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);

@@ -57,8 +57,8 @@ pub struct Record {
     /// Commanded joint torques without gravity and friction, `[N m]`. Zero under active control,
     /// because its commands are sent after the cycle.
     pub tau_c: [f64; 7],
-    /// Torque that compensates friction and bias, before the guards, `[N m]`. It is part of the
-    /// command, and zero outside target control.
+    /// Torque that compensates friction and bias, before the guards, `[N m]`; zero outside target
+    /// control.
     pub compensation: [f64; 7],
     /// Guards that limited the command.
     pub bindings: Bindings,

@@ -159,7 +159,6 @@ fn session_with_non_finite_command_fails_and_sends_nothing() {
     assert_eq!(answer(&mut driver, &moving(103)), None);
 }
 
-/// Returns a state at rest after a motion.
 fn resting(time: u64) -> RobotState {
     RobotState {
         message_id: time,

@@ -248,7 +248,6 @@ fn ipv6_and_mapped_robot_addresses_are_known_and_answered() {
         let mut answer = [0; 2];
         assert_eq!(robot.recv(&mut answer).expect("an answer"), 1);
     }
-    // An address of another family belongs to another host.
     let socket = bind(v6).expect("a free port");
     let port = socket.local_addr().expect("bound").port();
     let stranger = UdpSocket::bind((v4, 0)).expect("a free port");

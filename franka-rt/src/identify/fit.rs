@@ -27,7 +27,6 @@ pub struct Fit {
 struct Steady {
     /// Direction of each joint, -1 or 1; 0 if the joint is too slow.
     signs: JointVector,
-    /// Time of the last record, `[ms]`.
     time: u64,
     /// Number of cycles of the stretch so far.
     cycles: u32,
@@ -88,8 +87,8 @@ pub enum FitError {
 type Unknowns = SVector<f64, 18>;
 
 impl Fit {
-    /// Returns a fit for an arm of this model in this state. Do not change the end effector, the
-    /// declared load or the mounting of the base afterwards.
+    /// Returns a fit for an arm of this model in this state. The end effector, the declared load
+    /// and the base must not change.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
         let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
@@ -186,8 +185,8 @@ impl Fit {
         Ok(self.identified(&fitted.0, &fitted.1))
     }
 
-    /// Returns the most likely unknowns and their variances. `noise` is the deviation of each
-    /// joint's windows within a stroke.
+    /// Returns the most likely unknowns and their variances. `noise` is the standard deviation of
+    /// the windows of a stroke, for each joint.
     fn solve(&self, noise: &JointVector) -> (Unknowns, Unknowns) {
         let mut information = SMatrix::<f64, 18, 18>::from_diagonal(&prior());
         let mut right = Unknowns::zeros();

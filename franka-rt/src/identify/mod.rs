@@ -133,8 +133,7 @@ impl Identified {
     /// Checks that these values are plausible and suit this kind of robot.
     ///
     /// # Errors
-    /// Returns [`KnownError`] if the values belong to another kind, or if a number is not finite or
-    /// implausible.
+    /// Returns [`KnownError`] if the kind differs or a number is implausible.
     pub fn check(&self, expected: RobotKind) -> Result<(), KnownError> {
         let got = self.kind;
         if got != expected {

@@ -115,7 +115,7 @@ impl Plan {
         self.budget
     }
 
-    /// Returns the largest distances that the motions move the arm.
+    /// Returns the reach of the motions.
     pub fn reach(&self) -> Reach {
         self.reach
     }
@@ -196,7 +196,7 @@ const POSES: [[f64; 7]; 6] = [
     [0.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0],
 ];
 
-/// Least distance from the joint limits that the motions keep, `[rad]`.
+/// Least distance from the joint limits, `[rad]`.
 const MARGIN: f64 = 0.1;
 
 /// Time from the arrival of the reference to the arrival of the arm, `[s]`. The transients of the

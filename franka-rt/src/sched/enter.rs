@@ -18,9 +18,8 @@ impl Scheduling {
     /// Threads and processes that the thread starts later inherit the other settings.
     ///
     /// # Errors
-    /// Under [`Realtime::Enforce`], returns the first refusal; requests that were granted before it
-    /// stay in force. Under either [`Realtime`], returns an error if an option is out of range, and
-    /// then makes no request.
+    /// Under [`Realtime::Enforce`], returns the first refusal; earlier requests stay granted. Under
+    /// either [`Realtime`], returns an error if an option is out of range, and makes no request.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.enter_on(Kernel::read)
     }

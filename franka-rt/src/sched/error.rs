@@ -43,8 +43,8 @@ pub enum SchedError {
         /// errno value with the reason.
         errno: i32,
     },
-    /// Caller: the duration is out of range. A longer busy poll would leave the thread no time.
-    /// Refused under either [`Realtime`](super::Realtime).
+    /// Caller: the duration is out of range; a longer one leaves the thread no time. Refused under
+    /// either [`Realtime`](super::Realtime).
     #[error("the busy poll is {} us, expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
         /// The requested duration.
@@ -83,7 +83,7 @@ impl SchedError {
     }
 }
 
-/// Stands in for the system's error texts on systems other than Unix.
+/// Replaces the system's error text on other systems.
 #[cfg(not(unix))]
 fn error_text(errno: i32) -> String {
     format!("Unknown error {errno}")

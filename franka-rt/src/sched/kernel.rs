@@ -49,7 +49,7 @@ impl Kernel {
         }
     }
 
-    /// True if the version text, the flag or the configuration shows a real-time kernel.
+    /// True if any of these sources shows a real-time kernel.
     pub fn is_realtime(&self) -> bool {
         self.names_realtime() || self.flag.as_deref() == Some("1") || self.configured == Some(true)
     }

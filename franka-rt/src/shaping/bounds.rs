@@ -36,7 +36,7 @@ pub struct Bounds {
 pub enum VelocityBounds {
     /// The bounds are the same at every position, in both directions.
     Everywhere([f64; 7]),
-    /// The bounds depend on the position: they are lower near the ends of the joints' ranges.
+    /// The bounds are lower near the ends of the joints' ranges.
     Envelope {
         /// Limits of the joints, with their velocity envelope.
         joints: JointLimits,

@@ -1,5 +1,4 @@
-//! Checks that a command is valid: its numbers are finite, its pose is a transformation, and its
-//! elbow has a sign.
+//! Checks that the numbers of a command are finite, and that a pose or an elbow is valid.
 
 use crate::shaping::InvalidCommand;
 
@@ -22,8 +21,8 @@ pub fn finite(values: &[f64]) -> Result<(), InvalidCommand> {
 /// Checks that an array is a pose in column-major order.
 ///
 /// # Errors
-/// Returns [`InvalidCommand::NotFinite`] if an element is not finite, otherwise
-/// [`InvalidCommand::Transformation`] if the array is not a homogeneous transformation.
+/// Returns [`InvalidCommand::NotFinite`] or [`InvalidCommand::Transformation`] if the array is not
+/// such a pose.
 pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
     finite(column_major)?;
     if is_homogeneous(column_major) {
@@ -37,8 +36,7 @@ pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
 /// minus 1.
 ///
 /// # Errors
-/// Returns [`InvalidCommand::NotFinite`] if a number is not finite, otherwise
-/// [`InvalidCommand::ElbowSign`] if the sign is neither -1 nor +1.
+/// Returns [`InvalidCommand::NotFinite`] or [`InvalidCommand::ElbowSign`] if the elbow is invalid.
 pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     finite(elbow)?;
     if elbow[1] == 1.0 || elbow[1] == -1.0 {
@@ -85,7 +83,6 @@ mod tests {
         1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.3, 0.2, 0.1, 1.0,
     ];
 
-    /// Returns the identity with one element replaced.
     fn with(index: usize, value: f64) -> [f64; 16] {
         let mut m = IDENTITY;
         m[index] = value;

@@ -49,8 +49,8 @@ pub fn low_pass_each<const N: usize>(
     Ok(core::array::from_fn(|i| mix(gain, current[i], last[i])))
 }
 
-/// Filters a pose in column-major order. The translation is filtered as in [`low_pass`]. The
-/// orientation moves along the arc from the orientation of `last`.
+/// Filters a pose in column-major order: the translation as [`low_pass`] does, the orientation
+/// along the arc from the orientation of `last`.
 ///
 /// Both rotations are first replaced by the nearest orthogonal rotations. The last row is copied
 /// from `current`.

@@ -146,8 +146,7 @@ struct Symmetric {
 }
 
 impl Symmetric {
-    /// Returns the sum of the absolute values of all elements. Unlike the maximum, the sum is NaN
-    /// if an element is NaN.
+    /// Returns the sum of the absolute values of all elements. Unlike the maximum, it keeps a NaN.
     fn size(&self) -> f64 {
         let sum = |x: &[f64; 3]| x[0].abs() + x[1].abs() + x[2].abs();
         sum(&self.diagonal) + 2.0 * sum(&self.beside)
@@ -207,8 +206,7 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Largest deviation from orthogonality for which three steps of the series are enough, as the sum
-/// of the absolute values of `E`.
+/// Largest sum of the absolute values of `E` for which three steps of the series are enough.
 const POLISH_BELOW: f64 = 0.3;
 const POLISH_STEPS_MAX: usize = 4;
 /// Deviation from orthogonality below which one more step is exact up to rounding. Rotations

@@ -89,9 +89,8 @@ impl Histogram {
         (self.count() > 0).then(|| Duration::from_nanos(self.max.load(Ordering::Relaxed)))
     }
 
-    /// Returns the quantile `quantile`, in `[0, 1]`. The result is at most 1/16 above the exact
-    /// quantile. `None` if the histogram is empty. Reads all buckets, so do not call it on the
-    /// real-time thread.
+    /// Returns the quantile `quantile`, in `[0, 1]`, rounded up by at most 1/16. `None` if the
+    /// histogram is empty. Reads all buckets, so do not call it on the real-time thread.
     pub fn quantile(&self, quantile: f64) -> Option<Duration> {
         let max = self.max()?;
         let wanted = (quantile.clamp(0.0, 1.0) * self.count() as f64)

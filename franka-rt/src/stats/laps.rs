@@ -16,7 +16,6 @@ pub(crate) struct Laps {
 
 #[cfg(feature = "cycle-phases")]
 impl Laps {
-    /// Starts the first phase of a cycle.
     pub(crate) fn start(at: Instant) -> Self {
         Self {
             last: at,
@@ -29,7 +28,7 @@ impl Laps {
         self.end_at(phase, Instant::now());
     }
 
-    /// Ends a phase at `at`, for a caller that has already read the clock.
+    /// Ends a phase at `at`, a time that was already read.
     pub(crate) fn end_at(&mut self, phase: Phase, at: Instant) {
         let taken = at.saturating_duration_since(self.last);
         self.last = at;

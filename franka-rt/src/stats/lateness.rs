@@ -52,8 +52,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Returns the lateness of states from a robot whose clock is fast by `ppm`, if each state
-    /// arrives late by `late`, in microseconds.
+    /// Returns the lateness of states, in microseconds, if each state is late by `late` and the
+    /// robot's clock is fast by `ppm`.
     fn lateness(times: core::ops::Range<u64>, ppm: i64, late: impl Fn(u64) -> u64) -> Vec<u64> {
         let start = Instant::now();
         let mut arrivals = Arrivals::default();

@@ -77,7 +77,6 @@ impl Meter {
         }
     }
 
-    /// Returns the statistics, for their readers.
     pub(crate) fn stats(&self) -> &Arc<Stats> {
         &self.stats
     }

@@ -64,8 +64,8 @@ pub struct Stats {
     pub send_errors: Counter,
     /// Records that were dropped because their ring was full.
     pub records_lost: Counter,
-    /// States that were dropped from the ring of all states because the ring was full. They were
-    /// answered all the same, and each was published if it was the newest state.
+    /// States that were dropped from the ring of all states because it was full. They were still
+    /// answered and published as the newest state.
     pub states_lost: Counter,
     /// Reports of the loop itself, not of the driver, that were dropped because the queue was full.
     pub reports_lost: Counter,
@@ -127,8 +127,8 @@ impl Counter {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Adds to the count and wraps. Only the one writer may call it, so it uses a load and a store,
-    /// which are cheaper than a read-modify-write.
+    /// Adds to the count and wraps. Only the one writer may call it: a load and a store are cheaper
+    /// than a read-modify-write.
     pub(crate) fn add(&self, more: u64) {
         if more != 0 {
             self.0

@@ -21,12 +21,10 @@ pub(crate) fn pin_to(_: usize) -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// Refuses: memory is not locked.
 pub(crate) fn lock_memory() -> Result<(), i32> {
     Err(libc::ENOTSUP)
 }
 
-/// Refuses: receives do not poll.
 pub(crate) fn busy_poll(_: &impl AsFd, _: Duration) -> Result<(), i32> {
     Err(libc::ENOPROTOOPT)
 }

@@ -16,14 +16,12 @@ pub(super) struct BorrowerWatch<'a> {
     turns: u64,
     /// Time since the last turn.
     idle: Duration,
-    /// Time of the last check.
     looked: Instant,
     /// Result of the last check.
     stalled: bool,
 }
 
 impl<'a> BorrowerWatch<'a> {
-    /// Returns a watch that begins at `now`.
     pub(super) fn new(
         lifetime: &'a Lifetime,
         event_fd: &'a EventFd,
@@ -41,9 +39,9 @@ impl<'a> BorrowerWatch<'a> {
         }
     }
 
-    /// Checks whether there was a turn since the last check. `now` is the time of this check.
-    /// Checks are one tick apart. If more time has passed, the host has delayed this thread, and
-    /// perhaps also the borrower, so only one tick counts.
+    /// Checks at the time `now` whether there was a turn since the last check. If more than a tick
+    /// has passed, the host has delayed this thread, and perhaps the borrower, so only one tick
+    /// counts.
     pub(super) fn look(&mut self, now: Instant) {
         let turns = self.lifetime.turns();
         if turns == self.turns {
@@ -56,7 +54,7 @@ impl<'a> BorrowerWatch<'a> {
         self.set(self.idle >= self.timeout);
     }
 
-    /// Sets the flag, and notifies if it changed, also if a turn of the borrower changed it.
+    /// Sets the flag. Notifies if it changed, even if a turn of the borrower changed it.
     fn set(&mut self, stalled: bool) {
         if self.lifetime.set_stalled(stalled) || self.stalled != stalled {
             self.stalled = stalled;

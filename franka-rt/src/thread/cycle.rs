@@ -37,7 +37,6 @@ pub(super) struct Cycle<C: Core> {
     /// Buffer from which a state is copied into the queue and the slot.
     pub(super) datagram: Box<Datagram>,
     pub(super) meter: Meter,
-    /// Times the phases of the cycle.
     pub(super) laps: Laps,
     pub(super) event_fd: EventFd,
     pub(super) state_wakeups: StateWakeups,

@@ -123,8 +123,7 @@ impl<R: Send + 'static> CycleFeed<R> {
     /// writes to all of it, which takes some milliseconds.
     ///
     /// # Errors
-    /// Returns [`AttachError`] if the capacity is out of range or the thread cannot accept the
-    /// reader.
+    /// Returns [`AttachError`] if the thread cannot accept the reader.
     pub fn attach(&self, capacity: usize) -> Result<CycleReader<R>, AttachError> {
         if !(1..=Self::CAPACITY_MAX).contains(&capacity) {
             return Err(AttachError::Capacity { got: capacity });

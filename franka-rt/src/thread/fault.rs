@@ -1,4 +1,4 @@
-//! Faults of the link to the robot: bad datagrams, and receives or sends that failed.
+//! Faults of the link: bad datagrams, and failed receives and sends.
 
 use franka_proto::DecodeError;
 

@@ -245,7 +245,6 @@ impl Words for Datagram {
     }
 }
 
-/// Number of bytes in a word.
 const WORD: usize = size_of::<u64>();
 
 #[cfg(test)]

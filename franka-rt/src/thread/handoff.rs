@@ -37,7 +37,6 @@ enum HandoffState<T> {
     Running,
     /// The value is on its way to a borrower.
     Offered(T),
-    /// A borrower has the value.
     Lent,
     /// The value is on its way back.
     Returned(T),

@@ -34,7 +34,7 @@ impl<C: Core> Lender<C> {
     /// lasts a cycle, or a [`TICK`](crate::exchange::TICK) if the robot is silent.
     ///
     /// # Errors
-    /// Returns [`BorrowError`] if another borrower has the cycle or the control thread has ended.
+    /// Returns [`BorrowError`] if the cycle is not available.
     pub fn borrow(&self) -> Result<Lease<C>, BorrowError> {
         Ok(Lease {
             cycle: Some(self.handoff.borrow()?),

@@ -14,7 +14,6 @@ use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub(super) struct Lifetime {
     stop: AtomicBool,
     ended: AtomicBool,
-    /// Number of turns that borrowers have run.
     turns: AtomicU64,
     stalled: AtomicBool,
 }

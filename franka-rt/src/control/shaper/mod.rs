@@ -16,8 +16,7 @@ use crate::shaping::{
     check, filter, limiter,
 };
 
-/// Shapes the commands of a control loop: applies a low-pass filter, a limiter and a check, in this
-/// order.
+/// Shapes the commands of a control loop: low-pass filter, limiter and check, in this order.
 ///
 /// ```
 /// use franka_proto::{RobotState, Version};

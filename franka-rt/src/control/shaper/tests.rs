@@ -1,4 +1,4 @@
-//! Tests of the order of the steps, of their reference values, and of their refusals.
+//! Tests of the order, the reference values and the refusals of the steps.
 
 use franka_model::transform;
 use nalgebra::{Isometry3, Vector3};

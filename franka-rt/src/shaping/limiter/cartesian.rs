@@ -42,8 +42,8 @@ pub fn cartesian_velocity(
     Ok([v.x, v.y, v.z, w.x, w.y, w.z])
 }
 
-/// Limits a pose in the base frame, in column-major order. The bounds apply to the twist from
-/// `last_pose` to the pose.
+/// Limits a column-major pose in the base frame. The bounds apply to the twist from `last_pose` to
+/// it.
 ///
 /// The rotations of both poses are replaced by the nearest orthogonal rotations. The rotational
 /// bounds are multiplied by [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.

@@ -73,8 +73,8 @@ fn norms(twist: &[f64; 6]) -> [f64; 2] {
     ]
 }
 
-/// Returns the nominal limits of the linear and the angular part, which the robot checks. Their
-/// distance from the bounds is room for rounding.
+/// Returns the nominal limits of both parts, which the robot checks. Their distance from the bounds
+/// is room for rounding.
 fn halves(limits: &CartesianLimits) -> [MotionLimits; 2] {
     [limits.translation, limits.rotation]
 }
