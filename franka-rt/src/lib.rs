@@ -20,7 +20,7 @@
 //! * [`supervision`]: handles lost connections, reconnects, reflexes and recovery. Without I/O.
 //! * [`together`]: makes motions of several robots begin at the same time. [`team`]: sessions of
 //!   several robots whose motions begin together. If one robot has a fault, all of them brake.
-//! * [`thread`]: contains the loop, and is the only module with a socket and a clock.
+//! * [`thread`]: the only loop. It owns the socket and reads the clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: the
 //!   parts of the loop. [`stats`] defines when a state is late.
 //!
@@ -31,7 +31,7 @@
 //! identify a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// Only the thread uses these items.
+// Without the thread, its items are unused.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;

@@ -1,10 +1,10 @@
-//! Tare of the external wrench: the robot reports a wrench even for an untouched arm, which a
-//! [`WrenchTare`] removes.
+//! Tare of the external wrench. The robot reports a wrench even if nothing touches the arm, and a
+//! [`WrenchTare`] subtracts it.
 //!
-//! The models of arm, tool and friction are never exact, so the robot reports a newton or two
-//! although nothing touches the arm. A [`WrenchTare`] is the average of these estimates at rest, to
-//! be subtracted later. It holds for the posture in which it was taken: the part that comes from
-//! wrong weights turns with the arm. Friction also differs after each motion.
+//! The models of arm, tool and friction are never exact, so this wrench is a newton or two. A
+//! [`WrenchTare`] is the average of the robot's estimates at rest. It holds for the posture in
+//! which it was taken: the part that comes from wrong weights turns with the arm. Friction also
+//! differs after each motion.
 //!
 //! # The moment
 //!
@@ -47,9 +47,8 @@ impl WrenchTare {
     pub const NEAR: f64 = 0.035;
 
     /// Returns the wrench of a state minus the tare: force, then moment about the origin of the
-    /// stiffness frame, in axes of the base, `[N, N m]`. The sign is that of the wrench that the
-    /// arm exerts. `None` if the robot has no estimate, because near a singularity it reports
-    /// zeros.
+    /// stiffness frame, in axes of the base, `[N, N m]`. It is the wrench that the arm exerts.
+    /// `None` if the robot has no estimate, because near a singularity it reports zeros.
     pub fn compensate(&self, state: &RobotState) -> Option<[f64; 6]> {
         let wrench = estimate(state)?;
         Some(core::array::from_fn(|i| wrench[i] - self.wrench[i]))

@@ -304,9 +304,9 @@ impl Member {
     /// stopped.
     ///
     /// If an arm failed during the motion, this also stops a newer round that has begun in the
-    /// meantime, because the other members may still pursue their goals of `round`. It does not if
-    /// this member has seen that `round` stopped. A goal that was cancelled, was refused or has
-    /// waited too long stops only its own round.
+    /// meantime, because the other members may still pursue their goals of `round`. It does not
+    /// stop the newer round if this member has seen that `round` stopped. A goal that was
+    /// cancelled, was refused or has waited too long stops only its own round.
     pub fn give_up(&self, round: Round, fault: MemberFault) {
         let cause = Cause::Member(fault);
         match fault {

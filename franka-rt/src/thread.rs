@@ -16,9 +16,9 @@
 //! The loop can lend its cycle through a [`Lease`]: a thread of the program then runs the cycle
 //! instead of this thread, until it returns the cycle.
 //!
-//! No other part of the crate reads the clock. The loop measures how long the robot is silent, the
-//! interval between states, and the time that an answer takes. With the feature `cycle-phases` it
-//! also measures each part of an answer. The control itself, in the core, uses the robot's clock.
+//! The core reads no clock: control uses the robot's time. The loop measures how long the robot is
+//! silent, the interval between states, and the time that an answer takes. With the feature
+//! `cycle-phases` it also measures each part of an answer.
 //!
 //! A panic in the core ends only the loop. The robot then receives no commands and stops on its
 //! own. The eventfd is notified, and [`Thread::join`] returns the panic's message, which the
@@ -72,7 +72,7 @@ use crate::stats::{Laps, Meter};
 pub struct ThreadConfig {
     /// Requests to the operating system.
     pub scheduling: Scheduling,
-    /// Lengths of the queues, each at least 1.
+    /// Lengths of the thread's queues.
     pub capacity: Capacity,
 }
 

@@ -85,16 +85,16 @@ pub enum AbortReason {
 }
 
 impl TargetStatus {
-    /// Default distance from the target at which it counts as reached: the Euclidean norm over the
-    /// desired joint positions, `[rad]`. Source: libfranka 0.21,
+    /// Default distance between the desired joint positions and the target below which the target
+    /// counts as reached: the Euclidean norm, `[rad]`. Source: libfranka 0.21,
     /// `async_position_control_handler.hpp`.
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
-    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`. The
-    /// source is the same.
+    /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
+    /// Source: the same file.
     pub const REST: f64 = 0.01;
 
-    /// Returns the status of the newest target, as a state of the motion shows it.
+    /// Returns the status of the newest target, which a state of the motion shows.
     pub fn of(state: &RobotState, target: Option<&[f64; 7]>, goal_tolerance: f64) -> Self {
         let Some(target) = target else {
             return Self::Idle;

@@ -133,7 +133,7 @@ impl MotionCommand {
     }
 }
 
-/// Commands of one kind, for one motion generator.
+/// A type of command for one motion generator.
 pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
     /// A command of zeros, without an elbow. It is sent while there is no other command.
     const ZERO: Self;

@@ -83,7 +83,7 @@ pub struct Ended {
     pub log: ControlLog,
     /// The motion's ticket, if the motion was part of a common start of several robots.
     pub ticket: Option<StartTicket>,
-    /// The observer of the motion's cycles.
+    /// Observer of the motion's cycles.
     pub observer: Option<Observer>,
 }
 

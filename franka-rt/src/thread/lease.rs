@@ -58,8 +58,8 @@ impl<C: Core> core::fmt::Debug for Lender<C> {
 
 /// The cycle of a control thread, borrowed by another thread. Dropping the lease returns the cycle.
 ///
-/// While the lease exists, only its turns read, publish and count states. If it runs no turn for
-/// the link timeout, [`Thread::stalled`](super::Thread::stalled) reports this.
+/// While the lease exists, only its turns read, publish and count states. If the lease runs no turn
+/// for the link timeout, [`Thread::stalled`](super::Thread::stalled) reports this.
 ///
 /// If the borrowing thread panics, the cycle is returned as well. If the core itself panics, in a
 /// [`turn`](Self::turn) or a [`write`](Lease::write), the cycle is destroyed and the control thread

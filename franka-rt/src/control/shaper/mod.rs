@@ -116,8 +116,8 @@ impl Shaper {
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
     }
 
-    /// True if libfranka's control loops limit commands by default: libfranka up to 0.9 does so for
-    /// the FER, and newer libfranka does not for the FR3.
+    /// True if libfranka's control loops limit commands by default. They do so for the FER
+    /// (libfranka up to 0.9), but not for the FR3.
     pub fn limits_by_default(version: Version) -> bool {
         Conventions::of(version).limit_rate
     }
@@ -129,9 +129,9 @@ impl Shaper {
         self.limited()
     }
 
-    /// Replaces the velocity limits of the joints, also in [other bounds](Self::with_bounds), by
-    /// those of `joints`, from the robot's description. Has no effect if the robot's velocity
-    /// limits do not depend on position.
+    /// Replaces the velocity limits of the joints by those of `joints`, from the robot's
+    /// description, also in [other bounds](Self::with_bounds). Has no effect if the robot's
+    /// velocity limits do not depend on position.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         self.limits = Some(*joints);
