@@ -37,7 +37,7 @@ pub const TICK: Duration = Duration::from_millis(20);
 /// quarter of `link_timeout`, and at most a [`TICK`].
 ///
 /// The thread notices a loss late by at most a quarter of the timeout plus two of the kernel's
-/// clock ticks (4 ms at 250 Hz), because the kernel counts such waits in ticks.
+/// clock ticks (4 ms at 250 Hz). The kernel counts such waits in ticks.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
@@ -262,8 +262,8 @@ pub enum SendError {
 /// default receive buffer of Linux (212992 bytes) holds fewer states.
 pub const DRAIN_MAX: usize = 256;
 
-/// Largest step from the newest `message_id` to that of a new state, `[ms]` of the robot's clock:
-/// 49 days. No connection survives such a silence, so a larger step cannot be genuine.
+/// Largest step of a new state's `message_id` above the newest, `[ms]` of the robot's clock: 49
+/// days. No connection survives such a silence, so a larger step cannot be genuine.
 pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.

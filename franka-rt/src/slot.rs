@@ -29,8 +29,8 @@
 //! interleavings.
 //!
 //! The count does not have its own cache line. Padding it to 128 bytes was measured on a busy
-//! virtual machine with two cores, with a reader on the second core. A write of a state (330 words)
-//! has a median of 71 ns in most runs, and a write of 64 words takes 29 ns. The tails differ more
+//! virtual machine with two cores, with a reader on the second core. A write of a state, 330 words,
+//! takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The tails differ more
 //! between runs than between the two layouts. With one write per millisecond, padding saves nothing
 //! relevant.
 

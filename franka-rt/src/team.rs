@@ -67,7 +67,7 @@ impl Round {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TeamStop {
-    /// Caller: a program asked the team to stop.
+    /// Caller: a program stopped the team.
     Requested,
     /// A member has a fault; its own motion reports the details.
     Member {
@@ -300,8 +300,7 @@ impl Member {
         (stop != own).then_some(stop)
     }
 
-    /// Stops `round` because of a fault of this member in it. Has no effect if the round has
-    /// stopped.
+    /// Stops `round` because of a fault of this member. Has no effect if the round has stopped.
     ///
     /// If an arm failed during the motion, this also stops a newer round that has begun in the
     /// meantime, because the other members may still pursue their goals of `round`. It does not
@@ -368,8 +367,7 @@ impl Drop for Member {
 #[derive(Debug)]
 struct Shared {
     word: AtomicU64,
-    /// The word of the newest stopped round, if a newer round has replaced it. It is written after
-    /// the new word.
+    /// Word of the newest stopped round, if it was replaced. Written after the new word.
     stopped: AtomicU64,
     /// Newest stop that each member has seen; [`GONE`] for a member that has left.
     seen: Box<[AtomicU64]>,
@@ -445,7 +443,7 @@ impl Shared {
         }
     }
 
-    /// Replaces the word while `to` returns a new word. Returns the newest word.
+    /// Replaces the word if `to` returns a new word. Returns the newest word.
     fn change(&self, to: impl Fn(Word) -> Option<Word>) -> Word {
         let mut word = self.look();
         while let Some(next) = to(word) {

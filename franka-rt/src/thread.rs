@@ -90,8 +90,8 @@ pub struct Capacity {
 }
 
 impl Default for Capacity {
-    /// Returns lengths for 16 orders (a motion needs two), 64 notices (a motion causes a handful),
-    /// 2048 records (two seconds) and 1024 states (one second).
+    /// Returns 16 orders (a motion needs two) and 64 notices (a motion causes a handful). The 2048
+    /// records are two seconds, and the 1024 states are one second.
     fn default() -> Self {
         Self {
             orders: 16,

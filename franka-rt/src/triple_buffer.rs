@@ -1,10 +1,10 @@
 //! Buffer with one writer and one reader that passes only the newest value, of any type. Goals
 //! enter the thread through it.
 //!
-//! The buffers are those of the crate `triple_buffer`. The writer and the reader each own one
-//! buffer, and exchange it with the third buffer in one atomic step. So neither side waits for the
-//! other, and the reader never gets a mixture of two values. [`slot`](crate::slot) supports many
-//! readers, but only values that can be stored as words.
+//! The buffers come from the crate `triple_buffer`. The writer and the reader each own one buffer,
+//! and exchange it with the third buffer in one atomic step. So neither side waits for the other,
+//! and the reader never gets a mixture of two values. [`slot`](crate::slot) supports many readers,
+//! but only values that can be stored as words.
 //!
 //! ```
 //! let (mut writer, mut reader) = franka_rt::triple_buffer::triple_buffer();

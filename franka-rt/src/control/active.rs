@@ -185,7 +185,7 @@ mod tests {
                 true,
                 Err(Misfit::NoGenerator.into()),
             ),
-            // Numbers are checked last: those of the motion command before the torques.
+            // Numbers are checked last, in the motion command before the torques.
             (
                 INTERNAL,
                 Some(bad),

@@ -15,8 +15,8 @@ type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
 /// The program of a motion that passes every state to one or two control functions.
 ///
-/// The rules are those of libfranka's control loops. A function receives a state and the time since
-/// the previous state by the robot's clock. This time is zero at first, and more than a millisecond
+/// The rules follow libfranka's control loops. A function receives a state and the time since the
+/// previous state by the robot's clock. This time is zero at first, and more than a millisecond
 /// after a lost state. The low-pass filter, the limiter and the checks process the returned
 /// command. Two functions receive the same state and time. Once one function finishes, the other is
 /// not called any more, and the last command contains its command of the previous cycle. Protocol

@@ -56,7 +56,7 @@ impl Column {
         COLUMNS.iter().find(|column| column.name == name)
     }
 
-    /// Returns the number of numbers in one cycle of the column.
+    /// Returns how many numbers the column contains in one cycle.
     pub fn width(&self) -> usize {
         self.shape.iter().product()
     }

@@ -114,7 +114,7 @@ impl ControlLog {
     }
 
     /// Returns the log as a table with one row per cycle and times in milliseconds, or an empty
-    /// string for an empty log. Column names and number format are those of `franka::logToCSV` in
+    /// string for an empty log. Column names and number format are as in `franka::logToCSV` of
     /// libfranka 0.21.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();

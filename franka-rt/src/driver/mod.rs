@@ -303,9 +303,9 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Reports that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
-    /// the other robots of a team brake. After the link timeout, the motion ends with
-    /// [`Ending::LinkLost`].
+    /// Reports that no state has come for `silence`. After the silence that the team tolerates, by
+    /// default [`team::SILENCE`](crate::team::SILENCE), the other robots of the team brake. After
+    /// the link timeout, the motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
             begun.program.on_silence(silence);

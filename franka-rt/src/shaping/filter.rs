@@ -52,8 +52,8 @@ pub fn low_pass_each<const N: usize>(
 /// Filters a pose in column-major order: the translation as [`low_pass`] does, the orientation
 /// along the arc from the orientation of `last`.
 ///
-/// Both rotations are first replaced by the nearest orthogonal rotations. The last row is copied
-/// from `current`.
+/// The rotation block of each pose is first replaced by the nearest rotation. The last row is
+/// copied from `current`.
 ///
 /// # Errors
 /// Returns [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.

@@ -207,7 +207,7 @@ mod tests {
     #[test]
     fn quantiles_are_within_a_sixteenth_of_the_sorted_values() {
         let histogram = Histogram::default();
-        // These values spread unevenly from 40 to 40 000 000 ns, out of order.
+        // The values spread unevenly up to 40 ms, out of order.
         let mut values: Vec<u64> = (0..5000u64)
             .map(|i| 40 + (i * 7919 % 5000).pow(2) * 8 / 5)
             .collect();

@@ -122,14 +122,14 @@ impl Shaper {
         Conventions::of(version).limit_rate
     }
 
-    /// Replaces the bounds. The default bounds are those of the robot that speaks the version.
+    /// Replaces the bounds. By default, the version determines the bounds.
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
         self.limited()
     }
 
-    /// Replaces the velocity limits of the joints by those of `joints`, from the robot's
+    /// Replaces the velocity limits of the joints by the limits in `joints`, from the robot's
     /// description, also in [other bounds](Self::with_bounds). Has no effect if the robot's
     /// velocity limits do not depend on position.
     #[must_use]

@@ -45,8 +45,8 @@ pub fn cartesian_velocity(
 /// Limits a column-major pose in the base frame. The bounds apply to the twist from `last_pose` to
 /// it.
 ///
-/// The rotations of both poses are replaced by the nearest orthogonal rotations. The rotational
-/// bounds are multiplied by [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
+/// The rotation block of each pose is replaced by the nearest rotation. The rotational bounds are
+/// multiplied by [`POSE_ROTATION_SHARE`]. `last_pose` is not checked.
 ///
 /// # Errors
 /// Returns [`InvalidCommand::Pose`] if an element of `command` is not finite, otherwise

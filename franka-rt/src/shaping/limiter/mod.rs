@@ -22,9 +22,9 @@
 //!   vector turns at the velocity bound, or if a joint meets its velocity envelope.
 //! * A velocity above its upper bound returns at the acceleration bound. A velocity below its lower
 //!   bound returns by half of the excess per cycle, at any acceleration.
-//! * The velocity envelopes of joints 5 and 7 of the FR3 assume a deceleration of 17 rad/s^2, but
-//!   the limiter brakes with 10 rad/s^2. If these joints move at full speed towards the upper end
-//!   of their range, they pass that end.
+//! * The velocity envelopes of joints 5 and 7 of the FR3 assume a deceleration of 17 rad/s^2. The
+//!   limiter brakes with 10 rad/s^2. If these joints move at full speed towards the upper end of
+//!   their range, they pass that end.
 //!
 //! The robot checks every command against its own limits. None of these cases occurs while commands
 //! stay away from the bounds.
