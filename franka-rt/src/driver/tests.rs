@@ -369,13 +369,13 @@ fn motion_counts_lost_and_skipped_states_until_its_end() {
         control_command_success_rate: rate,
         ..moving(time)
     };
-    driver.on_skipped(3); // Before it runs: not the motion's.
+    driver.on_skipped(3); // Skipped before the motion runs, so not counted.
     assert!(answer(&mut driver, &state(101, 0.0)).is_some());
     assert!(answer(&mut driver, &state(102, 1.0)).is_some());
     driver.on_skipped(2);
     assert!(answer(&mut driver, &state(108, 0.75)).is_some());
     assert_eq!(driver.record().skipped, 5);
-    driver.on_skipped(9); // More than there is room for: a robot that counts wrongly.
+    driver.on_skipped(9); // More than the gap: the robot counts wrongly.
     assert!(answer(&mut driver, &state(110, 0.5)).is_some());
     let running = *driver.statistics().expect("it runs");
     assert_eq!((running.lost_states, running.skipped_states), (3, 3));

@@ -57,7 +57,7 @@ impl Scheduling {
     /// `granted`.
     ///
     /// # Errors
-    /// Returns [`SchedError::BusyPoll`] if the system refuses to poll, under [`Realtime::Enforce`].
+    /// Under [`Realtime::Enforce`], returns [`SchedError::BusyPoll`] if the system refuses to poll.
     pub fn tune(&self, socket: &impl AsFd, granted: &mut Granted) -> Result<(), SchedError> {
         self.check()?;
         let Some(duration) = self.busy_poll else {

@@ -98,7 +98,7 @@ pub fn kernel_is_realtime() -> bool {
 mod tests {
     use super::*;
 
-    /// A kernel with this version text, flag and configuration.
+    /// Returns a kernel with this version text, flag and configuration.
     fn kernel(version: &str, flag: Option<&str>, configured: Option<bool>) -> Kernel {
         Kernel {
             release: "6.12.43".into(),
@@ -112,12 +112,12 @@ mod tests {
     fn kernel_with_any_real_time_reading_is_real_time() {
         let plain = "#1 SMP PREEMPT_DYNAMIC Debian 6.12.43-1 (2025-08-27)";
         for (version, flag, configured, expected) in [
-            // Debian 13, since 6.12: the file does not exist.
+            // Debian 13 does not have the file since 6.12.
             ("#1 SMP PREEMPT_RT Debian 6.12.43-1", None, None, true),
-            // Patched kernels up to 6.11 have the file. Older ones spell the words like this.
+            // Patched kernels up to 6.11 have the file. Older kernels spell the words as follows.
             ("#14 SMP PREEMPT_RT Thu Oct 6", Some("1"), None, true),
             ("#1 SMP PREEMPT RT Mon Mar 9", None, None, true),
-            // A distribution with its own version text.
+            // This distribution has its own version text.
             ("custom", Some("1"), None, true),
             ("custom", None, Some(true), true),
             (plain, None, None, false),

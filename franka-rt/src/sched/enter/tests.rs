@@ -1,4 +1,4 @@
-//! Effect of the scheduling options in the kernel.
+//! Tests of the effect that the scheduling options have in the kernel.
 
 use super::*;
 
@@ -18,8 +18,8 @@ fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     .expect("entering does not panic")
 }
 
-/// Real-time priority and policy: fields 40 and 41 of `proc_pid_stat(5)`, counted after the
-/// parenthesised name.
+/// Returns real-time priority and policy: fields 40 and 41 of `proc_pid_stat(5)`, counted after the
+/// name in parentheses.
 fn priority_and_policy(stat: &str) -> (i32, i32) {
     let fields: Vec<&str> = stat[stat.rfind(')').expect("a name") + 1..]
         .split_whitespace()
