@@ -1,5 +1,5 @@
 //! The watchdog: if the targets of a goal stop arriving, the arm holds the last target or brakes.
-//! (For late states see `stats::arrivals`; for a robot that sends no states see
+//! (For late states see `stats::lateness`; for a robot that sends no states see
 //! `driver::link_timeout`.)
 
 use core::time::Duration;
