@@ -56,6 +56,34 @@ fn stream_timeout_holds_or_brakes_as_the_outcome_says() {
     });
 }
 
+/// A target that equals the previous one counts too, until the arm rests.
+#[test]
+fn a_repeated_target_resumes_a_stream_that_timed_out() {
+    for_each_robot(|ready| {
+        for on_timeout in [OnTimeout::Hold, OnTimeout::Brake] {
+            for wait in (102..160).step_by(10) {
+                let mut lockstep = ready();
+                let engaged = lockstep.engage();
+                let target = turned(0.3);
+                let goal = watched(&mut lockstep, target, 100, on_timeout);
+                let goal = lockstep.submit_within(engaged, goal).unwrap();
+                let what = format!("{on_timeout:?}, repeated after {wait} ms");
+                lockstep.run(wait);
+                let bindings = lockstep.client.record.bindings;
+                assert!(bindings.contains(Guard::Watchdog), "{what}");
+                for _ in 0..50 {
+                    assert_eq!(lockstep.update(goal, target), Ok(true), "{what}");
+                    lockstep.run(50);
+                    let bindings = lockstep.client.record.bindings;
+                    assert!(!bindings.contains(Guard::Watchdog), "{what}");
+                }
+                let short = (READY[0] + 0.3 - lockstep.robot.q()[0]).abs();
+                assert!(short < 2e-3, "{what}: {short} rad short of the target");
+            }
+        }
+    });
+}
+
 #[test]
 fn deadman_timeout_holds_the_arm_until_kept_alive_again() {
     for_each_robot(|ready| {
