@@ -92,10 +92,9 @@ use membership::Membership;
 use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
-/// Longest time for which an obstacle, or the joints' bounds, may hold the reference back. After
-/// that time, a goal that should finish is braked and ends where the arm is. Pauses of up to a
-/// second count as part of this time. If the arm comes nearer to its target than before, the time
-/// starts again.
+/// Time for which an obstacle, or the joints' bounds, may hold the reference back while the arm
+/// comes no nearer to its target. A goal that should finish is then braked, and ends where it is.
+/// Pauses of up to a second count as part of this time.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// One session of target control. The program creates the session, moves it into the control

@@ -104,7 +104,6 @@ impl RunningSession {
     pub(super) fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
         self.is_refined = false;
-        self.held_back = 0;
         self.progress = Progress::default();
         self.route.chunk_end = None;
         self.begin_line();

@@ -98,15 +98,10 @@ pub(super) struct RunningSession {
     reacting: Option<Reacting>,
     /// True if the arm stops or rests at a possible contact after a reaction.
     yields: bool,
-    /// Counter that grows by 1 in each cycle in which something holds the course back, and falls by
-    /// 1 in all other cycles.
-    held_back: u64,
     progress: Progress,
     /// The straight line of the goal, if it has one.
     line: Option<Line>,
-    /// The same counter for cycles in which the leash holds the course back.
-    leashed: u64,
-    /// True if the goal landed away from its target because something held the course back.
+    /// True if the goal landed short of its target because the course was held back.
     obstructed: bool,
     /// True if the reference waits for the other arms that carry the same object.
     waits: bool,
@@ -213,10 +208,8 @@ impl RunningSession {
             ignores: false,
             afterwards,
             stage: GoalStage::UnderWay,
-            held_back: 0,
             progress: Progress::default(),
             line: None,
-            leashed: 0,
             obstructed: false,
             arm: Measured {
                 time: state.message_id,
@@ -434,7 +427,7 @@ impl RunningSession {
         }
         let leashed = self.held.is_some();
         bindings.set(Guard::Leash, leashed || step.leashed);
-        self.count_held(leashed, step.held, state.message_id);
+        self.watch_progress(leashed, step.held, state.message_id);
         let met = self.reacted().is_some();
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {

@@ -8,7 +8,7 @@ use crate::session::arrival::{self, Landing, PoseError, Release, Verdict};
 use crate::session::guard::joint_bounds;
 use crate::session::reference::Reference;
 use crate::session::{
-    Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
+    Lapse, OnArrival, OnTimeout, SessionEvent, Settlement, Target, Tolerance, rigid,
 };
 
 /// Joint velocity below which the reference may be stopped in one cycle, `[rad/s]`. Joints at their
@@ -145,8 +145,7 @@ impl RunningSession {
     /// Begins the landing when the reference has arrived, or if something held it back for too
     /// long.
     fn end_way(&mut self, model: &Model) {
-        let stalled =
-            u128::from(self.held_back) >= STALL_TIMEOUT.as_millis() || self.progress.is_stalled();
+        let stalled = self.progress.is_stalled();
         let heading = self.heading();
         let pursued = heading != Target::Rest && !self.is_given_up();
         let done = self.route.is_done() || !pursued && self.response.refuses();
@@ -193,7 +192,7 @@ impl RunningSession {
                 Drive::Torques(_) => Tolerance::of(&self.goal.gains),
                 Drive::Setpoints(stream) => Tolerance::under(stream.controller()),
             });
-            self.obstructed = stalled && 2 * self.leashed >= self.held_back;
+            self.obstructed = stalled && self.progress.is_obstructed();
             self.stage = GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
         }
     }

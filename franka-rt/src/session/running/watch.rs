@@ -117,37 +117,29 @@ impl RunningSession {
         exceeded
     }
 
-    /// Counts one cycle in which the leash holds the course back, the `course` is held back itself,
-    /// or nothing holds it back.
-    pub(super) fn count_held(&mut self, leashed: bool, course: bool, now: u64) {
-        let count = |held: bool, before: u64| match held {
-            true => before + 1,
-            false => before.saturating_sub(1),
-        };
+    /// Records whether the leash or the `course` itself holds the goal back.
+    pub(super) fn watch_progress(&mut self, leashed: bool, course: bool, now: u64) {
         let held = leashed || course || self.lags || self.route.hindrance().is_some();
-        self.held_back = count(held, self.held_back);
-        self.leashed = count(leashed, self.leashed);
         match held {
-            true => self.watch_progress(now),
+            true => self.progress.hold(self.distance(now), leashed, now),
             false => self.progress.release(now),
         }
     }
 
-    /// Records how far the measured arm is from its target, in a cycle in which something holds the
-    /// goal back. For a chunk, records its remaining time instead, because its points may lead away
-    /// from its end.
-    fn watch_progress(&mut self, now: u64) {
+    /// Returns the distance of the measured arm from its target, in any unit; infinite for a target
+    /// without a place. A chunk has its remaining time instead, since its points may lead away from
+    /// its end.
+    fn distance(&self, now: u64) -> f64 {
         let arm = &self.arm;
-        let distance = match (&self.route.course, self.heading()) {
+        match (&self.route.course, self.heading()) {
             (Course::Chunk(chunk), _) => chunk.remaining(now),
             (_, Target::Pose(there)) => {
                 let off = PoseError::between(&arm.object, &there);
                 off.translation + LEVER * off.rotation
             }
             (_, Target::Joints(q)) => (JointVector::from(q) - arm.q).amax(),
-            _ => return,
-        };
-        self.progress.hold(distance, now);
+            _ => f64::INFINITY,
+        }
     }
 
     /// Gives up the goal if the arm moved faster than the cap. Returns true if it did.
