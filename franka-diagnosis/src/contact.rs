@@ -126,6 +126,36 @@ pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Ca
     })
 }
 
+/// The push on a joint that no contact flag shows, because the thresholds are high: the joint of
+/// the finding, or otherwise the joint with the largest load relative to its torque limit.
+pub(super) fn push(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
+    let limit = &evidence.model.joint_limits().torque;
+    let share = |state: &RobotState, i: usize| Sense::Joints.load(state)[i].abs() / limit[i];
+    let last = evidence.last()?;
+    let index = of.and_then(|subject| Sense::Joints.index(subject));
+    let joints = (0..7).filter(|&i| share(last, i) >= PUSH);
+    let index = joints
+        .filter(|i| index.is_none_or(|index| index == *i))
+        .max_by(|&a, &b| share(last, a).total_cmp(&share(last, b)))?;
+    let (mut since, mut value) = (last.message_id, 0.0_f64);
+    let held = evidence.states().rev();
+    for state in held.take_while(|state| share(state, index) >= PUSH) {
+        since = state.message_id;
+        let load = Sense::Joints.load(state)[index];
+        if load.abs() > value.abs() {
+            value = load;
+        }
+    }
+    Some(Cause::Contact {
+        subject: Subject::joint(index),
+        value,
+        since,
+    })
+}
+
+/// Smallest share of a joint's torque limit at which an external torque counts as a push.
+const PUSH: f64 = 0.3;
+
 /// Index of the largest load whose flag is set.
 fn largest(loads: &[f64], flags: &[f64]) -> Option<usize> {
     (0..flags.len())

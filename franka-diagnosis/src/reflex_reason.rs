@@ -281,7 +281,8 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         }
         Category::Contact | Category::Arm => {
             let is_arm = category(error) == Category::Arm;
-            let contact = contact::contact(evidence, subject.filter(|_| !is_arm));
+            let contact = contact::contact(evidence, subject.filter(|_| !is_arm))
+                .or_else(|| is_arm.then(|| contact::push(evidence, subject))?);
             // Commands after the contact, or beyond the limit, did not cause it.
             let passed = finding.filter(|_| is_arm);
             let mut since = passed.map_or(u64::MAX, |finding| finding.since);

@@ -50,7 +50,7 @@ pub struct BrakingEnvelope {
 
 impl BrakingEnvelope {
     /// Returns the speed of joint `i`, `[rad/s]`, at `distance` `[rad]` from its position limit.
-    fn speed(&self, i: usize, distance: f64) -> f64 {
+    pub fn speed(&self, i: usize, distance: f64) -> f64 {
         let parabola = sqrt((2.0 * self.deceleration[i] * distance).max(0.0));
         (parabola - self.offset[i]).max(0.0)
     }

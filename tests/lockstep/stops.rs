@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_diagnosis::{Advice, Cause, Diagnose, Subject};
 use franka_lockstep::Lockstep;
 use franka_model::{RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
@@ -145,13 +146,23 @@ fn no_motion_ends_in_a_reflex_because_hands_push_the_arm() {
     }
 }
 
+/// A hand that pushes with this force, `[N]`.
+fn steady([x, y, z]: [f64; 3]) -> Touch {
+    Touch::over_time(move |_| Wrench::new(x, y, z, 0.0, 0.0, 0.0))
+}
+
 /// The longest time from a cancel to its outcome while one hand pushes steadily, `[ms]`: the brake
 /// and a second of rest, a second of release, and the stop by the robot's own controller.
 const STEADY: u64 = 2500;
 
-/// Force of a hand that pushes harder than the force cap of a goal, `[N]`, along y or x. Joints
-/// then come fast to where the robot allows less speed.
-const STEADY_PUSHES: [[f64; 2]; 3] = [[0.0, 60.0], [0.0, -60.0], [60.0, 0.0]];
+/// Force of a hand that pushes harder than the force cap of a goal, `[N]`. Joints then come fast to
+/// where the robot allows less speed.
+const STEADY_PUSHES: [[f64; 3]; 4] = [
+    [0.0, 60.0, 0.0],
+    [0.0, -60.0, 0.0],
+    [60.0, 0.0, 0.0],
+    [0.0, 0.0, -60.0],
+];
 
 #[test]
 fn a_cancelled_motion_ends_in_no_reflex_while_a_hand_pushes_the_arm_away() {
@@ -163,19 +174,18 @@ fn a_cancelled_motion_ends_in_no_reflex_while_a_hand_pushes_the_arm_away() {
     };
     for kind in RobotKind::ALL {
         for seed in 0..arms() + 1 {
-            for [x, y] in STEADY_PUSHES {
+            for push in STEADY_PUSHES {
                 let mut lockstep = of_family(kind, seed, &family);
                 let goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
                 let id = lockstep.submit(goal).expect("within reach");
                 lockstep.run(700);
-                let push = Touch::over_time(move |_| Wrench::new(x, y, 0.0, 0.0, 0.0, 0.0));
-                lockstep.robot.touch(push.lasting(10_000));
+                lockstep.robot.touch(steady(push).lasting(10_000));
                 lockstep.run(100);
                 lockstep.cancel(id);
                 let began = lockstep.now();
                 let outcome = lockstep.until_resolved(id, 20_000);
                 let took = lockstep.now() - began;
-                let what = format!("{kind:?} {seed}, {x} {y} N: {outcome:?} after {took} ms");
+                let what = format!("{kind:?} {seed}, {push:?} N: {outcome:?} after {took} ms");
                 println!("{what}");
                 assert!(matches!(outcome, Err(MotionError::Stopped)), "{what}");
                 assert!(took <= STEADY, "{what}");
@@ -209,6 +219,30 @@ fn a_goal_is_resolved_while_hands_push_the_arm_to_and_fro() {
                 );
                 assert!(short && took <= UNDONE, "{what}");
             }
+        }
+    }
+}
+
+/// At the wrist, 60 N on the lever of the hand exceed the torque limit of joint 6.
+#[test]
+fn a_hand_stronger_than_the_wrist_is_diagnosed_with_its_joint() {
+    for kind in RobotKind::ALL {
+        for seed in 0..arms() + 1 {
+            let mut lockstep = realistic(kind, seed);
+            let goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
+            let id = lockstep.submit(goal).expect("within reach");
+            lockstep.run(700);
+            let push = steady([-60.0, 0.0, 0.0]);
+            lockstep.robot.touch(push.lasting(10_000));
+            let error = lockstep.until_resolved(id, 20_000);
+            let error = error.expect_err("the hand is stronger");
+            let diagnosis = error.diagnose().expect("ended by the robot");
+            let what = format!("{kind:?} {seed}: {diagnosis}");
+            let of_wrist = |cause: &Cause| matches!(cause, Cause::Contact { subject, .. } if *subject == Subject::Joint(6));
+            let wrist = diagnosis.causes.iter().any(of_wrist);
+            assert!(wrist, "{what}");
+            assert!(diagnosis.advice.contains(&Advice::GiveWay), "{what}");
+            println!("{what}");
         }
     }
 }

@@ -216,7 +216,7 @@ impl Effort {
         let inertial = mass * (acceleration * tuning.feedforward);
         let (tau, full) = clamp(&(tau + dynamics.coriolis + inertial), &most);
         let brake = JointVector::from(Gains::TORQUE_LIMITS);
-        let (tau, braked) = velocity_barrier::brake(&tau, (&q, &dq), &reference.dq, limits, &brake);
+        let (tau, braked) = velocity_barrier::brake(&tau, (&q, &dq), reference, limits, &brake);
         self.demanded = tau;
         let filtered = low_pass(tuning.torque_share, &tau, &last);
         let (tau, slowed) = limit_rate(&filtered, &last, &limits.torque_rate);

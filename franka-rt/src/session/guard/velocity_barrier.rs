@@ -1,69 +1,100 @@
-//! The velocity barrier: brakes a joint that comes near the robot's velocity limit, regardless of
-//! the cause.
+//! The velocity barrier: brakes a joint that comes near the robot's velocity limit, or near an end
+//! of its range, regardless of the cause.
 //!
 //! The generators keep the reference inside the limits. The arm itself may be faster, thrown by a
 //! hand or by a stretched spring, and then the robot stops with a reflex. The torque of a fast
 //! joint is blended from the law's torque to full braking, reached at the limit:
 //!
 //! ```text
-//! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| - onset) / (0.15 limit))
+//! tau' = (1 - s) tau - s side clamp        s = smoothstep((side dq - onset) / (here - onset))
 //! ```
 //!
-//! The braking begins at [`ONSET`] of the limit. Near the end of its range a joint has a lower
-//! limit, the [velocity envelope](JointLimits::velocity_envelope), and the onset is as far below
-//! that. But it is above the reference, which may follow the envelope closely: only an arm that is
-//! pushed ahead of its reference is braked there.
+//! `side` is the sign of `dq`, or of the nearer end of the range if the joint is slow. `here` is the
+//! limit of the velocity at the joint's position: near the end of its range a joint has a lower
+//! limit, the [velocity envelope](JointLimits::velocity_envelope). A robot without an envelope
+//! uses [`ENDS`].
 //!
-//! So even a law that drives the joint with its full torque is balanced half way. `s` and its slope
+//! The braking begins at [`ONSET`] of the limit. Near an end it begins as far below `here`, but
+//! above the velocity of the reference, so a motion to the end arrives. A joint that is pushed
+//! beyond its reference is held at the end, even if it is at rest.
+//!
+//! Even a law that drives the joint with its full torque is balanced half way. `s` and its slope
 //! are continuous.
 //!
-//! The rate of the torque bounds the torque that the barrier can hold: the robot accepts 1 N m per
-//! millisecond. While a torque `tau` on an inertia `I` is removed, it adds `tau^2 / (2 I 1000 N
-//! m/s)` of speed. At the shoulder, 0.39 rad/s above the onset, that is at most 28 N m on 1 kg m^2.
-//! At the wrist, with 0.79 rad/s, it is 12 N m on 0.1 kg m^2. The barrier begins gently, so it
-//! holds a little less.
+//! The rate of the torque bounds the torque that the barrier can hold: see the derivation in
+//! `docs/src/dev/laws.md`.
 
-use franka_model::JointVector;
-use franka_model::limits::JointLimits;
+use franka_model::limits::{BrakingEnvelope, JointLimits};
+use franka_model::{JointVector, joint_vector};
 
-/// Share of the velocity limit from which on a joint is braked, away from the ends of its range.
+use crate::session::reference::Reference;
+
+/// Share of the velocity limit above which every joint is braked, away from the ends of its range.
 pub const ONSET: f64 = 0.85;
 
-/// Speed by which a joint may be faster than its reference near an end of its range, `[rad/s]`: it
-/// swings less than that.
+/// Speed by which a joint may be faster than its reference, `[rad/s]`: it swings less than that.
 const FASTER: f64 = 0.1;
+
+/// Distance by which a joint may be beyond its reference at an end of its range, `[rad]`.
+const BEYOND: f64 = 0.02;
+
+/// Rate at which [`FASTER`] decreases with the distance beyond that, `[1/s]`.
+const RETURN: f64 = 10.0;
+
+/// Envelope of robots that have none of their own: the decelerations of the Franka Research 3. At
+/// rest, a joint is fully held 3 to 17 mrad before its end.
+const ENDS: BrakingEnvelope = BrakingEnvelope {
+    deceleration: joint_vector([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0]),
+    offset: joint_vector([0.3; 7]),
+};
 
 /// Brakes the joints that are too fast. Returns true if there were any. `q` and `dq` are measured,
 /// `[rad]` and `[rad/s]`; `most` is the torque of full braking, `[N m]`.
 pub(crate) fn brake(
     tau: &JointVector,
     (q, dq): (&JointVector, &JointVector),
-    dq_ref: &JointVector,
+    reference: &Reference,
     limits: &JointLimits,
     most: &JointVector,
 ) -> (JointVector, bool) {
-    let width = |i: usize| (1.0 - ONSET) * limits.velocity[i];
-    // Speed up to which a joint is not braked at any position.
-    let ahead = |i: usize| {
-        let reference = if dq[i] > 0.0 { dq_ref[i] } else { -dq_ref[i] };
-        (reference.max(0.0) + FASTER).min(limits.velocity[i] - width(i))
+    let off = q - reference.q;
+    // Most cycles end here, without an envelope: no joint is far enough beyond its reference, or
+    // faster by enough, to be braked at any position.
+    let follows = |i: usize| {
+        let along = if dq[i] > 0.0 {
+            reference.dq[i]
+        } else {
+            -reference.dq[i]
+        };
+        let ahead = (along.max(0.0) + FASTER).min(ONSET * limits.velocity[i]);
+        off[i].abs() <= BEYOND && dq[i].abs() <= ahead
     };
-    // Nearly always no joint is that much faster than its reference, and no envelope is needed.
-    if (0..7).all(|i| dq[i].abs() <= ahead(i)) {
+    if (0..7).all(follows) {
         return (*tau, false);
     }
     let mut binds = false;
-    let (lower, upper) = limits.velocity_envelope(q, 0.0);
+    let envelope = limits.envelope.as_ref().unwrap_or(&ENDS);
     let braked = JointVector::from_fn(|i, _| {
-        let here = if dq[i] > 0.0 { upper[i] } else { -lower[i] };
-        let beyond = (dq[i].abs() - (here - width(i)).max(ahead(i))) / width(i);
-        if beyond <= 0.0 {
+        let (limit, zone) = (limits.velocity[i], (1.0 - ONSET) * limits.velocity[i]);
+        let (down, up) = (q[i] - limits.hard_lower[i], limits.hard_upper[i] - q[i]);
+        let upwards = if dq[i].abs() < zone {
+            up < down
+        } else {
+            dq[i] > 0.0
+        };
+        let (side, room) = if upwards { (1.0, up) } else { (-1.0, down) };
+        let here = envelope.speed(i, room).min(limit);
+        let beyond = (side * off[i] - BEYOND).max(0.0);
+        let ahead = (side * reference.dq[i]).max(0.0) + FASTER - RETURN * beyond;
+        let onset = (here - zone).max(ahead.min(ONSET * limit));
+        if side * dq[i] <= onset {
             return tau[i];
         }
         binds = true;
-        let x = beyond.min(1.0);
+        let width = (here - onset).max((1.0 - ONSET) * limit);
+        let x = ((side * dq[i] - onset) / width).min(1.0);
         let share = x * x * (3.0 - 2.0 * x);
-        tau[i] + share * (-most[i].copysign(dq[i]) - tau[i])
+        tau[i] + share * (-most[i] * side - tau[i])
     });
     (braked, binds)
 }
@@ -75,26 +106,37 @@ mod tests {
     use crate::law::blended_gains::BlendedGains;
     use crate::session::effort::low_pass;
     use crate::session::guard::torque_rate::limit_rate;
-    use franka_model::{CYCLE, Model};
+    use franka_model::{CYCLE, Model, READY};
     use proptest::prelude::*;
 
     /// The same limits at all positions.
     fn flat(limits: &JointLimits) -> JointLimits {
         JointLimits {
-            envelope: None,
+            envelope: Some(BrakingEnvelope {
+                deceleration: JointVector::repeat(1e6),
+                offset: JointVector::zeros(),
+            }),
             ..*limits
         }
     }
 
+    /// Brakes a joint with a limit of 2 rad/s that follows its reference.
     fn of(tau: f64, dq: f64) -> (f64, bool) {
+        with_reference(tau, dq, dq)
+    }
+
+    fn with_reference(tau: f64, dq: f64, dq_ref: f64) -> (f64, bool) {
         let limits = JointLimits {
             velocity: JointVector::repeat(2.0),
             ..flat(Model::fr3().joint_limits())
         };
         let most = JointVector::repeat(50.0);
         let (tau, dq) = (JointVector::repeat(tau), JointVector::repeat(dq));
-        let still = JointVector::zeros();
-        let (braked, binds) = brake(&tau, (&still, &dq), &still, &limits, &most);
+        let reference = Reference {
+            dq: JointVector::repeat(dq_ref),
+            ..Reference::at_rest(READY)
+        };
+        let (braked, binds) = brake(&tau, (&READY, &dq), &reference, &limits, &most);
         (braked[3], binds)
     }
 
@@ -140,7 +182,7 @@ mod tests {
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
         let limits = flat(Model::fr3().joint_limits());
-        let still = JointVector::zeros();
+        let still = Reference::at_rest(READY);
         let most = JointVector::from(Gains::TORQUE_LIMITS);
         let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
         let driving = JointVector::from([25.0, 25.0, 25.0, 25.0, 8.0, 8.0, 8.0]);
@@ -152,7 +194,7 @@ mod tests {
             let (mut dq, mut last) = (JointVector::zeros(), JointVector::zeros());
             let mut fastest = JointVector::zeros();
             for _ in 0..5000 {
-                let (tau, _) = brake(&(driving * side), (&still, &dq), &still, &limits, &most);
+                let (tau, _) = brake(&(driving * side), (&READY, &dq), &still, &limits, &most);
                 let filtered = low_pass(gains.torque_share, &tau, &last);
                 let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 for i in 0..7 {
@@ -170,22 +212,30 @@ mod tests {
         }
     }
 
-    /// A push of 10 N m turns a joint to the end of its range, where the robot allows less and less
-    /// speed. Its reference rests.
+    /// A push turns each joint from the middle of its range to its end, and holds it there. The
+    /// reference follows on a leash.
     #[test]
-    fn a_joint_that_is_pushed_to_its_end_stays_inside_the_envelope() {
-        let limits = JointLimits::fr3_system_5_9();
+    fn a_joint_that_is_pushed_to_its_end_stops_before_it() {
         let most = JointVector::from(Gains::TORQUE_LIMITS);
         let inertia = [1.0, 1.0, 1.0, 1.0, 0.2, 0.2, 0.1];
-        let still = JointVector::zeros();
         let share = BlendedGains::new(&Gains::cartesian(), None).torque_share;
-        for (i, side) in (0..7).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
-            let push = if i < 4 { 10.0 } else { 2.0 } * side;
-            let (mut q, mut dq) = (JointVector::zeros(), JointVector::zeros());
-            q[i] = 0.5 * (limits.lower[i] + limits.upper[i]);
+        let robots = [
+            JointLimits::fr3_system_5_9(),
+            Model::fr3().joint_limits(),
+            Model::fer().joint_limits(),
+        ];
+        let joints = (0..7).flat_map(|i| [(i, 1.0), (i, -1.0)]);
+        for (robot, (i, side)) in (0..3).flat_map(|robot| joints.clone().map(move |j| (robot, j))) {
+            let limits = robots[robot];
+            let push = if i < 4 { 15.0 } else { 4.0 } * side;
+            let mut q = 0.5 * (limits.lower + limits.upper);
+            let mut dq = JointVector::zeros();
             let mut last = JointVector::zeros();
-            loop {
-                let (tau, _) = brake(&still, (&q, &dq), &still, limits, &most);
+            let mut reference = Reference::at_rest(q);
+            for _ in 0..8000 {
+                reference.q[i] = reference.q[i].clamp(q[i] - 0.1, q[i] + 0.1);
+                let still = JointVector::zeros();
+                let (tau, _) = brake(&still, (&q, &dq), &reference, limits, &most);
                 let filtered = low_pass(share, &tau, &last);
                 let (tau, _) = limit_rate(&filtered, &last, &limits.torque_rate);
                 dq[i] += (last[i] + push) / inertia[i] * CYCLE;
@@ -193,25 +243,46 @@ mod tests {
                 last = tau;
                 let (lower, upper) = limits.velocity_envelope(&q, 0.0);
                 let most = if side > 0.0 { upper[i] } else { -lower[i] };
-                // A push brings the joint slowly to where the envelope allows hardly any speed.
-                if most < 4.0 * FASTER {
-                    break;
-                }
+                let case = format!("robot {robot}, joint {} at {} rad", i + 1, q[i]);
                 let speed = dq[i] * side;
-                assert!(speed < most, "joint {}: {speed} of {most} rad/s", i + 1);
+                assert!(speed < most, "{case}: {speed} of {most} rad/s");
+                assert!(limits.contains(&q), "{case}");
             }
+            let (room, speed) = (limits.upper[i] - q[i], dq[i].abs());
+            let room = room.min(q[i] - limits.lower[i]);
+            assert!(room < 0.15, "joint {} stops {room} rad before", i + 1);
+            assert!(speed < 1e-3, "joint {} at {speed} rad/s", i + 1);
         }
     }
 
     #[test]
     fn a_reference_that_follows_the_envelope_is_not_braked() {
         let limits = JointLimits::fr3_system_5_9();
-        let (mut q, mut dq) = (JointVector::zeros(), JointVector::zeros());
-        (q[3], dq[3]) = (-0.2, 0.4);
+        let mut follows = Reference::at_rest(JointVector::zeros());
+        (follows.q[3], follows.dq[3]) = (-0.2, 0.4);
+        let (q, dq) = (follows.q, follows.dq);
         assert!(dq[3] < limits.velocity_envelope(&q, 0.0).1[3]);
         let (tau, most) = (JointVector::repeat(5.0), JointVector::repeat(50.0));
-        assert_eq!(brake(&tau, (&q, &dq), &dq, limits, &most), (tau, false));
-        let (braked, binds) = brake(&tau, (&q, &dq), &JointVector::zeros(), limits, &most);
+        let with = |reference| brake(&tau, (&q, &dq), &reference, limits, &most);
+        assert_eq!(with(follows), (tau, false));
+        let (braked, binds) = with(Reference::at_rest(q));
         assert!(binds && braked[3] < 0.0, "{braked}");
+    }
+
+    #[test]
+    fn a_joint_at_rest_at_its_end_is_held_only_beyond_its_reference() {
+        for model in [Model::fr3(), Model::fer()] {
+            let limits = model.joint_limits();
+            let (q, still) = (limits.lower, JointVector::zeros());
+            let (tau, most) = (JointVector::repeat(-5.0), JointVector::repeat(50.0));
+            let with = |away: f64| {
+                let reference = Reference::at_rest(q.add_scalar(away));
+                brake(&tau, (&q, &still), &reference, limits, &most)
+            };
+            assert_eq!(with(-0.1), (tau, false));
+            assert_eq!(with(BEYOND), (tau, false));
+            let (held, binds) = with(0.1);
+            assert!(binds && held.min() > 30.0, "{held}");
+        }
     }
 }
