@@ -285,13 +285,13 @@ impl Active<Torques> {
 }
 
 impl<C: GeneratorCommand> Active<C> {
-    /// Sends a command to the motion generator for the newest state; one of the robot's own
-    /// controllers follows it. After the last command, waits until the robot has ended the motion,
-    /// and returns the report.
+    /// Answers the newest state with a command for the robot's motion generator; one of the robot's
+    /// own controllers follows this command. After the last command, waits until the robot has
+    /// ended the motion, and returns the report.
     ///
     /// # Errors
-    /// Returns the errors of [`Active<Torques>::write_once`]. Also returns an error, with the
-    /// vendor's text, if the motion requires torques.
+    /// Returns the errors of [`Active<Torques>::write_once`]. Also returns an error, with the same
+    /// text as libfranka, if the motion requires torques.
     pub fn write_motion(
         &mut self,
         motion: impl Into<Next<C>>,
@@ -307,8 +307,8 @@ impl<C: GeneratorCommand> Active<C> {
     /// report.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::write_motion`]. If the motion takes no torques, they are
-    /// refused with the vendor's text.
+    /// Returns the errors of [`Self::write_motion`]. If the motion accepts no torques, they are
+    /// refused with the same text as in libfranka.
     pub fn write_motion_and_torques(
         &mut self,
         motion: impl Into<Next<C>>,

@@ -312,11 +312,11 @@ impl Arm {
     /// # Errors
     /// Returns the errors of [`Self::set`], and:
     ///
-    /// - [`MotionError::Held`] or [`MotionError::Braked`] in the first call after a guard gave up
-    ///   the previous chunk;
+    /// - [`MotionError::Held`] or [`MotionError::Braked`] in the first call after a guard ended the
+    ///   previous chunk;
     /// - [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed;
-    /// - [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time comes from
-    ///   another clock;
+    /// - [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time is more than
+    ///   60 s in the robot's future, for example because it comes from a different clock;
     /// - [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation of the
     ///   previous chunk is newer;
     /// - [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster than the

@@ -200,7 +200,8 @@ impl AsynchronousControl {
     /// Returns the reason if the motion ended in another way.
     ///
     /// # Cancel safety
-    /// Once polled, the motion ends; dropping the future stops the robot at once.
+    /// Once the future has been polled, the motion ends in any case. If you then drop the future
+    /// before it resolves, the robot is asked to stop at once, so the arm may not reach the target.
     pub async fn finish(self) -> Outcome {
         let newest = self.lock().newest;
         self.write(newest.unwrap_or(self.robot.state().q_d), true);

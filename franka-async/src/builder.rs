@@ -185,7 +185,7 @@ impl Builder {
 
     /// Sets how many of the last cycles an error contains when the robot ends a motion: see
     /// [`ControlError::log`](crate::error::ControlError::log). The default is 50. The maximum is
-    /// 10000, which covers ten seconds; a larger number is refused as
+    /// 10000, which covers ten seconds. A number above the maximum is refused as
     /// [`ConnectError::LogSize`](crate::error::ConnectError::LogSize). With 0, the text of the
     /// error contains no success rate. [`Robot::records`](crate::Robot::records) yields the cycles
     /// of whole motions.

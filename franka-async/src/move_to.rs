@@ -168,7 +168,7 @@ impl Motion {
         self
     }
 
-    /// Makes the motion part of a joint motion of a team.
+    /// Makes the motion part of a team motion.
     pub(crate) fn in_round(mut self, round: Round) -> Self {
         self.options.round = Some(round);
         self

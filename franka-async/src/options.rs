@@ -16,7 +16,7 @@ pub(crate) struct GoalOptions {
     pub(crate) tolerance: Option<Tolerance>,
     pub(crate) settling: Option<Settling>,
     pub(crate) reaction: Option<Reaction>,
-    /// The team's joint motion that the goal is part of.
+    /// The team motion that the goal is part of.
     pub(crate) round: Option<Round>,
     /// Pose of the object in the hand, in the frame of the end effector, if the goal is a pose of
     /// that object.

@@ -199,8 +199,8 @@ impl Robot {
         self.link().geometry
     }
 
-    /// Returns [`Self::model`] in a form for control functions, which takes the end effector and
-    /// the load from a state.
+    /// Returns [`Self::model`] in a form for control functions: it takes the end effector and the
+    /// load from a state.
     pub fn state_model(&self) -> StateModel {
         StateModel::new(self.shared.model.clone(), self.shared.version)
     }
@@ -248,9 +248,9 @@ impl Robot {
     /// still brakes.
     ///
     /// If several callers stop the arm, it brakes once, and all callers get the same outcome. If
-    /// the driver has given up a motion that the robot still shows, each call sends another stop
-    /// request. A stop does not last: a motion that another task begins later moves the arm again.
-    /// If that happens before the arm was seen to rest, the stop resolves as
+    /// the driver no longer waits for a motion but the robot still runs it, each call sends another
+    /// stop request. A stop does not last: a motion that another task begins later moves the arm
+    /// again. If that happens before the arm was seen to rest, the stop resolves as
     /// [`MotionError::Superseded`]. For a stop that lasts, use [`Self::latch_stop`].
     ///
     /// If a person keeps the arm moving by hand, the driver sends the robot a stop request after
@@ -262,11 +262,13 @@ impl Robot {
     /// meanwhile, the stop waits up to 10 s for the next connection and then stops the robot.
     ///
     /// # Errors
-    /// Returns [`MotionError`] if the motion ended in another way, for example by a reflex:
+    /// Returns the error of the motion if it ended in another way, for example by a reflex. Also
+    /// returns:
     ///
-    /// - [`MotionError::Protocol`] if the robot still shows a motion after two seconds;
-    /// - [`MotionError::NotAtRest`] if the robot shows no motion but a hand still moves the arm;
-    /// - [`MotionError::Superseded`] if another motion began first, see above;
+    /// - [`MotionError::Protocol`] if the robot does not end the motion within the times above;
+    /// - [`MotionError::NotAtRest`] if the motion has ended but the arm still moves, for example
+    ///   because a person guides it by hand;
+    /// - [`MotionError::Superseded`] if another motion began before the arm was seen to rest;
     /// - [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
     ///   [`MotionError::ConnectionClosed`] if there is no connection. In both cases it is unknown
     ///   whether the arm rests.
@@ -397,8 +399,9 @@ impl Robot {
 
     /// Approves or rejects the recovery from the reflex with this number, if the
     /// [`Policy`](crate::supervision::Policy) asks before a recovery. Returns true if the
-    /// supervisor was waiting for the answer. Otherwise nothing happens, because the robot has left
-    /// the reflex or has another error. The number is in the event, and in [`Health::reflex`].
+    /// supervisor was waiting for the answer. Otherwise does nothing and returns false, for example
+    /// because the robot has left this reflex, or has a newer error. The number is in the event,
+    /// and in [`Health::reflex`].
     ///
     /// The answer moves nothing. [`Self::recover`] also recovers a robot, under any policy.
     pub fn agree(&self, reflex: u64, agreed: bool) -> bool {

@@ -37,8 +37,8 @@ impl StateModel {
         Self { model, version }
     }
 
-    /// Returns a model with the constants of the kind of robot that uses `version`. Use it to test
-    /// control laws without a robot. A robot that describes itself has its own model: see
+    /// Returns a model with the nominal constants of the robot kind that uses protocol `version`.
+    /// Use it to test control laws without a robot. For a connected robot, use
     /// [`Robot::state_model`](crate::Robot::state_model).
     pub fn nominal(version: Version) -> Self {
         Self::new(Arc::new(nominal(version)), version)

@@ -67,7 +67,7 @@ type Outcome = Result<MotionReport, MotionError>;
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,
-    /// This lock is held while the goals of a joint motion are sent, so that all arms get the goals
+    /// This lock is held while the goals of a team motion are sent, so that all arms get the goals
     /// of two motions in the same order.
     submission: Arc<Mutex<()>>,
 }
@@ -183,14 +183,14 @@ impl<const N: usize> Team<N> {
     /// real-time threads see the stop directly. Motions resolve as [`MotionError::Braked`] with
     /// [`TeamStop::Requested`]. The sessions continue and hold the arms.
     ///
-    /// A newer motion does not cancel the stop. A joint motion that begins before every arm has
-    /// seen the stop does not start, and resolves in the same way.
+    /// A newer motion does not cancel the stop. A team motion that is requested before every arm
+    /// has seen the stop does not start, and resolves in the same way.
     pub fn stop(&self) {
         self.coordinator.stop();
     }
 
     /// Brakes all arms as [`Self::stop`] does, ends their sessions, and latches the stop of each
-    /// robot: see [`Robot::latch_stop`]. Until the stop is released, joint motions and motions of
+    /// robot: see [`Robot::latch_stop`]. Until the stop is released, team motions and motions of
     /// single arms are refused. Returns the outcome of the stop of each arm.
     ///
     /// # Cancel safety
@@ -214,7 +214,7 @@ impl<const N: usize> Team<N> {
         Stopper(self.coordinator.clone())
     }
 
-    /// Returns the reason why the newest joint motion, or a motion after it, was stopped; `None` if
+    /// Returns the reason why the newest team motion, or a motion after it, was stopped; `None` if
     /// none was stopped.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
@@ -242,7 +242,7 @@ impl Stopper {
     }
 }
 
-/// Motion of one member in a joint motion.
+/// Motion of one member in a team motion.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited"]
 #[non_exhaustive]
@@ -288,8 +288,8 @@ impl MemberMotion {
 /// resolves when the motions of all members have ended, with the outcomes in the order of the
 /// members.
 ///
-/// A newer joint motion supersedes this one. Motions of members that are under way continue until
-/// the newer joint motion begins.
+/// A newer team motion supersedes this one. Motions of members that are under way continue until
+/// the newer team motion begins.
 ///
 /// # Cancel safety
 /// Dropping the future, at any time, brakes all arms, each within two of its cycles; the arms hold

@@ -21,8 +21,8 @@ use crate::endpoint::EndpointError;
 /// Hint for a program that connects to a simulator.
 const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
 
-/// Reason why connecting failed: to a robot, unless `P` names another device. Everything that was
-/// opened is closed again, and the program may retry.
+/// Reason why a connection to a robot failed, or to a different device if `P` names one. Everything
+/// that was opened is closed again, and the program may retry.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
