@@ -273,7 +273,7 @@ impl Active<Torques> {
     ///
     /// # Errors
     /// Returns [`ActiveError::Write`] if the torques cannot be sent; the motion continues. Returns
-    /// [`ActiveError::Motion`] if the robot ended the motion in another way than asked.
+    /// [`ActiveError::Motion`] if the robot ended the motion, but not as the program asked.
     pub fn write_once(
         &mut self,
         torques: impl Into<Next<Torques>>,

@@ -220,7 +220,7 @@ impl Arm {
     /// Sets a goal as [`Self::set`] does, without waiting for an answer. Use it in plain threads,
     /// callbacks, and loops with their own rate. If goals come faster than the session accepts
     /// them, only the newest one counts. This call checks the goal. Later refusals are only logged:
-    /// a goal for another [`Backend`], or an offset that was set before the previous goal was
+    /// a goal for a different [`Backend`], or an offset that was set before the previous goal was
     /// accepted.
     ///
     /// # Errors
@@ -304,8 +304,8 @@ impl Arm {
     }
 
     /// Begins to follow a chunk: a list of points with times, as a policy predicts them. Returns as
-    /// soon as the chunk is accepted. If another chunk is running, the new one continues from it:
-    /// see [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the
+    /// soon as the chunk is accepted. If an earlier chunk is running, the new chunk continues from
+    /// it: see [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the
     /// observation. The arm stays within its limits, regardless of the points. It rests at the last
     /// point unless another chunk or goal follows.
     ///
@@ -407,7 +407,7 @@ impl Arm {
     /// disengaged, too.
     ///
     /// # Errors
-    /// Returns [`MotionError`] if the session ended in another way: by a reflex, or by
+    /// Returns [`MotionError`] if the session ended in any other way: by a reflex, or by
     /// [`Robot::stop`] ([`MotionError::Stopped`]).
     ///
     /// # Cancel safety

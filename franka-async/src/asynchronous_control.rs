@@ -197,7 +197,7 @@ impl AsynchronousControl {
     /// refuse to end a motion while the arm moves.
     ///
     /// # Errors
-    /// Returns the reason if the motion ended in another way.
+    /// Returns the reason if the motion ended in any other way.
     ///
     /// # Cancel safety
     /// Once the future has been polled, the motion ends in any case. If you then drop the future

@@ -196,8 +196,8 @@ impl Builder {
 
     /// Sets an earlier result of [`Robot::identify`] for this arm, so that the first motion is
     /// compensated like later motions. Of the identified load, only the part that is not declared
-    /// when that motion begins counts. By default, nothing is known. A result of another kind of
-    /// arm, or with implausible numbers, is refused as
+    /// when that motion begins counts. By default, nothing is known. A result of a different kind
+    /// of arm, or with implausible numbers, is refused as
     /// [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));

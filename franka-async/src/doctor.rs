@@ -74,7 +74,7 @@ impl fmt::Display for HostDiagnosis {
 }
 
 /// Explains why packets were missing in a motion of the robot at this address, with the two
-/// likeliest causes on this host. Returns `None` if the motion ended for another reason.
+/// likeliest causes on this host. Returns `None` if the motion ended for any other reason.
 ///
 /// The checks read files and query the driver of the network card, on a thread for blocking work.
 /// They take some milliseconds.

@@ -110,7 +110,7 @@ pub enum EndpointError {
 }
 
 impl Endpoint {
-    /// Returns the same host with another port, for example for an end effector of a robot.
+    /// Returns the same host with a different port, for example for an end effector of a robot.
     #[must_use]
     pub fn at_port(mut self, port: u16) -> Self {
         self.set_port(port);

@@ -12,7 +12,7 @@ use crate::error::ConnectError;
 use crate::world::Stream;
 
 /// Announces `udp_port`, to which the peer should send its states, and waits for the answer: the
-/// connection is open, or the peer has another version.
+/// connection is open, or the peer has a different version.
 pub(crate) async fn shake_hands<P: Protocol>(
     stream: &mut Framed<Stream, MessageCodec>,
     session: &mut Session<P>,

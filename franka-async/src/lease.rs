@@ -132,7 +132,7 @@ impl Holder {
     ///
     /// # Errors
     /// Returns [`Lost`] if the call comes too late. The arm then stays braked. Take the lease
-    /// again, and begin another session.
+    /// again, and begin a new session.
     pub fn keep_alive(&self, now: Instant) -> Result<(), Lost> {
         let mut state = self.lease.lock();
         let now = state.advance(now);

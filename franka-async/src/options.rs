@@ -148,8 +148,8 @@ macro_rules! goal_options {
         /// positions, `[rad]`. The posture acts in the null space, so it does not change the pose
         /// of the end effector. The elbow uses at most half of the joints' budget, and an awaited
         /// motion arrives only when the elbow rests, too. By default, the elbow stays near its
-        /// position at the start of the motion or session. An engaged arm keeps its posture until
-        /// another one is set. Positions out of range are refused as
+        /// position at the start of the motion or session. An engaged arm keeps its posture until a
+        /// different one is set. Positions out of range are refused as
         /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
@@ -185,10 +185,10 @@ macro_rules! goal_options {
         }
 
         /// Ends the motion early if a condition becomes true before the arrival. The arm then stops
-        /// as quickly as the jerk limit allows. If a [`Reaction`](crate::condition::Reaction) has
-        /// another target, the arm brakes and moves there. The control thread checks the condition
-        /// in every cycle until the motion has ended, and acts in the next cycle. This replaces an
-        /// earlier condition.
+        /// as quickly as the jerk limit allows. If a [`Reaction`](crate::condition::Reaction) has a
+        /// different target, the arm brakes and moves there. The control thread checks the
+        /// condition in every cycle until the motion has ended, and acts in the next cycle. This
+        /// replaces an earlier condition.
         ///
         /// Both an arrival and a reaction resolve as `Ok`:
         /// [`MotionReport::reacted`](crate::MotionReport::reacted) distinguishes them. See

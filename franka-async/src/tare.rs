@@ -12,10 +12,10 @@ use crate::robot::Robot;
 impl Robot {
     /// Averages the robot's estimate of external forces and torques over half a second of its
     /// clock. Subtract this average later, because robots report a newton or two with nothing
-    /// attached. [`Self::tare_over`] averages over another duration.
+    /// attached. [`Self::tare_over`] averages over a different duration.
     ///
     /// The arm must rest, and nothing may touch it. A tare is valid for the posture in which it was
-    /// taken. In another posture, an undeclared load, cables and errors of the model pull
+    /// taken. In a different posture, an undeclared load, cables and errors of the model pull
     /// differently, and friction differs after each motion. [`WrenchTare::turned`] reports how far
     /// the arm has turned since; if this exceeds [`WrenchTare::NEAR`], take a new tare. The robot
     /// itself does not change: its contact and collision thresholds apply to the wrench as before.
@@ -46,7 +46,7 @@ impl Robot {
         self.tare_over(WrenchTare::DURATION).await
     }
 
-    /// Takes a tare as [`Self::tare`] does, over another duration: 20 ms to a minute.
+    /// Takes a tare as [`Self::tare`] does, over a given duration: 20 ms to a minute.
     ///
     /// # Errors
     /// Returns the errors of [`Self::tare`], and refuses a duration out of range.

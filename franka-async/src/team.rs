@@ -158,7 +158,7 @@ impl<const N: usize> Team<N> {
     /// motion.
     ///
     /// # Panics
-    /// Panics if a motion was made by another arm than the one given for it.
+    /// Panics if a motion was not made by the arm that is given for it.
     pub fn run<M: Into<MemberMotion>>(
         &self,
         mut motion: impl FnMut(usize, &Arm) -> M,

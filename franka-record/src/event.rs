@@ -138,7 +138,7 @@ pub enum Ending {
     Guard(Guard),
     /// The goal never began, or the driver refused a target of its stream.
     Rejected,
-    /// The goal failed for another reason.
+    /// The goal failed for any other reason.
     #[default]
     Failed,
 }

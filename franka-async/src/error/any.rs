@@ -24,19 +24,19 @@ pub enum Error {
     /// last cycles.
     #[error(transparent)]
     Control(Box<ControlError>),
-    /// A motion ended short of its goal for another reason.
+    /// A motion ended short of its goal for any other reason.
     #[error(transparent)]
     Motion(MotionError),
     /// Active control could not continue.
     #[error(transparent)]
     Active(ActiveError),
-    /// The identification of an arm failed for another reason than a motion.
+    /// The identification of an arm failed, but not because of a motion.
     #[error(transparent)]
     Identify(IdentifyError),
     /// No more states could be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The tare failed for another reason than a lost link.
+    /// The tare failed, but not because of a lost link.
     #[error(transparent)]
     Tare(TareError),
     /// There is no connection to the Franka Hand.

@@ -188,7 +188,8 @@ pub enum ActiveError {
     /// The motion has ended with this error.
     #[error(transparent)]
     Motion(#[from] MotionError),
-    /// The motion has ended in another way than asked. An earlier call has returned the same error.
+    /// The motion has ended, but not as the program asked. An earlier call has returned the same
+    /// error.
     #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
     Ended(MotionError),
     /// The motion has ended as asked, because the last command was written earlier.

@@ -55,14 +55,14 @@ pub enum ConnectError<P: Protocol = Version> {
          that recovers"
     )]
     Unsupervised,
-    /// Caller: the known values belong to another kind of robot, or are impossible for an arm. See
-    /// [`Builder::known`](crate::connection::Builder::known).
+    /// Caller: the known values belong to a different kind of robot, or are impossible for an arm.
+    /// See [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
     /// Host: no thread, socket or file descriptor is available.
     #[error("cannot set up the connection: {0}")]
     System(#[from] io::Error),
-    /// Robot: it refuses the connection. FCI is off, or the address belongs to another machine.
+    /// Robot: it refuses the connection. FCI is off, or the address belongs to a different machine.
     #[error(
         "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. ({address})"
     )]
@@ -78,7 +78,7 @@ pub enum ConnectError<P: Protocol = Version> {
         /// The address that was tried.
         address: SocketAddr,
     },
-    /// Link: connecting failed in another way.
+    /// Link: connecting failed in any other way.
     #[error("libfranka: Connection error: {reason}")]
     Network {
         /// Class of the failure.

@@ -18,9 +18,10 @@ use crate::robot::Pose;
 ///
 /// An arm that an obstacle or its own limits hold back delays the others. While it is 15 mm behind
 /// its reference, all references stop on their lines, decelerating at 2.5 m/s^2. For rotations, a
-/// radian counts as 0.2 m. A reference that is more than 2 mm ahead of another one waits until the
-/// other one has caught up. If an arm does not catch up within 5 s, it stops, and its motion ends
-/// as [`MotionError::TargetNotReached`]. The motions of the other arms then end with an error, too.
+/// radian counts as 0.2 m. A reference that is more than 2 mm ahead of any other reference waits
+/// until the other one has caught up. If an arm does not catch up within 5 s, it stops, and its
+/// motion ends as [`MotionError::TargetNotReached`]. The motions of the other arms then end with an
+/// error, too.
 ///
 /// No arm knows exactly where its hand is, so the arms hold each other slightly away from their
 /// targets. By default, an arm that stops within 5 mm and 10 mrad of its target has arrived.
@@ -55,7 +56,7 @@ impl<const N: usize> Team<N> {
     }
 
     /// Returns an object that all arms hold. `hands` are its poses in the frames of the end
-    /// effectors. Take these poses from an earlier [`Grasp::hands`], or from another source.
+    /// effectors. Take these poses from an earlier [`Grasp::hands`], or from a different source.
     /// Nothing moves.
     pub fn grasp_at(&self, bases: [Pose; N], hands: [Pose; N]) -> Grasp<'_, N> {
         let team = self;

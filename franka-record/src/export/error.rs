@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// A file with this name exists, and an export never replaces a file. Choose another name, or
-    /// delete the file first.
+    /// A file with this name exists, and an export never replaces a file. Choose a different name,
+    /// or delete the file first.
     #[error("{} exists, and an export never replaces a file: choose another name", path.display())]
     Exists {
         /// The file.

@@ -9,7 +9,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A file with this name exists, and a recording never overwrites a file. Choose another name.
+    /// A file with this name exists, and a recording never overwrites a file. Choose a different
+    /// name.
     #[error("{} exists, and a recording never overwrites a file: choose another name", path.display())]
     Exists {
         /// The file.

@@ -14,7 +14,7 @@ pub(super) const GAP_MAX: u64 = 50;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
-    /// The recording comes from another kind of robot.
+    /// The recording comes from a different kind of robot.
     #[error("the recorded robot is {got:?}, expected {expected:?}")]
     Kind {
         /// Kind of the recorded robot.

@@ -184,7 +184,7 @@ impl ReplayPlan {
     ///
     /// # Errors
     /// [`ReplayError::Target`] for the first target outside the limits or out of reach, and
-    /// [`ReplayError::Kind`] for an arm of another kind.
+    /// [`ReplayError::Kind`] for an arm of a different kind.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), ReplayError> {
         if model.kind() != self.kind {
             return Err(ReplayError::Kind {

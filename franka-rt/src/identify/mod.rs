@@ -103,7 +103,7 @@ pub struct Identified {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KnownError {
-    /// The values belong to another kind of robot.
+    /// The values belong to a different kind of robot.
     #[error(
         "the identified values belong to another kind of robot: got {got:?}, expected {expected:?}"
     )]
@@ -133,7 +133,7 @@ impl Identified {
     /// Checks that these values are plausible and suit this kind of robot.
     ///
     /// # Errors
-    /// Returns [`KnownError`] if the kind differs or a number is implausible.
+    /// [`KnownError`] for a different kind of robot, and for non-finite or implausible numbers.
     pub fn check(&self, expected: RobotKind) -> Result<(), KnownError> {
         let got = self.kind;
         if got != expected {

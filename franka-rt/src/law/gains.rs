@@ -186,9 +186,9 @@ impl Gains {
         }
     }
 
-    /// Returns the same gains with another stiffness at the end effector, in base axes. The damping
-    /// scales with the square root of the stiffness, so the damping ratio does not change. An axis
-    /// that had no stiffness gets the damping ratio of [`Gains::cartesian`].
+    /// Returns the same gains with a different stiffness at the end effector, in base axes. The
+    /// damping scales with the square root of the stiffness, so the damping ratio does not change.
+    /// An axis that had no stiffness gets the damping ratio of [`Gains::cartesian`].
     #[must_use]
     pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
         let preset = Self::cartesian();

@@ -54,8 +54,8 @@ pub enum CloseReason {
         /// Error of the last attempt.
         text: String,
     },
-    /// Robot: after the connection was lost, another robot answered. Models and goals were made for
-    /// the previous robot.
+    /// Robot: after the connection was lost, a different robot answered. Models and goals were made
+    /// for the previous robot.
     #[error("another robot answers: {text}")]
     AnotherRobot {
         /// Description of how the robots differ.

@@ -13,7 +13,7 @@ pub struct Differences {
     /// effector's mass, centre of mass or inertia differs.
     pub frames: bool,
     /// True if the robot's clock did not advance by the time that has passed: the robot was
-    /// restarted, or it is another robot.
+    /// restarted, or it is a different robot.
     pub clock: bool,
     /// The first joint, from 1, that is more than 5 mrad from its earlier position. If the joint
     /// moved when the connection was lost, it may also have continued while it braked.

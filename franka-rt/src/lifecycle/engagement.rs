@@ -149,7 +149,8 @@ impl Lifecycle {
     /// - once, if the previous chunk was given up: [`MotionError::Held`] or
     ///   [`MotionError::Braked`], with the reason;
     /// - [`GoalError::Late`] if all points of the chunk have passed;
-    /// - [`GoalError::Ahead`] if the chunk's times are from another clock;
+    /// - [`GoalError::Ahead`] if the chunk's times are too far in the future, for example because
+    ///   they are from a different clock;
     /// - [`GoalError::Outdated`] if the chunk's observation is older than the observation of the
     ///   previous chunk;
     /// - [`GoalError::Chunks`] if too many chunks are under way.

@@ -406,7 +406,8 @@ pub enum Party {
     Link,
     /// This computer: its privileges, its kernel or its resources.
     Host,
-    /// The code of one side: the other side violates the protocol, or uses another version of it.
+    /// The code of one side: the other side violates the protocol, or uses a different version of
+    /// it.
     Peer,
 }
 

@@ -41,7 +41,7 @@ pub enum Unready {
     /// Robot: a hand guides the arm.
     #[error("the arm is guided by hand")]
     Guided,
-    /// Robot: its brakes are closed, or it is not ready for another reason.
+    /// Robot: its brakes are closed, or something else prevents it from being ready.
     #[error("the brakes are closed, or the robot is not ready")]
     Braked,
     /// Caller: this program has latched a stop and has not released it.

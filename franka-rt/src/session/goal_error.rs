@@ -138,8 +138,8 @@ pub enum GoalError {
         /// Time since the last point, by the robot's clock.
         by: Duration,
     },
-    /// The time origin of a chunk is too far in the robot's future. Probably it was taken from
-    /// another clock.
+    /// The time origin of a chunk is too far in the robot's future. Probably it was taken from a
+    /// different clock.
     #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at \
         most: pass times of the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {

@@ -10,7 +10,7 @@ use crate::session::condition::{Condition, ConditionError};
 use crate::session::{Budget, GoalError, Target, check};
 
 /// A condition, and the target that the motion turns to when the condition becomes true. The target
-/// is rest by default; [`Condition::then`] sets another.
+/// is rest by default; [`Condition::then`] sets a different one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
     /// Condition. It is checked in every cycle until the goal has ended.

@@ -40,14 +40,16 @@ pub enum EventKind {
         /// Refused requests.
         refusals: Arc<[SchedError]>,
     },
-    /// The robot differs from the robot of the previous connection, and may be another robot. Comes
-    /// after `Connected`. A waiting motion is refused, and a recovery needs the user's approval.
+    /// The robot differs from the robot of the previous connection, and may be a different robot.
+    /// Comes after `Connected`. A waiting motion is refused, and a recovery needs the user's
+    /// approval.
     Unrecognised {
         /// Differences between the robots.
         differences: Differences,
     },
     /// A setting that this program had made before a connection was lost could not be restored.
-    /// Either the robot refused the setting, or a state shows another value. Motions are refused.
+    /// Either the robot refused the setting, or a state shows a different value. Motions are
+    /// refused.
     NotConfigured {
         /// Command that makes the setting.
         command: Command,
@@ -100,7 +102,7 @@ pub enum EventKind {
     },
     /// The brakes were closed or opened.
     Brakes {
-        /// True if the brakes are now closed. Also true if the robot is not ready for another
+        /// True if the brakes are now closed. Also true if the robot is not ready for any other
         /// reason.
         closed: bool,
     },

@@ -75,7 +75,8 @@ impl Default for Policy {
 
 impl Policy {
     /// Recovers from reflexes automatically, at most `times` times within any `window`. Failed
-    /// attempts count. A person must recover the robot from further reflexes.
+    /// attempts count. After that, the supervisor does not recover a reflex, even when the window
+    /// has passed: the program or a person must recover the robot.
     pub fn recover(mut self, times: u32, window: Duration) -> Self {
         self.recovery = Some(Recovery { times, window });
         self

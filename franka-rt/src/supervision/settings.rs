@@ -7,7 +7,7 @@ use franka_proto::{Command, Request};
 pub enum Answer {
     /// The robot has accepted the setting. If states contain the value, they show it.
     Taken,
-    /// The robot has accepted the setting, but its states show another value.
+    /// The robot has accepted the setting, but its states show a different value.
     NotShown {
         /// Description of the values shown and set, for a person.
         text: String,

@@ -64,8 +64,8 @@ pub enum Refused {
     /// The request names no host or several hosts, or its host name is invalid.
     #[error("the Host header is missing, repeated or invalid, expected exactly one")]
     NoHost,
-    /// The host name is not a name of the service. A page of another site may have rebound its name
-    /// to this address.
+    /// The host name is not a name of the service. A page of a different site may have rebound its
+    /// name to this address.
     #[error(
         "the Host header is {got:?}, expected localhost, an IP address or a name of the service"
     )]
@@ -73,7 +73,7 @@ pub enum Refused {
         /// The host name in the request.
         got: String,
     },
-    /// The request comes from a page of another origin.
+    /// The request comes from a page of a different origin.
     #[error("the request comes from a web page of another origin, expected a page of this service")]
     Origin,
     /// Without a token, only requests from this computer are answered.
