@@ -219,9 +219,9 @@ impl Arm {
 
     /// Sets a goal as [`Self::set`] does, without waiting for an answer. Use it in plain threads,
     /// callbacks, and loops with their own rate. If goals come faster than the session accepts
-    /// them, only the newest one counts. This call checks the goal. Later refusals are only logged:
-    /// a goal for a different [`Backend`], or an offset that was set before the previous goal was
-    /// accepted.
+    /// them, only the newest one counts. This call checks the goal. If the session later refuses
+    /// it, the refusal is only logged. This happens to a goal for a different [`Backend`], and to
+    /// an offset that was set before the previous goal was accepted.
     ///
     /// # Errors
     /// See [`Self::set`].
@@ -258,10 +258,10 @@ impl Arm {
         self.robot().reference().filter(|_| !ended)
     }
 
-    /// Waits until the arm rests at the last accepted target, or where that target was given up.
-    /// The arm is at rest if for 250 ms the reference has not moved and no joint has moved by more
-    /// than half a milliradian. By then, the control law has compensated for the friction. Use this
-    /// after [`Self::set`]; after an awaited motion, the arm rests anyway.
+    /// Waits until the arm rests at the last accepted target, or where the driver gave up that
+    /// target. The arm is at rest if for 250 ms the reference has not moved and no joint has moved
+    /// by more than half a milliradian. By then, the control law has compensated for the friction.
+    /// Use this after [`Self::set`]; after an awaited motion, the arm rests anyway.
     ///
     /// The wait has no time limit. It may last while the arm is pushed, is blocked by an obstacle,
     /// or follows a stream. If you need a limit, use `tokio::time::timeout`.
@@ -303,11 +303,11 @@ impl Arm {
         }
     }
 
-    /// Begins to follow a chunk: a list of points with times, as a policy predicts them. Returns as
-    /// soon as the chunk is accepted. If an earlier chunk is running, the new chunk continues from
-    /// it: see [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the
-    /// observation. The arm stays within its limits, regardless of the points. It rests at the last
-    /// point unless another chunk or goal follows.
+    /// Begins to follow a chunk: a list of points with times, such as a learned controller (a
+    /// policy) predicts. Returns as soon as the chunk is accepted. If an earlier chunk is running,
+    /// the new chunk continues from it: see [`Chunk::blend`]. Use [`Chunk::observed_at`] to
+    /// compensate for the age of the observation. The arm stays within its limits, regardless of
+    /// the points. It rests at the last point unless another chunk or goal follows.
     ///
     /// # Errors
     /// Returns the errors of [`Self::set`], and:
@@ -366,8 +366,8 @@ impl Arm {
     }
 
     /// Follows the newest target of a stream (poses or joint positions) until the stream ends, and
-    /// then stops at the last target. While one target is being accepted, up to 256 newer targets
-    /// are skipped at once. This works for a stream that is always ready, too.
+    /// then stops at the last target. If targets come faster than they are accepted, up to 256 of
+    /// them are skipped at once. A stream that is always ready works, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,

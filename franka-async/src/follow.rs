@@ -96,12 +96,12 @@ impl Follow {
         self
     }
 
-    /// Sets a watchdog that acts if no target has come for `silence`: whole milliseconds, at least 10.
-    /// The arm then continues to the last target ([`OnTimeout::Hold`]) or brakes at once
-    /// ([`OnTimeout::Brake`]). When the arm rests, the future resolves as [`MotionError::Held`] or
-    /// [`MotionError::Braked`], unless targets come again before that. A target counts even if it
-    /// equals the previous one. The control thread measures this time. Without a watchdog, the arm
-    /// holds the last target indefinitely.
+    /// Sets a watchdog that acts if no target has come for `silence`, which must be at least 10 ms,
+    /// in whole milliseconds. The arm then continues to the last target ([`OnTimeout::Hold`]) or
+    /// brakes at once ([`OnTimeout::Brake`]). When the arm rests, the future resolves as
+    /// [`MotionError::Held`] or [`MotionError::Braked`], unless targets come again before that. A
+    /// target counts even if it equals the previous one. The control thread measures the silence.
+    /// Without a watchdog, the arm holds the last target indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,

@@ -89,8 +89,7 @@ impl Gripper {
     }
 
     /// Closes the fingers on an object. Returns true if the fingers stopped within the tolerances
-    /// of the object's width. In both cases the force stays applied until the next action or a
-    /// stop.
+    /// of the object's width. In any case, the force stays applied until the next action or a stop.
     ///
     /// # Errors
     /// See [`Self::homing`].

@@ -161,8 +161,8 @@ impl Motion {
     /// motion resolves as [`MotionError::Start`], and the arm has not moved.
     ///
     /// # Cancel safety
-    /// If a motion is dropped, stopped or superseded before the start, the others are released and
-    /// resolve as [`MotionError::Start`].
+    /// If a motion is dropped, stopped or superseded before the start, the other robots' motions
+    /// end and resolve as [`MotionError::Start`].
     pub fn start_with(mut self, ticket: StartTicket) -> Self {
         self.ticket = Some(ticket);
         self

@@ -80,8 +80,8 @@ macro_rules! goal_options {
     () => {
         /// Makes the arm follow the same paths `factor` times as fast as the limits allow.
         /// Velocities scale with `factor`, accelerations with its square, and jerks with its cube.
-        /// A factor that is not positive, or that raises a limit above the robot's, is refused as
-        /// [`GoalError::Speed`](crate::error::GoalError::Speed) when the motion begins.
+        /// A factor that is not positive, or that raises a limit above the robot's limit, is
+        /// refused as [`GoalError::Speed`](crate::error::GoalError::Speed) when the motion begins.
         pub fn speed(mut self, factor: f64) -> Self {
             self.options.speed = Some(factor);
             self

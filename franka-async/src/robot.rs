@@ -262,8 +262,8 @@ impl Robot {
     /// meanwhile, the stop waits up to 10 s for the next connection and then stops the robot.
     ///
     /// # Errors
-    /// Returns the error of the motion if it ended in another way, for example by a reflex. Also
-    /// returns:
+    /// Returns the error of the motion if the motion ended in any other way, for example by a
+    /// reflex. Also returns:
     ///
     /// - [`MotionError::Protocol`] if the robot does not end the motion within the times above;
     /// - [`MotionError::NotAtRest`] if the motion has ended but the arm still moves, for example
@@ -367,8 +367,8 @@ impl Robot {
     }
 
     /// Waits until the connection has ended, and returns the reason. Every motion has resolved by
-    /// then or is about to. For a supervised robot, waits until the supervisor has given up or this
-    /// program has closed the connection.
+    /// then, or is about to resolve. For a supervised robot, waits until the supervisor has given
+    /// up or this program has closed the connection.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.

@@ -56,9 +56,9 @@ type Outcome = Result<MotionReport, MotionError>;
 /// in which they were given.
 ///
 /// The [`arms`](Self::arms) can also be moved alone. Such a motion does not wait for the other
-/// arms, and its end does not affect them. But every motion of a member, joint or not, brakes when
-/// the team is stopped. It also brakes when the session of another member ends in any way other
-/// than [`Arm::disengage`]. A motion that begins later is not affected.
+/// arms, and its end does not affect them. But every motion of a member, also one outside a team
+/// motion, brakes when the team is stopped. It also brakes when the session of another member ends
+/// in any way other than [`Arm::disengage`]. A motion that begins later is not affected.
 ///
 /// Dropping the team brakes all arms and ends their sessions in the background, unless other
 /// handles of the arms exist.

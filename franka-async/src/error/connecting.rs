@@ -26,7 +26,7 @@ const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: the operating system does not grant what real-time control requests, see
+    /// Host: the operating system refuses a request of real-time control, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
