@@ -32,8 +32,7 @@ pub struct Holder {
 /// Another client holds the lease.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{name:?} holds the lease (the right to command this arm), expected a free lease: ask \
-     {name:?} to release it, or wait until that client is silent"
+    "{name:?} holds the lease (the right to command this arm): try again when the lease is free"
 )]
 pub struct Taken {
     /// Name of the holder.

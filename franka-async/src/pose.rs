@@ -54,11 +54,11 @@ pub enum NotRigid {
     )]
     RowMajor,
     /// The last row is not the last row of a homogeneous matrix.
-    #[error("the last row is not 0 0 0 1, as expected of a pose")]
+    #[error("the last row is not 0 0 0 1, so the matrix is not a pose")]
     LastRow,
     /// The upper left block is scaled, sheared or mirrored.
     #[error(
-        "the upper left 3x3 block is no rotation, expected one within {} of it",
+        "the upper left 3x3 block differs from every rotation matrix by more than {}",
         transform::DISTORTION_MAX
     )]
     Rotation,

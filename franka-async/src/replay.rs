@@ -46,7 +46,7 @@ pub enum ReplayFailure {
     Motion(#[from] MotionError),
     /// The arm did not move as in the recording, because something holds it or a guard has braked
     /// it.
-    #[error("{distance} {after:.3?} after the begin of the replay, expected {most} at most")]
+    #[error("{distance}, {after:.3?} after the start of the replay; expected {most} at most")]
     Off {
         /// Time since the start of the replay.
         after: Duration,

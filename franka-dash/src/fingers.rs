@@ -143,7 +143,7 @@ fn word(action: GripperAction, done: bool) -> &'static str {
         (GripperAction::Home {}, false) => "homing failed: the greatest width is unknown",
         (GripperAction::Move { .. }, true) => "reached the width",
         (GripperAction::Move { .. }, false) => {
-            "did not reach the width; home the gripper first, and choose a width up to the greatest"
+            "did not reach the width: home the gripper first, and choose at most its greatest width"
         }
         (GripperAction::Grasp { .. }, true) => "holds the object",
         (GripperAction::Grasp { .. }, false) => {

@@ -137,7 +137,7 @@ fn refusal(error: MotionError) -> String {
         }
         MotionError::Path(PathError::Turn { degrees, .. }) => {
             format!(
-                "the turn is {degrees} degrees, expected less than 170 degrees, since its direction is not clear"
+                "the turn is {degrees} degrees, expected less than 170 degrees: the direction of a larger turn is ambiguous"
             )
         }
         error => error.to_string(),

@@ -28,8 +28,8 @@ pub enum PlanError {
     /// exceeds its limit, or the velocity would exceed its limit shortly before or after the
     /// target.
     #[error(
-        "the target of axis {axis} moves faster than the limits allow, expected |acceleration| \
-         and |velocity| + acceleration^2 / (2 jerk limit) within the limits"
+        "the target of axis {axis} moves faster than the limits allow: expected |acceleration| \
+         within its limit, and |velocity| + acceleration^2 / (2 jerk limit) within the velocity limit"
     )]
     TargetMotion {
         /// Number of the axis, from 1. It is 1 for a straight line, which is planned as one axis.
@@ -39,8 +39,8 @@ pub enum PlanError {
     /// `f64` cannot represent the powers in the solution. The bound is 100 decades, in units of the
     /// acceleration and jerk limits.
     #[error(
-        "state, target and limits of axis {axis} differ by too many orders of magnitude to \
-        plan with, expected comparable magnitudes"
+        "the state, the target and the limits of axis {axis} differ by too many orders of magnitude \
+         for a plan, expected similar magnitudes"
     )]
     OutOfRange {
         /// Number of the axis, from 1. It is 1 for a straight line, which is planned as one axis.

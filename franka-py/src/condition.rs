@@ -26,8 +26,8 @@ impl Condition {
         let text = match condition.check() {
             Ok(()) => return Ok(Self { condition, text }),
             Err(ConditionError::Threshold { quantity, got }) => format!(
-                "the threshold for {} is {got}, expected a finite number, and above 0 for a \
-                 magnitude",
+                "the threshold for {} is {got}, expected a finite number (above 0 for a \
+                 magnitude)",
                 name(quantity)
             ),
             Err(error) => error.to_string(),

@@ -136,8 +136,8 @@ pub(crate) use device_methods;
 pub(crate) fn given<'a>(address: Option<&'a str>, what: &str, option: &str) -> PyResult<&'a str> {
     address.ok_or_else(|| {
         PyTypeError::new_err(format!(
-            "address is None, expected host or host:port: a simulator has a {what} with \
-             {option}=True only"
+            "address is None, expected host or host:port: only a simulator with {option}=True has \
+             a {what}"
         ))
     })
 }

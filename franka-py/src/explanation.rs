@@ -41,8 +41,8 @@ pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explana
         return Err(PyTypeError::new_err(text));
     };
     let Some(error) = log.get().error() else {
-        let text = "this log was pickled: explain it in the process that raised the error; its \
-                    diagnosis and findings came along";
+        let text = "this log was pickled: explain it in the process that raised the error; here it has \
+                    only its diagnosis and its findings";
         return Err(PyValueError::new_err(text));
     };
     let explained = py.detach(|| Explained::of_error(error));

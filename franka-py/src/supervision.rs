@@ -54,8 +54,8 @@ pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
             policy = policy.recover(times, seconds("the window of recover", window)?);
         }
         (None, Some(_)) => {
-            let text = "got only, which names errors to recover from, without recover: expected \
-                 recover=(times, seconds) too";
+            let text = "got `only` (the errors to recover from) without `recover`, expected both: \
+                 add recover=(times, seconds)";
             return Err(PyValueError::new_err(text));
         }
         (None, None) => {}

@@ -399,7 +399,7 @@ def test_regions_are_kept_out_of(sim: Sim) -> None:
 def test_an_arm_that_ignores_its_commands_is_named(sim: Sim) -> None:
     async def main(robot: Robot) -> None:
         sim.freeze()
-        with pytest.raises(MotionError, match="stood still under commands"):
+        with pytest.raises(MotionError, match="did not move although it received commands"):
             await robot.move_by([0.0, 0.1, 0.0])
         sim.freeze(None)
         await robot.move_by([0.0, 0.05, 0.0])

@@ -188,9 +188,9 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
 
 
 def test_a_simulator_without_grippers_has_no_address_of_them(sim: Sim) -> None:
-    with pytest.raises(TypeError, match="has a Hand with hand=True only"):
+    with pytest.raises(TypeError, match="only a simulator with hand=True has a Hand"):
         Gripper(sim.hand_address)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="has a vacuum gripper with vacuum_gripper=True only"):
+    with pytest.raises(TypeError, match="only a simulator with vacuum_gripper=True has a vacuum gripper"):
         VacuumGripper(sim.vacuum_gripper_address)  # type: ignore[arg-type]
 
 

@@ -196,7 +196,7 @@ def test_policies_are_values() -> None:
     ("fields", "message"),
     [
         ({"recover": (1, -1.0)}, "the window of recover is -1 s, expected a number of 0 or more"),
-        ({"only": ["joint_reflex"]}, "got only, which names errors to recover from, without recover"),
+        ({"only": ["joint_reflex"]}, r"got `only` \(the errors to recover from\) without `recover`, expected both"),
         ({"recover": (1, 1.0), "only": ["bump"]}, '"bump", expected one of joint_position_limits_violation'),
         ({"reconnect": Backoff(jitter=1.5)}, "jitter is 1.5, expected a number from 0 to 1"),
         ({"silence": float("inf")}, "silence is inf"),

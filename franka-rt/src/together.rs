@@ -43,7 +43,7 @@ use core::time::Duration;
 /// assert_eq!((left.member(), right.member()), (0, 1));
 /// drop(right); // its motion will never begin, so the other one will not either
 /// let fault = left.fault().expect("a member is gone");
-/// assert_eq!(fault.to_string(), "member 1 of the common start was dropped or refused before the start");
+/// assert_eq!(fault.to_string(), "the motion with start ticket 1 was dropped or refused before the motions began");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use = "only the tickets of a common start do something"]
@@ -144,28 +144,30 @@ pub enum Gate {
 pub enum StartFault {
     /// A ticket was dropped, or its motion was dropped before it was awaited, or its motion was
     /// refused before anything was sent to the robot.
-    #[error("member {member} of the common start was dropped or refused before the start")]
+    #[error(
+        "the motion with start ticket {member} was dropped or refused before the motions began"
+    )]
     Dropped {
         /// Number of the member.
         member: usize,
     },
     /// A motion was dropped, stopped or superseded while it waited.
-    #[error("member {member} of the common start was cancelled while it waited")]
+    #[error("the motion with start ticket {member} was cancelled while it waited for the others")]
     Withdrawn {
         /// Number of the member.
         member: usize,
     },
     /// A motion ended before the start, because its robot refused it, stopped, or fell silent. The
     /// motion's own error reports the cause.
-    #[error("the motion of member {member} ended before the common start")]
+    #[error("the motion with start ticket {member} ended before the others were ready")]
     Ended {
         /// Number of the member.
         member: usize,
     },
     /// Not all members arrived in time.
     #[error(
-        "{present} of {members} members were ready for the common start after {} ms, expected all \
-         of them",
+        "{present} of {members} motions were ready to start together within {} ms, expected all of \
+         them",
         .waited.as_millis()
     )]
     TimedOut {

@@ -144,8 +144,8 @@ async fn refused_enforced_setting_connects_and_raises_nothing() {
     assert_eq!(
         error.to_string(),
         format!(
-            "libfranka: unable to set realtime scheduling: {why} (for a simulator: \
-             `Realtime::Ignore`, in Python `realtime=\"ignore\"`)"
+            "libfranka: unable to set realtime scheduling: {why} (for a simulator, use \
+             `Realtime::Ignore`, or in Python `realtime=\"ignore\"`)"
         )
     );
     for thread in threads().into_values() {

@@ -127,7 +127,7 @@ fn reflex_ends_the_motion_by_name_until_recovery() {
         );
         assert_eq!(
             error.to_string(),
-            r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")! (`recover` first)"#
+            r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")! (call `recover` first)"#
         );
 
         lockstep.run(500);

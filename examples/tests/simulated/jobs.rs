@@ -186,7 +186,7 @@ fn a_job_that_cannot_begin_is_refused_with_the_reason() {
     let (status, why) = refusal(json!({ "by": [1.5, 0.0, 0.0] }));
     assert_eq!(status, 422, "{why}");
     assert!(
-        why.contains("no joint positions within their ranges reach it"),
+        why.contains("no joint positions within their ranges reach this position"),
         "{why}"
     );
     let (status, why) = refusal(json!({ "by": [0.0, 0.0, 0.1], "speed": -1.0 }));

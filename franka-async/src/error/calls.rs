@@ -47,8 +47,8 @@ pub enum CommandError {
         deadline: Duration,
     },
     /// Link: the robot sends no states. It is unknown whether the command was carried out.
-    #[error("no robot state for {} ms: the command may have taken effect, read the state when the \
-        robot is back", .silence.as_millis())]
+    #[error("no robot state for {} ms: the robot may have carried out the command, so check its \
+        state when states arrive again", .silence.as_millis())]
     LinkLost {
         /// Time for which the robot has been silent so far.
         silence: Duration,

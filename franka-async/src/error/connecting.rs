@@ -19,7 +19,8 @@ use super::CommandError;
 use crate::endpoint::EndpointError;
 
 /// Hint for a program that connects to a simulator.
-const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
+const IGNORE: &str =
+    " (for a simulator, use `Realtime::Ignore`, or in Python `realtime=\"ignore\"`)";
 
 /// Reason why a connection to a robot failed, or to a different device if `P` names one. Everything
 /// that was opened is closed again, and the program may retry.

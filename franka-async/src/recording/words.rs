@@ -78,7 +78,7 @@ pub(super) fn outcome(goal: GoalId, outcome: &Outcome) -> EventKind {
         Ok(report) => {
             let text = report.reacted.map(|reacted| {
                 let after = reacted.after.as_millis();
-                format!("the condition was true at {after} ms")
+                format!("the condition became true {after} ms after the start")
             });
             let text = text.unwrap_or_default();
             (Ending::Arrived, text, Some(report.duration))

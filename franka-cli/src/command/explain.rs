@@ -118,10 +118,7 @@ impl Recorded {
             (None, _) => None,
         };
         let robot = robot.ok_or_else(|| {
-            let message = format!(
-                "{} has several robots, expected the choice of one",
-                self.file.display()
-            );
+            let message = format!("no robot of {} was chosen", self.file.display());
             Failure::usage(message).advice(format!("Choose one with --of: {names:?}"))
         })?;
         let name = robot.name.clone();

@@ -90,12 +90,15 @@ impl Trial {
         let beside = self.report.with_extension("mcap");
         let path = self.mover.how.record.get_or_insert(beside);
         if *path == self.report {
-            let message = format!("report and recording are both {}", path.display());
+            let message = format!(
+                "the report and the recording would have the same name, {}",
+                path.display()
+            );
             return Err(Failure::usage(message).into());
         }
         if path.exists() {
             let message = format!(
-                "{} already exists, and a trial replaces no file",
+                "{} already exists, and a trial never overwrites a file",
                 path.display()
             );
             let failure = Failure::new(Ending::Host, message);

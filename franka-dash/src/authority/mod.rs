@@ -100,11 +100,11 @@ pub(crate) enum Effect {
 /// Reason why a hold ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Lost {
-    #[error("released")]
+    #[error("the button was released")]
     LetGo,
-    #[error("no sign of life from the page for 150 ms")]
+    #[error("the page sent no keep-alive for 150 ms")]
     Silent,
-    #[error("sign of life out of sequence: got number {got}, expected {expected}")]
+    #[error("a keep-alive of the page is out of sequence: got number {got}, expected {expected}")]
     Sequence { expected: u32, got: u32 },
     #[error("the connection of the commanding page has closed")]
     Disconnected,

@@ -55,7 +55,7 @@ impl Hub {
         let why = match event {
             EventKind::LoadChanged { .. } => "the load has changed",
             EventKind::Unrecognised { .. } => {
-                "the robot differs from the robot before the \
+                "the robot is not as it was before the \
                 connection was lost"
             }
             _ => return,

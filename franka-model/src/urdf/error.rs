@@ -25,9 +25,9 @@ pub enum UrdfError {
     },
     /// The name indicates a mobile robot.
     #[error(
-        "the URDF describes the mobile robot '{name}', expected an arm; \
-         libfranka: loadModel() is not available for mobile robots. \
-         Use franka::MobileModel with the URDF from getRobotModel() instead."
+        "the URDF describes the mobile robot '{name}', expected an arm \
+         (libfranka: loadModel() is not available for mobile robots. \
+         Use franka::MobileModel with the URDF from getRobotModel() instead.)"
     )]
     MobileRobot {
         /// Name of the robot.
@@ -120,7 +120,7 @@ pub enum UrdfError {
     },
     /// The margins at both ends of a joint's range leave no room to move.
     #[error(
-        "the limits of joint {joint}, {lower} to {upper} rad, span {:.4} rad, expected {least:.4} \
+        "the range of joint {joint}, from {lower} to {upper} rad, is {:.4} rad, expected {least:.4} \
          rad or more: the driver keeps a margin at both ends", .upper - .lower
     )]
     RangeTooNarrow {

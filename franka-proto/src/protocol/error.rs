@@ -130,7 +130,7 @@ pub enum RequestError {
     Handshake,
     /// The largest number of requests already wait for replies.
     #[error(
-        "got a request while {limit} wait for replies, expected {limit} at most: await a \
+        "{limit} requests already wait for replies, and no more are allowed: await a \
         reply first"
     )]
     TooManyPending {

@@ -282,8 +282,8 @@ impl Robot {
         let law = match law.cast::<Law>() {
             Ok(_) if command.is_some() || elbow || parameters.is_some() || memory.is_some() => {
                 return Err(PyValueError::new_err(
-                    "got command, elbow, parameters or memory beside a Law, expected them in the \
-                     Law",
+                    "got command, elbow, parameters or memory besides a Law, which already \
+                     contains them: pass them to Law",
                 ));
             }
             Ok(law) => law.clone(),

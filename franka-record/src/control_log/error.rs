@@ -24,8 +24,8 @@ pub enum ControlLogError {
     },
     /// The file has no table and no exception text.
     #[error(
-        "got {got:?}, expected a recording (MCAP), a table of franka::logToCSV, which begins with \
-         \"time,success_rate,state.q[0]\", or the text of a franka::ControlException, which has \
+        "got {got:?}, expected a recording (MCAP); a table of franka::logToCSV, which begins with \
+         \"time,success_rate,state.q[0]\"; or the text of a franka::ControlException, which contains \
          \"Move command aborted\""
     )]
     Unknown {

@@ -186,7 +186,7 @@ fn file_fault_is_reported_with_line_and_column() {
     for (text, expected) in [
         (
             String::new(),
-            "got \"\", expected a recording (MCAP), a table",
+            "got \"\", expected a recording (MCAP); a table",
         ),
         (
             "q,dq\n1,2\n".into(),

@@ -17,7 +17,7 @@ pub enum RecordingError {
         source: Arc<io::Error>,
     },
     /// The file is not an MCAP file.
-    #[error("not an MCAP file: got {got:02x?} at the begin, expected the magic bytes of MCAP")]
+    #[error("not an MCAP file: it starts with {got:02x?}, expected the magic bytes of MCAP")]
     NotMcap {
         /// The bytes at the beginning of the file.
         got: Vec<u8>,

@@ -83,7 +83,7 @@ impl Walk {
             if cut {
                 return Some(Err(RecordingError::Chunk {
                     offset,
-                    reason: "its last record is cut".to_owned(),
+                    reason: "its last record is cut off".to_owned(),
                 }));
             }
         }

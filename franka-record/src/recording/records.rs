@@ -79,7 +79,7 @@ pub(crate) fn each_record<E: From<RecordingError>>(
         if chunk.is_cut() {
             let at = entry.offset;
             return Ok(Some(format!(
-                "the last record of the chunk at byte {at} is cut"
+                "the last record of the chunk at byte {at} is cut off"
             )));
         }
     }

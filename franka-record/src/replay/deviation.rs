@@ -94,7 +94,7 @@ impl ReplayPlan {
         };
         let is_far = got > most;
         is_far.then(|| {
-            let got = format!("{what} is {got:.3} {unit} off the recording");
+            let got = format!("{what} is {got:.3} {unit} from its recorded position");
             (got, format!("{most} {unit}"))
         })
     }

@@ -39,8 +39,8 @@ pub enum ReplayError {
     },
     /// Cycles are missing, or not in order.
     #[error(
-        "the recording has a gap from {from} to {to} ms of the robot's clock, expected {GAP_MAX} \
-         ms at most"
+        "the recording has a gap from {from} to {to} ms of the robot's clock, expected gaps of \
+         {GAP_MAX} ms at most"
     )]
     Gap {
         /// `message_id` of the cycle before the gap.
@@ -56,8 +56,8 @@ pub enum ReplayError {
     },
     /// The joints were not under control in a part of the recording.
     #[error(
-        "the recording has no commanded position at {time} ms of the robot's clock: engage the \
-         arm for the whole motion, or replay measured positions (source `measured`)"
+        "the recording has no commanded position at {time} ms of the robot's clock: record \
+         a motion of an engaged arm, or replay the measured positions (source `measured`)"
     )]
     Uncontrolled {
         /// `message_id` of the cycle.
@@ -79,7 +79,7 @@ pub enum ReplayError {
         speed: f64,
     },
     /// A target is outside the limits or out of reach.
-    #[error("{after:.3?} after the begin of the replay: {error}")]
+    #[error("{after:.3?} after the start of the replay: {error}")]
     Target {
         /// Time in the replay.
         after: Duration,
@@ -87,7 +87,7 @@ pub enum ReplayError {
         error: GoalError,
     },
     /// Some targets do not form a motion.
-    #[error("{after:.3?} after the begin of the replay: {error}")]
+    #[error("{after:.3?} after the start of the replay: {error}")]
     Chunk {
         /// Time in the replay.
         after: Duration,

@@ -39,13 +39,13 @@ pub enum CloseReason {
     },
     /// Link: the robot sent no states although the connection seemed alive. The supervisor closed
     /// the connection.
-    #[error("no robot state for {} ms more than the link timeout", .silence.as_millis())]
+    #[error("no robot state for {} ms longer than the link timeout", .silence.as_millis())]
     Silent {
         /// Time without a state when the supervisor noticed it.
         silence: Duration,
     },
     /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
-    #[error("no new connection within {} s, {attempts} attempts; the last one: {text}", .after.as_secs())]
+    #[error("no new connection within {} s, after {attempts} attempts; the last attempt failed: {text}", .after.as_secs())]
     GivenUp {
         /// Number of failed attempts.
         attempts: u32,

@@ -221,7 +221,9 @@ pub enum MotionError {
     TargetNotReached(Shortfall),
     /// Robot or surroundings: no motion runs, but after a stop no state showed the arm at rest.
     /// Either a hand guides the arm, or its joints still move.
-    #[error("joint {joint} moves at {velocity:.3} rad/s without a motion, expected an arm at rest")]
+    #[error(
+        "joint {joint} moves at {velocity:.3} rad/s although no motion runs, expected an arm at rest"
+    )]
     NotAtRest {
         /// One of the joints that move, 1 to 7.
         joint: usize,
@@ -231,7 +233,7 @@ pub enum MotionError {
     /// The condition of the motion became true, but the arm did not reach its new target. `error`
     /// is [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]; the party of `error` can
     /// act on it.
-    #[error("{error} (after the motion's condition was true at {} ms)", .reacted.after.as_millis())]
+    #[error("{error} (the motion's condition had become true {} ms after the start)", .reacted.after.as_millis())]
     AfterReaction {
         /// Values at the time when the condition of the motion became true.
         reacted: Box<Reacted>,
@@ -381,7 +383,7 @@ impl MotionError {
 fn recover_first(refusal: &Refusal) -> &'static str {
     let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
     match (refusal.status() == not_possible, refusal.mode()) {
-        (true, RobotMode::Reflex) => " (`recover` first)",
+        (true, RobotMode::Reflex) => " (call `recover` first)",
         _ => "",
     }
 }
@@ -389,7 +391,7 @@ fn recover_first(refusal: &Refusal) -> &'static str {
 fn not_ready(why: Unready, waited: Duration) -> String {
     match waited.as_millis() {
         0 => format!("the motion did not begin: {why}"),
-        waited => format!("the motion did not begin, after waiting for {waited} ms: {why}"),
+        waited => format!("the motion waited for {waited} ms and did not begin: {why}"),
     }
 }
 

@@ -20,11 +20,11 @@ pub enum Unready {
     #[error("the robot is being recovered from a reflex")]
     Recovering,
     /// Robot: it stopped with a reflex. The recovery waits for the user's approval.
-    #[error("the recovery from a reflex waits for approval (`agree`)")]
+    #[error("the recovery from a reflex waits for approval (call `agree`)")]
     AgreementAwaited,
     /// Robot: after a lost connection, the robot differs from the robot before. Its recovery from a
     /// reflex waits for the user's approval, and waiting motions do not begin.
-    #[error("the robot differs from the robot before the connection was lost: {0}")]
+    #[error("the robot is not as it was before the connection was lost: {0}")]
     Unrecognised(Differences),
     /// Robot: this program's settings are being sent again after a reconnect.
     #[error("the settings of this program are being restored on the robot")]
@@ -33,7 +33,7 @@ pub enum Unready {
     #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
     /// Robot: it stopped with a reflex, and the user must recover it.
-    #[error("the robot stopped itself by a reflex (`recover` first)")]
+    #[error("the robot stopped itself by a reflex (call `recover` first)")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.
     #[error("the user stop is pressed, or a safety function is active")]
@@ -45,7 +45,7 @@ pub enum Unready {
     #[error("the brakes are closed, or the robot is not ready")]
     Braked,
     /// Caller: this program has latched a stop and has not released it.
-    #[error("a stop is latched (`release_stop` first)")]
+    #[error("a stop is latched (call `release_stop` first)")]
     StopLatched,
 }
 

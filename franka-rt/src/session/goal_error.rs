@@ -47,8 +47,8 @@ pub enum GoalError {
         upper: f64,
     },
     /// No joint positions inside the joints' ranges reach the position.
-    #[error("the pose at {} is out of reach: no joint positions within their ranges reach it with \
-        its orientation", place([*x, *y, *z]))]
+    #[error("the pose at {} is out of reach: no joint positions within their ranges reach \
+        this position and orientation", place([*x, *y, *z]))]
     Unreachable {
         /// Coordinate x of the requested position, base frame, `[m]`.
         x: f64,
@@ -78,7 +78,7 @@ pub enum GoalError {
         posture: Option<[f64; 7]>,
     },
     /// A limit of the budget is below [`Budget::LIMITS_MIN`], or above the robot's own limit.
-    #[error("limit of the {what} is {got}, expected between {least} and {most}")]
+    #[error("the limit of the {what} is {got}, expected between {least} and {most}")]
     Budget {
         /// Name of the limit.
         what: &'static str,
@@ -107,9 +107,8 @@ pub enum GoalError {
     /// The joint springs act only in the null space of the end effector, and there is no spring at
     /// the end effector. Nothing would pull the arm to its target.
     #[error(
-        "the gains leave the end effector free: got no end-effector stiffness, and joint \
-         stiffness in the null space only; expected an end-effector stiffness, or \
-         `project_joint_gains` off"
+        "got no end-effector stiffness, and joint stiffness only in the null space, so nothing holds \
+         the end effector: set an end-effector stiffness, or turn off `project_joint_gains`"
     )]
     Unheld,
     /// A number of the goal is out of bounds.

@@ -140,7 +140,7 @@ impl core::fmt::Display for Lapse {
             }
             Self::Deadman => write!(
                 f,
-                "the deadman (the program's sign of life) was silent or dropped"
+                "the deadman expired without a `keep_alive`, or was dropped"
             ),
             Self::Displaced => write!(f, "the arm was pushed too far from its path"),
             Self::Blocked { region: None } => {
@@ -153,13 +153,16 @@ impl core::fmt::Display for Lapse {
                 write!(f, "joint {joint} reached the end of its range on the path")
             }
             Self::OutOfReach { joint: None } => {
-                write!(f, "the joints cannot continue from there to the target")
+                write!(
+                    f,
+                    "the joints cannot reach the target from where the arm stopped"
+                )
             }
             Self::Team(stop) => stop.fmt(f),
             Self::TooFast => write!(f, "the arm exceeded its speed cap"),
             Self::Unresponsive => write!(
                 f,
-                "the arm stood still under commands, and the robot reported no error"
+                "the arm did not move although it received commands, and the robot reported no error"
             ),
         }
     }

@@ -154,7 +154,7 @@ impl fmt::Display for EventKind {
             Self::Unrecognised { differences } => {
                 write!(
                     f,
-                    "the robot differs from the robot before the loss: {differences}"
+                    "the robot is not as it was before the loss: {differences}"
                 )
             }
             Self::NotConfigured { command, text } => {

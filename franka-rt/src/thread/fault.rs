@@ -17,7 +17,7 @@ pub enum LinkFault {
     /// A state was dropped because its number is too far ahead of the newest number to come from a
     /// robot (see [`LEAP_MAX`](crate::exchange::LEAP_MAX)).
     #[error(
-        "dropped the robot state number {got}, expected a number close to {newest}, the newest"
+        "dropped the robot state with the number {got}, expected a number close to the newest, {newest}"
     )]
     Leap {
         /// `message_id` of the state, `[ms]`.

@@ -91,7 +91,7 @@ fn waiting_ends_at_the_timeout_of_whoever_came_first() {
     assert_eq!(third.fault(), Some(fault));
     assert_eq!(
         fault.to_string(),
-        "2 of 3 members were ready for the common start after 250 ms, expected all of them"
+        "2 of 3 motions were ready to start together within 250 ms, expected all of them"
     );
 }
 

@@ -54,7 +54,7 @@ impl Expect {
                 let status = Status::Move(MoveStatus::CommandNotPossibleRejected);
                 assert_eq!(refusal.status(), status);
                 let recover = if *mode == "Reflex" {
-                    " (`recover` first)"
+                    " (call `recover` first)"
                 } else {
                     ""
                 };

@@ -216,13 +216,13 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
                 "lower=\"-2.7501\" upper=\"2.7501\"",
                 "lower=\"1.5\" upper=\"1.51\"",
             ),
-            "the limits of joint joint1, 1.5 to 1.51 rad, span 0.0100 rad, expected 0.2150 rad or \
+            "the range of joint joint1, from 1.5 to 1.51 rad, is 0.0100 rad, expected 0.2150 rad or \
              more: the driver keeps a \
              margin at both ends",
         ),
         (
             with("velocity_offset=\"0.3\"", "velocity_offset=\"6\""),
-            "the limits of joint joint1, -2.7501 to 2.7501 rad, span 5.5002 rad, expected 6.2000 \
+            "the range of joint joint1, from -2.7501 to 2.7501 rad, is 5.5002 rad, expected 6.2000 \
              rad or more: the driver \
              keeps a margin at both ends",
         ),

@@ -12,7 +12,7 @@ def text_of(error: errors.FrankaError) -> str:
     """Returns the text of an error, without the parts that the original packages lack: the address and cause of a missing
     connection, the argument that was out of range, and the advice.
     """
-    text = str(error).removesuffix(" (`recover` first)")
+    text = str(error).removesuffix(" (call `recover` first)")
     is_connecting = isinstance(error, errors.ConnectError)
     kinds = ("refused", "connection_closed", "realtime") if is_connecting else ("out_of_range", "invalid_argument")
     if error.kind in kinds:

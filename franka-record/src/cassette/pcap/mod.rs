@@ -28,7 +28,7 @@ pub enum CaptureError {
     },
     /// The capture contains no connection of a client.
     #[error(
-        "got {packets} packets, expected some of a connection to TCP port 1337, 1338 or 1339{}",
+        "none of the {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339{}",
         captured_in_part(*truncated)
     )]
     NoConnection {

@@ -128,8 +128,8 @@ pub enum ConditionError {
     },
     /// A threshold is not finite, or the threshold of a magnitude is not above zero.
     #[error(
-        "the threshold for {quantity:?} is {got}, expected a finite number, and above 0 for a \
-         magnitude"
+        "the threshold for {quantity:?} is {got}, expected a finite number (above 0 for a \
+         magnitude)"
     )]
     Threshold {
         /// Quantity of the comparison.
