@@ -1,4 +1,4 @@
-//! One recorded cycle.
+//! Recorded cycles and their times.
 
 use core::fmt;
 use core::ops::{Add, Sub};
@@ -11,30 +11,30 @@ use nalgebra::Isometry3;
 
 /// A time on this host, in nanoseconds since 1970.
 ///
-/// Within one recording, the time starts with the wall clock at the beginning of the recording, and
+/// Within one recording, the time starts with the wall clock at the beginning of the recording and
 /// never decreases. Later changes of the wall clock have no effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HostTime(u64);
 
 impl HostTime {
-    /// Creates the time `nanos` after the start of 1970.
+    /// Creates the time that is `nanos` nanoseconds after the start of 1970.
     pub const fn from_nanos(nanos: u64) -> Self {
         Self(nanos)
     }
 
-    /// Returns the current wall clock of this host; the start of 1970 if the clock is set to an
-    /// earlier time.
+    /// Returns the current time of this host's wall clock. If the clock is set to a time before
+    /// 1970, returns the start of 1970.
     pub fn now() -> Self {
         Self::from(SystemTime::now())
     }
 
-    /// Returns the nanoseconds since the start of 1970.
+    /// Returns the number of nanoseconds since the start of 1970.
     pub const fn as_nanos(self) -> u64 {
         self.0
     }
 
-    /// Returns the time from `earlier` to `self`; zero if `earlier` is later.
+    /// Returns the duration from `earlier` to `self`; zero if `earlier` is later than `self`.
     pub fn since(self, earlier: Self) -> Duration {
         Duration::from_nanos(self.0.saturating_sub(earlier.0))
     }
@@ -74,7 +74,7 @@ impl Sub<Duration> for HostTime {
 }
 
 impl fmt::Display for HostTime {
-    /// Formats as UTC with milliseconds: `2026-03-01T12:00:00.000Z`.
+    /// Formats the time in UTC with milliseconds, for example `2026-03-01T12:00:00.000Z`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = self.0 / 1_000_000_000;
         let (year, month, day) = date(seconds / 86_400);
@@ -87,7 +87,7 @@ impl fmt::Display for HostTime {
     }
 }
 
-/// Returns year, month and day in the Gregorian calendar, `days` after 1970-01-01.
+/// Returns the Gregorian year, month and day that is `days` after 1970-01-01.
 fn date(days: u64) -> (u64, u64, u64) {
     // Counts from 1 March of year 0, so that a leap day is the last day of its year.
     let days = days + 719_468;
@@ -102,24 +102,25 @@ fn date(days: u64) -> (u64, u64, u64) {
     (year, month, day)
 }
 
-/// One cycle: a state of the robot, and the driver's record of it.
+/// One cycle: a state of the robot, and the driver's record of the cycle.
 ///
-/// After reading from a file, numbers have the precision of an `f32`, except times and measured
-/// joint positions. `K_F_ext_hat_K` and `elbow` are computed from other fields. Some fields are not
-/// recorded and have their defaults: the derivatives of the torques (`dtau_J`), the motors
-/// (`theta`, `dtheta`), the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian
-/// motions (`O_T_EE_c`, `elbow_c` and so on). A pose that is not a rigid transformation becomes the
-/// identity.
+/// Numbers that were read from a file have the precision of an `f32`. Only times and measured joint
+/// positions keep their full precision. The fields `K_F_ext_hat_K` and `elbow` are computed from
+/// other fields.
+///
+/// Some fields are not recorded and have their default values: `dtau_J`, `theta`, `dtheta`, the
+/// accelerometers, `O_ddP_O`, and the commanded quantities of Cartesian motions (`O_T_EE_c`,
+/// `elbow_c` and so on). A recorded pose that is not a rigid transformation becomes the identity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cycle {
     /// Time at which this host received the state.
     pub time: HostTime,
     /// The driver's record of the cycle.
     pub record: Record,
-    /// The state that the driver answered.
+    /// State to which the driver replied in this cycle.
     pub state: RobotState,
     /// Pose of the end effector at the reference joint positions, in the base frame; `None` outside
-    /// target control. If it is `None`, a recorder computes it.
+    /// target control. A recorder computes this pose if it is `None`.
     pub reference: Option<Isometry3<f64>>,
 }
 

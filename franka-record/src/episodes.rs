@@ -1,4 +1,4 @@
-//! Episodes of a recording, and the samples of their cycles for exports and replays.
+//! Episodes of a recording, and samples of their cycles for exports and replays.
 
 use core::fmt;
 
@@ -8,7 +8,7 @@ use crate::cycle::{Cycle, HostTime};
 use crate::event::{Event, EventKind, GripperState};
 use crate::sample::Sample;
 
-/// An attempt at a task, recorded between two marks.
+/// An attempt at a task: the part of a recording between two marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Episode {
@@ -16,7 +16,7 @@ pub struct Episode {
     pub name: String,
     /// Description of the task.
     pub task: String,
-    /// True if the task succeeded; `None` if it was not judged.
+    /// True if the task succeeded, false if it failed; `None` if the attempt was not judged.
     pub success: Option<bool>,
     /// Time of the beginning.
     pub begin: HostTime,
@@ -24,7 +24,7 @@ pub struct Episode {
     pub end: HostTime,
 }
 
-/// Reason why a name or task is invalid, or why no episode was found.
+/// Reason why a name or a task is invalid, or why an episode was not found.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
@@ -57,11 +57,12 @@ impl Episode {
     /// Largest number of characters in an episode's name.
     pub const NAME_MAX: usize = 128;
 
-    /// Checks the name and the task of a new episode. The name must be valid in a file name, and
-    /// the task must not be empty.
+    /// Checks the name and the task of a new episode. The name must be valid as part of a file
+    /// name, and the task must not be empty.
     ///
     /// # Errors
-    /// [`EpisodeError`] that states the value given and the expected value.
+    /// Returns an [`EpisodeError`] if the name or the task is invalid. The error states the given
+    /// value and the expected value.
     pub fn check(name: &str, task: &str) -> Result<(), EpisodeError> {
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
         if !(1..=Self::NAME_MAX).contains(&name.len()) || !name.chars().all(fits) {
@@ -75,11 +76,12 @@ impl Episode {
         Ok(())
     }
 
-    /// Returns the episodes that these events mark, in their order. An episode without an end is
-    /// left out. This happens at the end of a recording, or if the next episode begins first.
+    /// Returns the episodes that `events` mark, in the order of the events. Episodes without an end
+    /// are omitted. An episode has no end if the recording ends during it, or if the next episode
+    /// begins first.
     ///
     /// # Errors
-    /// The error of the first event that cannot be read.
+    /// Returns the error of the first event that cannot be read.
     pub fn of<E>(events: impl IntoIterator<Item = Result<Event, E>>) -> Result<Vec<Self>, E> {
         let mut episodes = Vec::new();
         let mut begun = None;
@@ -102,10 +104,10 @@ impl Episode {
         Ok(episodes)
     }
 
-    /// Returns the episodes of `all` that have one of these names, in the order of `all`.
+    /// Returns the episodes of `all` whose names are in `names`, in the order of `all`.
     ///
     /// # Errors
-    /// [`EpisodeError::Unknown`] for a name that no episode has.
+    /// Returns [`EpisodeError::Unknown`] if no episode has one of the names.
     pub fn named(all: Vec<Self>, names: &[String]) -> Result<Vec<Self>, EpisodeError> {
         let is_there = |name: &String| all.iter().any(|episode| episode.name == *name);
         if let Some(unknown) = names.iter().find(|name| !is_there(name)) {
@@ -120,9 +122,9 @@ impl Episode {
     }
 }
 
-/// Iterator of the samples of cycles, each with the gripper's most recent width.
+/// Iterator over the samples of cycles. Each sample contains the gripper's most recent width.
 ///
-/// Both inputs must be in the order of their times. Vacuum grippers have no widths.
+/// Both inputs must be sorted by time. Vacuum grippers have no width.
 pub struct Samples<C, G: Iterator> {
     cycles: C,
     gripper: core::iter::Peekable<G>,
@@ -134,7 +136,7 @@ where
     C: Iterator<Item = Result<Cycle, E>>,
     G: Iterator<Item = Result<(HostTime, GripperState), E>>,
 {
-    /// Creates the samples of these cycles and states of the gripper.
+    /// Creates an iterator over the samples of these cycles and gripper states.
     pub fn new(
         cycles: impl IntoIterator<IntoIter = C>,
         gripper: impl IntoIterator<IntoIter = G>,

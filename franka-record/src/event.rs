@@ -1,4 +1,4 @@
-//! The contents of a recording in addition to the cycles.
+//! Events of a recording, and states of grippers.
 
 use core::fmt;
 use core::time::Duration;
@@ -9,20 +9,20 @@ use nalgebra::Isometry3;
 
 use crate::HostTime;
 
-/// An event, with its time.
+/// An event and its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Time at which this host learned of the event.
+    /// Time at which this host noticed the event.
     pub time: HostTime,
-    /// Robot clock of the newest cycle before the event, `[ms]`. Without such a cycle, the robot's
-    /// clock when the robot was attached to the recorder; 0 if unknown.
+    /// Robot clock of the newest cycle before the event, `[ms]`. Before the first cycle, this is
+    /// the robot clock at the time when the robot was attached to the recorder; 0 if unknown.
     pub robot_time: u64,
     /// The kind of event.
     pub kind: EventKind,
 }
 
-/// The kind of event. The recorder itself detects changes of the robot's mode and errors, drops,
-/// and steps of the clock.
+/// The kind of an event. The recorder itself detects changes of the robot's mode, changes of its
+/// errors, dropped cycles, and clock steps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
@@ -30,9 +30,9 @@ pub enum EventKind {
     Goal(Goal),
     /// A goal ended.
     Outcome(Outcome),
-    /// No state has arrived for some time: the link to the robot is lost.
+    /// The link to the robot is lost, because no state has arrived for some time.
     LinkLost {
-        /// Time without states so far.
+        /// Time since the newest state.
         silence: Duration,
     },
     /// States arrive again.
@@ -47,52 +47,52 @@ pub enum EventKind {
         /// The current mode.
         to: RobotMode,
     },
-    /// The errors that are present changed.
+    /// The set of active errors changed.
     Errors {
-        /// The errors that are present now.
+        /// The errors that are active now.
         errors: Errors,
         /// The errors that ended the last motion.
         reflex_reason: Errors,
     },
-    /// A request to the robot or its gripper was answered.
+    /// The robot or its gripper answered a request.
     Request(Request),
-    /// A diagnosis: the reason why a motion ended, and the recommended changes.
+    /// The driver diagnosed why a motion ended, and recommends changes.
     Diagnosis(Diagnosis),
-    /// An episode begins.
+    /// An episode began.
     EpisodeStart {
         /// Name of the episode.
         name: String,
         /// Description of the task.
         task: String,
     },
-    /// The episode ends.
+    /// An episode ended.
     EpisodeEnd {
-        /// True if the task succeeded; `None` if it was not judged.
+        /// True if the task succeeded, false if it failed; `None` if the attempt was not judged.
         success: Option<bool>,
     },
     /// A remark of the program, the user or the recorder.
     Note(Note),
-    /// The recorder had no space for some cycles and dropped them.
+    /// The recorder dropped some cycles, because it had no space for them.
     Dropped {
-        /// Number of cycles dropped since the last such event.
+        /// Number of cycles dropped since the previous event of this kind.
         cycles: u64,
     },
-    /// The wall clock of this host was set; recorded times continue unchanged.
+    /// This host's wall clock was set. Recorded times do not change.
     ClockStep {
-        /// The wall clock minus recorded time, `[ns]`.
+        /// Difference of the wall clock from recorded time, `[ns]`.
         by: i64,
     },
 }
 
-/// A goal: the task of one call, such as `move_to` or `follow`.
+/// A goal: the task that one call such as `move_to` or `follow` sets.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// Number of the goal, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 if it has
-    /// none.
+    /// Number of the goal, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 if the goal
+    /// has no number.
     pub number: u64,
-    /// Name of the method that set the goal: `move_to`, `follow`, `control_torques`, ...
+    /// Name of the method that set the goal, such as `move_to`, `follow` or `control_torques`.
     pub kind: String,
-    /// Final position of the goal, if known when the goal was set.
+    /// Final position of the goal; `None` if it was not known when the goal was set.
     pub target: Option<Target>,
     /// Options of the goal, as text.
     pub options: String,
@@ -101,30 +101,30 @@ pub struct Goal {
 /// Final position of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// Joint positions, `[rad]`.
+    /// Final joint positions, `[rad]`.
     Joints([f64; 7]),
-    /// Pose of the end effector in the base frame, `[m]`.
+    /// Final pose of the end effector in the base frame, `[m]`.
     Pose(Isometry3<f64>),
 }
 
-/// The end of a goal.
+/// How and when a goal ended.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Number of the goal; 0 if it has none.
+    /// Number of the goal; 0 if the goal has no number.
     pub goal: u64,
-    /// Kind of the ending.
+    /// The way in which the goal ended.
     pub ending: Ending,
-    /// Result as text.
+    /// The result of the goal as text.
     pub text: String,
-    /// Time from the first cycle with the goal to the end of the goal, if it ran.
+    /// Time from the first cycle of the goal to its end; `None` if the goal never ran.
     pub duration: Option<Duration>,
 }
 
-/// Kind of a goal's ending.
+/// The way in which a goal ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
-    /// The goal reached its target, or its own end condition.
+    /// The goal reached its target or met its end condition.
     Arrived,
     /// A newer goal replaced the goal.
     Superseded,
@@ -136,7 +136,7 @@ pub enum Ending {
     LinkLost,
     /// A guard (a safety check of the driver) aborted the goal.
     Guard(Guard),
-    /// The goal never began, or the driver refused a target of its stream.
+    /// The goal never began, or the driver refused a target from the goal's stream.
     Rejected,
     /// The goal failed for any other reason.
     #[default]
@@ -144,15 +144,15 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// True if the black box writes a file after this ending. It does so after a reflex, a lost
-    /// link, or a guard that aborted the motion.
+    /// Returns true if the black box writes a file after this ending. This is the case for a
+    /// reflex, a lost link, and a guard that aborted the motion.
     pub fn is_incident(self) -> bool {
         matches!(self, Self::Reflex | Self::LinkLost | Self::Guard(_))
     }
 }
 
 impl fmt::Display for Ending {
-    /// Formats as words with hyphens, valid in file names.
+    /// Formats the ending as words joined by hyphens, for use in file names.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Arrived => f.write_str("arrived"),
@@ -167,7 +167,7 @@ impl fmt::Display for Ending {
     }
 }
 
-/// Returns the name of a guard in lower case, with words joined by hyphens.
+/// Returns the name of a guard in lower case, as words joined by hyphens.
 fn guard_name(guard: Guard) -> String {
     let mut name = String::new();
     for letter in format!("{guard:?}").chars() {
@@ -179,21 +179,21 @@ fn guard_name(guard: Guard) -> String {
     name
 }
 
-/// A request to the robot or its gripper, and its answer.
+/// A request to the robot or its gripper, and the result of the request.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
-    /// Name of the method: `set_load`, `gripper.grasp`, ...
+    /// Name of the method, such as `set_load` or `gripper.grasp`.
     pub name: String,
-    /// Arguments of the method, as JSON.
+    /// Arguments of the method as JSON.
     pub arguments: String,
     /// Reason for the failure; `None` if the request succeeded.
     pub error: Option<String>,
 }
 
-/// The reason why a motion ended, and the recommended changes.
+/// An explanation of why a motion ended, and the recommended changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
-    /// Number of the goal; 0 if it has none.
+    /// Number of the goal; 0 if the goal has no number.
     pub goal: u64,
     /// The diagnosis as text.
     pub text: String,
@@ -201,7 +201,7 @@ pub struct Diagnosis {
     pub json: String,
 }
 
-/// A remark.
+/// A remark of the program, the user or the recorder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Note {
     /// Severity of the remark.
@@ -226,17 +226,17 @@ pub enum Level {
     Error,
 }
 
-/// A state of a gripper.
+/// A state of a Franka Hand or of a vacuum gripper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GripperState {
-    /// State of a Hand.
+    /// State of a Franka Hand.
     Hand(gripper::State),
     /// State of a vacuum gripper.
     Vacuum(vacuum::State),
 }
 
 impl fmt::Display for EventKind {
-    /// Formats as one line for people.
+    /// Formats the state as one readable line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Goal(goal) => match goal.target {
@@ -317,7 +317,7 @@ impl EventKind {
         }
     }
 
-    /// True if the black box writes a file after this event.
+    /// Returns true if the black box writes a file after this event.
     pub fn is_incident(&self) -> bool {
         match self {
             Self::Outcome(outcome) => outcome.ending.is_incident(),
@@ -325,8 +325,7 @@ impl EventKind {
         }
     }
 
-    /// True if the cycles around this event are kept at the full rate when a thinned recording
-    /// drops others.
+    /// Returns true if a thinned recording keeps the full rate near this event.
     pub(crate) fn is_notable(&self) -> bool {
         match self {
             Self::LinkRestored { .. } | Self::Dropped { .. } | Self::Errors { .. } => true,
@@ -335,7 +334,7 @@ impl EventKind {
         }
     }
 
-    /// Returns the subject of the event, for the `name` of a log message.
+    /// Returns the subject of the event, which becomes the `name` of a log message.
     pub fn source(&self) -> &str {
         match self {
             Self::Goal(_) | Self::Outcome(_) => "motion",

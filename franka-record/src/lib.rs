@@ -1,5 +1,5 @@
-//! Flight recorder for Franka robots: records every cycle in an MCAP file, explains reflexes, and
-//! replays sessions.
+//! Flight recorder for Franka robots. It records every cycle in an MCAP file, explains reflexes,
+//! and replays sessions.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

@@ -1,4 +1,4 @@
-//! The model of a recorded robot: from the description that it served.
+//! The model of a recorded robot, computed from the description in the file.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -10,23 +10,25 @@ use franka_model::{Model, RobotKind};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RecordedModel {
-    /// Limits and inertias of the robot's description, with the lengths that the driver used.
+    /// Model with the limits and inertias of the robot's description, and with the link lengths
+    /// that the driver used.
     pub model: Model,
-    /// Reason why constants replace the description of a Franka Research 3; `None` if they do not.
-    /// A Franka Emika Robot describes nothing: its constants equal the values of the robot's
-    /// library.
+    /// Reason why constants replace the description of a Franka Research 3; `None` if the model
+    /// uses the description. It is also `None` for a Franka Emika Robot, which serves no
+    /// description. The constants of this robot equal the values of its library.
     pub fallback: Option<ModelFallback>,
 }
 
-/// Reason why constants replace the description of a robot. The limits are then the limits of
-/// systems before 5.9.
+/// Reason why constants replace the description of a robot. The limits of the model are then the
+/// limits of robot systems before 5.9.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ModelFallback {
-    /// The file has no description, or it is damaged.
+    /// The file contains no description, or the attached description is damaged.
     Missing,
-    /// The description is not one of this arm. Has the text of the error.
+    /// The attached description does not describe this arm. The field contains the text of the
+    /// error.
     Refused(String),
 }
 
@@ -40,8 +42,8 @@ impl fmt::Display for ModelFallback {
 }
 
 impl RecordedModel {
-    /// Returns the model of a robot of this kind with the description `urdf`, if known, and with
-    /// the lengths that the driver used, if known.
+    /// Returns the model of a robot of this kind. Uses the description `urdf` and the `lengths` of
+    /// the driver if they are known.
     pub(crate) fn of(kind: RobotKind, urdf: Option<&str>, lengths: Option<Lengths>) -> Self {
         let described = match (kind, urdf.map(Model::from_urdf)) {
             (RobotKind::Fer, _) => Ok(Model::fer().clone()),
@@ -61,7 +63,8 @@ impl RecordedModel {
     }
 }
 
-/// Returns the label of a robot in names of files: its name, or else the name of its kind of arm.
+/// Returns the label of a robot for file names: the robot's name, or the name of its arm if the
+/// robot has no name.
 pub(crate) fn label(name: &str, kind: RobotKind) -> &str {
     match name {
         "" => arm(kind),
@@ -69,7 +72,7 @@ pub(crate) fn label(name: &str, kind: RobotKind) -> &str {
     }
 }
 
-/// Returns the name of a kind of arm in `franka_description`.
+/// Returns the name of the arm in `franka_description`.
 pub(crate) fn arm(kind: RobotKind) -> &'static str {
     match kind {
         RobotKind::Fer => "fer",
@@ -77,19 +80,20 @@ pub(crate) fn arm(kind: RobotKind) -> &'static str {
     }
 }
 
-/// Returns the name of the attachment with the description of a robot.
+/// Returns the name of the attachment that contains the robot's description.
 pub(crate) fn description(name: &str, kind: RobotKind) -> String {
     format!("{}.urdf", label(name, kind))
 }
 
-/// Writes the lengths to the metadata of a robot.
+/// Writes the link lengths to the metadata of a robot.
 pub(crate) fn write_lengths(lengths: &Lengths, metadata: &mut BTreeMap<String, String>) {
     let Lengths { upper_arm, forearm } = lengths;
     metadata.insert(UPPER_ARM.to_owned(), upper_arm.to_string());
     metadata.insert(FOREARM.to_owned(), forearm.to_string());
 }
 
-/// Reads the lengths from the metadata of a robot; `None` for a recording of an earlier version.
+/// Reads the link lengths from the metadata of a robot; `None` if an earlier version made the
+/// recording.
 pub(crate) fn read_lengths(metadata: &BTreeMap<String, String>) -> Option<Lengths> {
     let length = |name| {
         let metres: f64 = metadata.get(name)?.parse().ok()?;
@@ -101,6 +105,6 @@ pub(crate) fn read_lengths(metadata: &BTreeMap<String, String>) -> Option<Length
     })
 }
 
-/// Metadata of a robot: its lengths, `[m]`.
+/// Metadata key of a link length, `[m]`.
 const UPPER_ARM: &str = "upper_arm";
 const FOREARM: &str = "forearm";

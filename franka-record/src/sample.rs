@@ -1,4 +1,4 @@
-//! The data of one cycle for exports and replays.
+//! Data of one cycle for exports and replays.
 
 use franka_model::transform::isometry_from_array;
 use franka_proto::MotionGeneratorMode;
@@ -6,7 +6,7 @@ use nalgebra::Isometry3;
 
 use crate::cycle::Cycle;
 
-/// Arm and gripper in one cycle of a recording.
+/// The arm and the gripper in one cycle of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// `message_id` of the state, `[ms]` of the robot's clock.
@@ -14,22 +14,22 @@ pub struct Sample {
     /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
     /// Commanded joint positions, `[rad]`: the reference of target control, or the output of a
-    /// control function. `None` if the joints were not under control.
+    /// control function. `None` if the client did not control the joints.
     pub q_ref: Option<[f64; 7]>,
-    /// Measured pose of the end effector in the base frame, `O_T_EE`, in metres.
+    /// Measured pose of the end effector in the base frame (`O_T_EE`), `[m]`.
     pub pose: Isometry3<f64>,
-    /// Commanded pose of the end effector in the base frame, in metres; `None` if the joints were
-    /// not under control.
+    /// Commanded pose of the end effector in the base frame, `[m]`; `None` if the client did not
+    /// control the joints.
     pub pose_ref: Option<Isometry3<f64>>,
-    /// Distance between the fingers, `[m]`; `None` before the gripper's first state.
+    /// Distance between the fingers, `[m]`; `None` before the first gripper state.
     pub width: Option<f64>,
     /// Commanded distance between the fingers, `[m]`; `None` before the first command.
     pub width_ref: Option<f64>,
 }
 
 impl Sample {
-    /// Creates a sample from the arm's data in a cycle, without the gripper; the caller adds its
-    /// width. A pose that is not a rigid transformation becomes the identity.
+    /// Creates a sample from the arm's data in `cycle`. The caller must add the gripper's width. A
+    /// pose that is not a rigid transformation becomes the identity.
     pub fn of(cycle: &Cycle) -> Self {
         let Cycle {
             record,
@@ -38,7 +38,7 @@ impl Sample {
             ..
         } = cycle;
         let pose = |array| isometry_from_array(array).unwrap_or_default();
-        // All joints at zero is impossible for these robots.
+        // These robots cannot reach a position with all joints at zero.
         let has_targets = record.q_ref != [0.0; 7];
         let is_commanded = matches!(
             state.motion_generator_mode,
@@ -63,9 +63,9 @@ impl Sample {
         }
     }
 
-    /// Returns the sample at a `share`, 0 to 1, of the way from this sample to a `later` sample.
-    /// Positions are interpolated linearly, rotations along the shorter arc. The finger width comes
-    /// from this sample, because grippers report their width rarely.
+    /// Returns the sample at a `share`, in `[0, 1]`, of the way from this sample to the sample
+    /// `later`. Positions are interpolated linearly, and rotations along the shorter arc. The
+    /// finger width is copied from this sample, because grippers report their width rarely.
     pub fn towards(&self, later: &Self, share: f64) -> Self {
         let line =
             |a: &[f64; 7], b: &[f64; 7]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
@@ -84,8 +84,8 @@ impl Sample {
     }
 }
 
-/// Returns the samples from the first to the last sample with a commanded position; all samples if
-/// no position was commanded.
+/// Returns the samples from the first to the last sample with a commanded position. Returns all
+/// samples if no sample has a commanded position.
 pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
     let is_told = |sample: &Sample| sample.q_ref.is_some();
     let first = samples.iter().position(is_told);
@@ -97,6 +97,6 @@ pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
 
 /// Returns the pose at a `share` of the way from `a` to `b`.
 fn between(a: &Isometry3<f64>, b: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
-    // The shorter arc to the opposite orientation is not unique.
+    // The shorter arc is not unique if the orientations are opposite.
     a.try_lerp_slerp(b, share, 1e-9).unwrap_or(*a)
 }

@@ -1,4 +1,4 @@
-//! Keeps the last seconds in memory, and writes them to a file after the end of a motion.
+//! Keeps the messages of the last seconds in memory, and writes them to a file after an incident.
 
 use std::collections::VecDeque;
 
@@ -9,16 +9,16 @@ use super::options::BlackBox;
 use super::session::Session;
 use crate::HostTime;
 
-/// The messages of the last seconds.
+/// Messages of the last seconds.
 #[derive(Debug)]
 pub(super) struct LastSeconds {
     options: BlackBox,
     messages: VecDeque<Message>,
-    /// The incident after which a file is due.
+    /// Incident for which a file must be written; `None` if no file is due.
     incident: Option<Incident>,
 }
 
-/// Parts of the name of an incident's file.
+/// Parts of the file name of an incident.
 #[derive(Debug)]
 struct Incident {
     time: HostTime,
@@ -46,7 +46,8 @@ impl LastSeconds {
         let now = message.time;
         self.messages.push_back(message);
         let past = now - self.options.before - self.options.after;
-        // One robot's clock may be behind the others. Its older data is removed in any case.
+        // One robot's clock may be behind the clocks of the others. The old data of this robot is
+        // removed in any case.
         while self
             .messages
             .front()
@@ -114,8 +115,8 @@ pub(super) enum NamedFile {
     Part,
 }
 
-/// Returns the kind of black box file with this name; `None` for other files. The names of black
-/// box files begin with a time, as above.
+/// Returns the kind of black box file with this name; `None` for other files. The name of a black
+/// box file begins with a time.
 pub(super) fn file_of_name(name: &str) -> Option<NamedFile> {
     let (time, rest) = name.split_once('-')?;
     let shape: String = time

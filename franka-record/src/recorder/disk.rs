@@ -1,4 +1,4 @@
-//! The thread that waits for the disk, so that no other thread waits.
+//! The thread that writes to the disk, so that no other thread waits for it.
 
 use core::mem;
 use core::time::Duration;
@@ -20,17 +20,17 @@ pub(super) struct DiskStatus {
     pub(super) backlog: u64,
     /// Number of bytes in files.
     pub(super) written: u64,
-    /// Number of cycles that could not be written.
+    /// Number of cycles that were lost because they could not be written.
     pub(super) cycles_lost: u64,
-    /// True if a file of the black box waits for the disk.
+    /// True if a black box file waits for the disk.
     pub(super) black_box_waits: bool,
     /// The files of the recording, oldest first.
     pub(super) files: Vec<PathBuf>,
     /// The files of the black box.
     pub(super) black_boxes: Vec<PathBuf>,
-    /// Error that ended the recording early.
+    /// Error that ended the recording early; `None` if none did.
     pub(super) error: Option<RecordError>,
-    /// Error that occurred when the newest black box was written.
+    /// Error that prevented the newest black box file from being written.
     pub(super) black_box_error: Option<RecordError>,
 }
 
@@ -45,11 +45,11 @@ pub(super) struct Disk {
 enum Job {
     /// Opens the first file of the recording.
     Open(PathBuf, File),
-    /// Ends the open file and begins the next file of the recording with this first file.
+    /// Ends the open file and begins the next file of the recording whose first file has this path.
     Follow(PathBuf),
-    /// Appends whole chunks with this many cycles.
+    /// Appends whole chunks that contain this number of cycles.
     Append(Vec<u8>, u64),
-    /// Writes a file of the black box immediately, and keeps only the newest `keep` files.
+    /// Writes a black box file immediately, and then keeps only the newest `keep` files.
     BlackBox {
         directory: PathBuf,
         name: String,
@@ -59,7 +59,7 @@ enum Job {
 }
 
 impl Disk {
-    /// Starts the thread. It ends after this value is dropped and everything is written; the thread
+    /// Starts the thread. The thread ends after this value is dropped and all data is written. It
     /// then drops `done`.
     pub(super) fn start(sync: bool, done: Sender<()>) -> Result<Self, RecordError> {
         let (jobs, receiver) = mpsc::channel();
@@ -91,7 +91,7 @@ impl Disk {
         lock(&self.status).backlog
     }
 
-    /// True if no error has ended the recording.
+    /// Returns true if no error has ended the recording.
     pub(super) fn is_well(&self) -> bool {
         lock(&self.status).error.is_none()
     }
@@ -111,7 +111,7 @@ impl Disk {
         self.order(Job::Open(path, file), 0);
     }
 
-    /// Begins the next file of the recording with this first file.
+    /// Begins the next file of the recording whose first file is `first`.
     pub(super) fn follow(&self, first: PathBuf) {
         self.order(Job::Follow(first), 0);
     }
@@ -151,7 +151,7 @@ impl Disk {
 
     fn order(&self, job: Job, length: usize) {
         lock(&self.status).backlog += length as u64;
-        // The thread exists as long as this value.
+        // The thread runs until `self` is dropped.
         let _ = self.jobs.send(job);
     }
 }
@@ -189,8 +189,8 @@ pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     Ok(file)
 }
 
-/// Makes the name of a file survive a power failure. File systems whose directories cannot be
-/// synchronised do not need this.
+/// Ensures that the name of a file survives a power failure. Some file systems cannot synchronise
+/// directories, and do not need this step.
 fn sync_directory(path: &Path) {
     let directory = path
         .parent()
@@ -315,7 +315,7 @@ impl DiskThread {
         fail(&self.status, error);
     }
 
-    /// Waits until the disk has stored the written data, if this is enabled.
+    /// Waits until the disk has stored the written data, if the option `sync` is set.
     fn synchronise(&mut self) {
         let Some(open) = &mut self.open else { return };
         if !(self.sync && open.dirty) {
@@ -331,7 +331,7 @@ impl DiskThread {
 }
 
 impl Open {
-    /// Appends `bytes`. On an error the file stays unchanged.
+    /// Appends `bytes`. If the write fails, the file stays unchanged.
     fn append(&mut self, bytes: &[u8]) -> Result<(), RecordError> {
         self.dirty = true;
         match self.file.write_all(bytes) {
@@ -340,8 +340,8 @@ impl Open {
                 Ok(())
             }
             Err(source) => {
-                // Readers ignore a partial chunk at the end. Without the partial chunk, no reader
-                // reports an error.
+                // Readers ignore a partial chunk at the end. Without it, no reader reports an
+                // error.
                 let _ = self.file.set_len(self.length);
                 Err(self.error(source))
             }
@@ -370,7 +370,7 @@ fn numbered(first: &Path, number: u32) -> PathBuf {
 /// Largest number of files of a recording, including files of other recordings with the same name.
 const NUMBER_MAX: u32 = 1_000_000;
 
-/// Writes a file that gets its name once it is complete.
+/// Writes a file under a temporary name, and renames the file once it is complete.
 fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::create_dir_all(directory)?;
     let part = path.with_extension("mcap.part");
@@ -389,8 +389,8 @@ fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// Deletes the oldest black box files except the newest `keep`, and incomplete files that crashes
-/// left. It ignores files that cannot be deleted.
+/// Deletes all black box files except the newest `keep`, and the incomplete files that crashes
+/// left. Files that cannot be deleted are ignored.
 fn delete_oldest(directory: &Path, keep: usize) {
     let Ok(entries) = fs::read_dir(directory) else {
         return;
@@ -404,7 +404,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
             None => {}
         }
     }
-    // Another process may still write a younger file.
+    // Another process may still be writing a more recent file.
     let is_left = |entry: &fs::DirEntry| {
         let modified = entry.metadata().and_then(|it| it.modified());
         modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > PART_AGE))
@@ -419,7 +419,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
     }
 }
 
-/// Age above which no process writes an incomplete file any more.
+/// Age at which an incomplete file counts as left by a crash.
 const PART_AGE: Duration = Duration::from_secs(3600);
 
 #[cfg(test)]

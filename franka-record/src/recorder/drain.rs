@@ -18,7 +18,7 @@ use super::options::{RecordOptions, Robot};
 use super::session::RecordClock;
 use crate::{Cycle, Event, EventKind, GripperState, HostTime};
 
-/// An order to the thread.
+/// Request to the thread.
 #[derive(Debug)]
 pub(super) enum Order {
     Attach(Box<(Robot, CycleReader)>),
@@ -30,7 +30,7 @@ pub(super) enum Order {
     Finish,
 }
 
-/// Progress of the thread, and flags that other threads set.
+/// Progress of the thread, and the flag with which other threads end it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DrainStatus {
     pub(super) cycles: u64,
@@ -53,7 +53,7 @@ pub(super) struct Drain {
     wall: fn() -> HostTime,
     /// Time of the next comparison with the wall clock.
     compare_due: Instant,
-    /// The wall clock minus recorded time, `[ns]`.
+    /// Difference of the wall clock from recorded time, `[ns]`.
     offset: i64,
 }
 
@@ -61,14 +61,15 @@ pub(super) struct Drain {
 struct Source {
     label: String,
     cycles: CycleReader,
-    /// Readers of later control threads of the same robot.
+    /// Readers for later control threads of the same robot.
     next: VecDeque<CycleReader>,
-    /// Number of cycles that `cycles` has lost, as reported so far.
+    /// Number of lost cycles that have been reported for `cycles`.
     lost: u64,
     encoder: Encoder,
-    /// Data other than cycles, oldest first. It waits until the earlier cycles have been read.
+    /// Data other than cycles, oldest first. Each item waits until all earlier cycles have been
+    /// read.
     waiting: Vec<Waiting>,
-    /// Buffer for messages; empty between calls.
+    /// Message buffer, which is empty between calls.
     messages: Vec<Message>,
 }
 
@@ -109,7 +110,7 @@ impl Drain {
         })
     }
 
-    /// Runs until it receives the order to end, or all senders are dropped.
+    /// Runs until the thread receives the order to end, or all senders are dropped.
     pub(super) fn run(mut self) {
         loop {
             let go_on = self.take_orders();
@@ -190,13 +191,14 @@ impl Drain {
                 lock(&self.status).dropped += lost;
                 self.take_waiting_cycles(index);
             }
-            // Data that is newer than a cycle in transit comes only slightly later than the cycle.
+            // A cycle may still be in transit when newer data arrives, so the data waits for the
+            // cycle.
             self.sources[index].pass(self.clock.now(), &mut self.files);
         }
     }
 
-    /// Reads the cycles of a robot that are available now. Later cycles wait, so the other robots
-    /// have their turn.
+    /// Reads the cycles of a robot that are available now. Cycles that arrive meanwhile wait until
+    /// the other robots have had their turn.
     fn take_waiting_cycles(&mut self, index: usize) {
         let (mut taken, mut dropped) = (0, 0);
         let source = &mut self.sources[index];
@@ -230,7 +232,7 @@ impl Drain {
         status.dropped += dropped;
     }
 
-    /// Detects whether the wall clock of this host was set, and records it.
+    /// Detects a step of this host's wall clock, and records it.
     fn compare_clocks(&mut self) {
         let now = Instant::now();
         if now < self.compare_due {
@@ -278,8 +280,8 @@ impl Drain {
 }
 
 impl Source {
-    /// Reads these cycles after the current cycles. If both are from the same control thread, this
-    /// does nothing, because a connection may be reported twice.
+    /// Reads `cycles` after all cycles of the current control thread. Does nothing if `cycles`
+    /// belongs to the same control thread, because a connection may be reported twice.
     fn resume(&mut self, cycles: CycleReader) {
         let last = self.next.back().unwrap_or(&self.cycles);
         if !last.is_of_same_thread(&cycles) {
@@ -287,7 +289,7 @@ impl Source {
         }
     }
 
-    /// Forwards data other than cycles that is not newer than `time`.
+    /// Forwards the waiting data that is not newer than `time`.
     fn pass(&mut self, time: HostTime, files: &mut Files) {
         let count = self
             .waiting
@@ -311,7 +313,7 @@ impl Source {
         }
     }
 
-    /// Reports the cycles that were lost after the last cycle, and returns their number.
+    /// Reports the cycles that were lost after the newest received cycle, and returns their number.
     fn note_end(&mut self, time: HostTime, files: &mut Files) -> u64 {
         let cycles = self.cycles.lost() - self.lost;
         if cycles > 0 {

@@ -17,28 +17,28 @@ pub(super) struct Message {
     pub(super) topic: Topic,
     pub(super) time: HostTime,
     pub(super) data: Box<[u8]>,
-    /// True if the cycles around this message are kept at the full rate.
+    /// True if the recorder must keep the full rate near this message.
     pub(super) notable: bool,
 }
 
-/// The encoder of one robot. It detects changes of mode, errors, contacts and tool.
+/// Encoder for one robot. It detects changes of the mode, the errors, the contacts and the tool.
 #[derive(Debug)]
 pub(super) struct Encoder {
     robot: usize,
     frames: Frames,
     model: Model,
-    /// Message of a cycle. It is reused, with the memory of its fields.
+    /// Message of a cycle. The encoder reuses the message and the memory of its fields.
     cycle: franka::Cycle,
-    /// Values of the newest cycle; `None` before the first.
+    /// Compared values of the newest cycle; `None` before the first cycle.
     seen: Option<Seen>,
     /// The robot's clock before the first cycle, `[ms]`; 0 if unknown.
     attached: u64,
     tool: Option<franka::Tool>,
-    /// Time at which messages on the slower channels are due again.
+    /// Time at which the next messages on the slower channels are due.
     slow_due: HostTime,
 }
 
-/// The values that are compared from cycle to cycle.
+/// Values that the encoder compares between consecutive cycles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
     robot_time: u64,
@@ -90,8 +90,8 @@ impl Encoder {
         }
     }
 
-    /// Appends the events of the changes since the previous cycle. Returns true if the cycles
-    /// around this cycle are kept at the full rate.
+    /// Appends an event for each change since the previous cycle. Returns true if the recorder must
+    /// keep the full rate near this cycle.
     fn compare(&mut self, cycle: &Cycle, out: &mut Vec<Message>) -> bool {
         let state = &cycle.state;
         let now = Seen {
@@ -143,7 +143,7 @@ impl Encoder {
         }
     }
 
-    /// Appends an event twice: as a value and as text.
+    /// Appends two messages for an event: the event itself, and its text.
     pub(super) fn event(&self, event: &Event, out: &mut Vec<Message>) {
         let mut message = franka::Event::from(event);
         if message.robot_time == 0 {
@@ -193,5 +193,5 @@ impl Encoder {
     }
 }
 
-/// Period of the messages for viewers: 50 Hz, which is enough for a screen.
+/// Period of the messages for viewers. Its rate of 50 Hz is enough for a screen.
 const SLOW_PERIOD: Duration = Duration::from_millis(20);

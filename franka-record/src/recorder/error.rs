@@ -5,12 +5,11 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Reason why data was not recorded. The robot's motion is not affected.
+/// Reason why the recorder could not record data. The robot's motion is not affected.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// A file with this name exists, and a recording never overwrites a file. Choose a different
-    /// name.
+    /// A file with this name exists. A recording never overwrites a file, so choose another name.
     #[error("{} exists, and a recording never overwrites a file: choose another name", path.display())]
     Exists {
         /// The file.
@@ -30,12 +29,12 @@ pub enum RecordError {
     Write {
         /// The file.
         path: PathBuf,
-        /// Number of bytes in the file. All of them are readable.
+        /// Number of bytes in the file, all of which are readable.
         bytes: u64,
         /// The system's error.
         source: Arc<io::Error>,
     },
-    /// The last seconds of a black box could not be written.
+    /// The recorder could not write a black box file.
     #[error("cannot write the black box {}: {source}", path.display())]
     BlackBox {
         /// The file.
@@ -66,7 +65,7 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
-    /// The recorder has ended or accepts no more orders.
+    /// The recording has ended, or the recorder accepts no more orders.
     #[error("the recorder has ended")]
     Ended,
     /// A thread cannot be started.
@@ -75,7 +74,7 @@ pub enum RecordError {
         /// The system's error.
         source: Arc<io::Error>,
     },
-    /// The server for viewers cannot listen.
+    /// The server for viewers cannot listen at its address.
     #[cfg(feature = "foxglove")]
     #[error("cannot serve viewers at {address}: {reason}")]
     Live {

@@ -22,7 +22,7 @@ pub(super) struct Files {
     disk: Disk,
     /// The current file; `None` without a file, and after a failure.
     open: Option<Open>,
-    /// True if the recording has a file.
+    /// True if the recording is written to files.
     wanted: bool,
     last_seconds: Option<LastSeconds>,
     thinning: Option<Thinning>,
@@ -34,18 +34,16 @@ pub(super) struct Files {
     robots: Vec<RobotFiles>,
     /// Number of chunks of the recording so far.
     chunk: u64,
-    /// Number of events that were not written, since the last call of
-    /// [`Files::take_missing_events`].
+    /// Number of events that were lost since the last call of [`Files::take_missing_events`].
     missing_events: u64,
 }
 
 /// The state of one robot.
 #[derive(Default)]
 struct RobotFiles {
-    /// Number of this robot's cycles that were not written, since the last call of
-    /// [`Files::take_missing`].
+    /// Number of this robot's cycles that were lost since the last call of [`Files::take_missing`].
     missing: u64,
-    /// Number of the chunk that contains the robot's tool.
+    /// Number of the newest chunk that contains the robot's tool.
     chunk: Option<u64>,
 }
 
@@ -59,7 +57,7 @@ struct Open {
     cycles: u64,
     /// Time of the file's first message.
     began: Option<HostTime>,
-    /// Time of the newest message at the last flush, and the time of the flush.
+    /// Time of the newest message at the last flush, and the time of that flush.
     flushed: HostTime,
     flushed_at: Instant,
     room: Room,
@@ -199,7 +197,7 @@ impl Files {
         }
     }
 
-    /// Returns the number of a robot's cycles that were not written since the last call.
+    /// Returns the number of this robot's cycles that were lost since the last call.
     pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
         let open = self.open.as_ref();
         // The number is recorded in the file once there is more space.
@@ -209,13 +207,13 @@ impl Files {
         self.take_missing_at_end(robot)
     }
 
-    /// Like [`Self::take_missing`], for the end of a robot's cycles.
+    /// Like [`Self::take_missing`], but for the end of a robot's cycles.
     pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
         let robot = self.robots.get_mut(robot);
         robot.map_or(0, |robot| mem::take(&mut robot.missing))
     }
 
-    /// Returns the number of events that were not written since the last call.
+    /// Returns the number of events that were lost since the last call.
     pub(super) fn take_missing_events(&mut self) -> u64 {
         mem::take(&mut self.missing_events)
     }
@@ -239,8 +237,8 @@ impl Files {
         }
     }
 
-    /// True if the next messages of a robot are its first messages in a chunk. Returns true only
-    /// once per chunk.
+    /// Returns true if the robot's next messages are its first messages in the current chunk. Later
+    /// calls for the same chunk return false.
     pub(super) fn begins_chunk(&mut self, robot: usize) -> bool {
         let chunk = Some(self.chunk);
         let robot = self.robots.get_mut(robot);
@@ -281,7 +279,7 @@ impl Files {
         }
     }
 
-    /// Ends the chunk. Ends the file, too, if a new file is due.
+    /// Ends the chunk. Also ends the file if a new file is due.
     fn flush(&mut self) {
         let newest = self.newest;
         let flushed = match &mut self.open {
@@ -331,7 +329,7 @@ impl Files {
         }
     }
 
-    /// Closes the file and leaves it as it is on the disk.
+    /// Closes the file without further writes.
     fn give_up(&mut self) {
         if let Some(open) = self.open.take() {
             self.disk.lose(open.cycles);

@@ -1,4 +1,4 @@
-//! The messages of a cycle for viewers: poses, joints and the external force.
+//! Messages for viewers about one cycle: poses, joints and the external force.
 
 use franka_model::geometry::{FLANGE, Lengths};
 use franka_model::transform;
@@ -11,8 +11,8 @@ use crate::schema::foxglove::{
 };
 use crate::{Cycle, HostTime};
 
-/// The names of one robot's frames and joints. They are the names in `franka_description`, with the
-/// robot's name as prefix.
+/// Names of one robot's frames and joints. Each name is the robot's name followed by the name in
+/// `franka_description`.
 #[derive(Debug)]
 pub(super) struct Frames {
     prefix: String,
@@ -40,8 +40,9 @@ impl Frames {
         format!("{}_{name}", self.prefix)
     }
 
-    /// Returns the poses of the links, each relative to the previous link. The end effector is
-    /// relative to the flange; reference and target are relative to the base.
+    /// Returns the pose of each link relative to the previous link. The pose of the end effector is
+    /// relative to the flange, and the poses of the reference and the target are relative to the
+    /// base.
     pub(super) fn transforms(&self, cycle: &Cycle) -> FrameTransforms {
         let mut transforms = Vec::with_capacity(12);
         let mut put = |parent: String, child: String, pose: &Isometry3<f64>| {
@@ -79,7 +80,7 @@ impl Frames {
         FrameTransforms { transforms }
     }
 
-    /// Returns the pose that the reference moves towards, if any.
+    /// Returns the pose towards which the reference moves, if any.
     pub(super) fn target(&self, cycle: &Cycle) -> Option<PoseInFrame> {
         let target = cycle.record.pose_target?;
         Some(PoseInFrame {
@@ -105,8 +106,9 @@ impl Frames {
         }
     }
 
-    /// Returns the external force on the arm as an arrow that ends at the stiffness frame, 1 cm per
-    /// newton. The arrow fades if no newer arrow arrives. A force below 1 N has no arrow.
+    /// Returns the external force on the arm as an arrow that ends at the stiffness frame. The
+    /// length of the arrow is 1 cm per newton. The arrow fades if no newer arrow arrives. A force
+    /// below 1 N has no arrow.
     pub(super) fn scene(&self, cycle: &Cycle) -> Option<SceneUpdate> {
         let [x, y, z, ..] = cycle.state.O_F_ext_hat_K;
         // The state contains the force with which the robot pushes.
@@ -120,8 +122,8 @@ impl Frames {
         let tip = (end_effector * stiffness).translation.vector;
         let length = newtons.min(FORCE_MAX) * METRES_PER_NEWTON;
         let start = tip - force / newtons * length;
-        // An arrow points along the x axis of its pose. For the direction opposite to x, any half
-        // turn about z works.
+        // The arrow points along the x axis of its pose. For the direction opposite to x, any half
+        // turn about an axis perpendicular to x works.
         let turn = UnitQuaternion::rotation_between(&Vector3::x(), &force).unwrap_or_else(|| {
             UnitQuaternion::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI)
         });
@@ -156,10 +158,10 @@ impl Frames {
     }
 }
 
-/// Force, `[N]`, below which the estimate is mostly noise.
+/// Force below which the estimate is mostly noise, `[N]`.
 const FORCE_MIN: f64 = 1.0;
 
-/// Force, `[N]`, above which the arrow would leave the picture.
+/// Force above which the arrow would not fit in the picture, `[N]`.
 const FORCE_MAX: f64 = 100.0;
 
 const METRES_PER_NEWTON: f64 = 0.01;

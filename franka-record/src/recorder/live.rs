@@ -1,4 +1,4 @@
-//! Serves the channels of a recording as a live source for Foxglove, over a WebSocket.
+//! WebSocket server that shows a recording live in Foxglove.
 
 use core::fmt;
 use core::net::SocketAddr;
@@ -15,14 +15,15 @@ use super::error::RecordError;
 use super::options::Robot;
 use crate::schema::{DESCRIPTORS, Topic};
 
-/// Settings of the live source for Foxglove.
+/// Settings of the server that shows a recording live in Foxglove.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Live {
-    /// Address of the server. The default, `127.0.0.1:8765`, is Foxglove's default. Every client
-    /// that can connect to this address can watch. The server accepts no commands.
+    /// Address of the server. The default, `127.0.0.1:8765`, is also Foxglove's default. Every
+    /// client that can connect to this address can watch the robots. The server accepts no
+    /// commands.
     pub address: SocketAddr,
-    /// The server sends every n-th cycle; n is 20 by default, which gives 50 cycles a second. All
-    /// other channels are complete.
+    /// Interval between the cycles that are sent: the server sends every n-th cycle. The default is
+    /// 20, which gives 50 cycles per second. The server sends all messages of the other channels.
     pub every: u32,
 }
 
@@ -119,8 +120,8 @@ impl Server {
         Ok(())
     }
 
-    /// Sends a message to the viewers that subscribed to its channel. This never waits: a viewer
-    /// that is too slow loses the oldest messages.
+    /// Sends a message to the viewers that subscribed to its channel. This method never waits;
+    /// instead, a slow viewer loses the oldest messages.
     pub(super) fn send(&mut self, message: &Message) {
         if message.topic == Topic::Cycle {
             self.cycles = self.cycles.wrapping_add(1);
@@ -158,5 +159,6 @@ impl fmt::Debug for Server {
     }
 }
 
-/// Largest number of messages that wait for a viewer: two seconds of all channels of one robot.
+/// Largest number of messages that wait for a viewer. This is two seconds of all channels of one
+/// robot.
 const BACKLOG: usize = 512;

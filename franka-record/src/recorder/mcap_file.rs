@@ -16,8 +16,8 @@ use crate::HostTime;
 use crate::recorded_model;
 use crate::schema::{DESCRIPTORS, METADATA, ROBOT_METADATA, Topic};
 
-/// An MCAP file that grows in memory. The flushed part consists of whole chunks, so a reader needs
-/// no later data.
+/// MCAP file that grows in memory. The flushed part consists of whole chunks, so a reader can use
+/// it without later data.
 pub(super) struct McapFile {
     writer: Writer<Buffer>,
     buffer: Buffer,
@@ -25,20 +25,20 @@ pub(super) struct McapFile {
     channels: Vec<[u16; Topic::ALL.len()]>,
     /// Number of messages so far, by channel.
     sequences: BTreeMap<u16, u32>,
-    /// Time of the newest message. Later messages get at least this time.
+    /// Time of the newest message. Later messages get this time if they are older.
     newest: HostTime,
     /// Start of the recording.
     began: HostTime,
 }
 
 impl McapFile {
-    /// Creates a file of `session`, with all its robots so far.
+    /// Creates a file for `session` that contains all robots attached so far.
     pub(super) fn begin(session: &Session) -> Result<Self, RecordError> {
         let buffer = Buffer::default();
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK_MAX))
-            // With this option, whole chunks enter the buffer.
+            // This option makes the writer put whole chunks into the buffer.
             .disable_seeking(true)
             .library(concat!("franka-record ", env!("CARGO_PKG_VERSION")));
         let mut file = Self {
@@ -161,17 +161,17 @@ fn encode(error: McapError) -> RecordError {
     }
 }
 
-/// Length in bytes at which a chunk ends before the next flush, for example with several robots.
+/// Size in bytes at which a chunk ends before the next flush, for example with several robots.
 const CHUNK_MAX: u64 = 4 << 20;
 
-/// Bytes of a file that have not been taken yet. Bytes can only be appended.
+/// Bytes of a file that have not been taken yet. The buffer only supports appending.
 #[derive(Clone, Default)]
 struct Buffer(Arc<Mutex<Pending>>);
 
 #[derive(Default)]
 struct Pending {
     bytes: Vec<u8>,
-    /// Number of bytes that were taken before.
+    /// Number of bytes that have been taken so far.
     taken: u64,
 }
 
@@ -196,7 +196,7 @@ impl Write for Buffer {
 }
 
 impl Seek for Buffer {
-    /// Returns the position at the end. Seeking to another position is not possible.
+    /// Returns the position at the end. Seeking to any other position fails.
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         let pending = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let end = pending.taken + pending.bytes.len() as u64;

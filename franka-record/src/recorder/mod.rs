@@ -1,4 +1,4 @@
-//! Writes every cycle of robots, and their events, to files.
+//! Records every cycle and every event of one or more robots to files.
 //!
 //! ```text
 //! control thread --ring of cycles--+
@@ -6,10 +6,10 @@
 //! RecordHandle --bounded queue-----+
 //! ```
 //!
-//! Both threads are ordinary threads. A slow disk delays only the second thread. Up to 64 MB wait
-//! for the disk. Beyond that, the recorder drops cycles and data derived from them, and records
-//! their number. Events have another 16 MB, and one file of the black box can wait. A disk failure
-//! ends the recording, but does not affect anything else.
+//! Both threads are ordinary threads, and a slow disk delays only the second thread. At most 64 MB
+//! of data wait for the disk. Beyond this limit, the recorder drops cycles and data derived from
+//! them, and records the number of dropped cycles. Another 16 MB are reserved for events, and one
+//! black box file can wait. A disk failure ends the recording, but does not affect anything else.
 
 mod black_box;
 mod disk;
@@ -45,7 +45,8 @@ pub use self::options::{Attachment, BlackBox, RecordOptions, Robot, Rotation};
 pub use self::session::RecordClock;
 use crate::{Event, EventKind, GripperState, HostTime};
 
-/// Records robots to files, or keeps the last seconds before an incident, or both.
+/// Recorder that writes the data of robots to files, keeps the last seconds before an incident, or
+/// does both.
 ///
 /// ```no_run
 /// use franka_model::RobotKind;
@@ -63,17 +64,18 @@ use crate::{Event, EventKind, GripperState, HostTime};
 /// # }
 /// ```
 ///
-/// The recorder cannot delay a cycle. Dropping it ends the recording in the background;
-/// [`Recorder::finish`] does the same and waits for the end.
+/// The recorder cannot delay a cycle. When you drop the recorder, the recording ends in the
+/// background; [`Recorder::finish`] ends the recording and waits until the files are complete.
 #[derive(Debug)]
 pub struct Recorder {
     orders: SyncSender<Order>,
     clock: RecordClock,
     disk: Arc<Mutex<DiskStatus>>,
     drained: Arc<Mutex<DrainStatus>>,
-    /// Ends when the last byte is written. The thread that finishes the recording locks it.
+    /// The channel closes after the last byte is written. The thread that finishes the recording
+    /// locks the receiver.
     done: Mutex<Receiver<()>>,
-    /// The robots so far, by index.
+    /// Names of all robots attached so far, by index.
     robots: Mutex<Vec<String>>,
 }
 
@@ -81,17 +83,20 @@ impl Recorder {
     /// Starts a recording in a new file at `path`.
     ///
     /// # Errors
-    /// [`RecordError::Exists`], [`RecordError::Create`] (the folder is missing or read-only),
-    /// [`RecordError::Option`], [`RecordError::Thread`].
+    /// Returns [`RecordError::Exists`] if a file exists at `path`, and [`RecordError::Create`] if
+    /// the file cannot be created, for example because the folder is missing or read-only.
+    /// Returns [`RecordError::Option`] if an option is invalid, and [`RecordError::Thread`] if a
+    /// thread cannot be started.
     pub fn to_file(path: impl AsRef<Path>, options: RecordOptions) -> Result<Self, RecordError> {
         Self::start(Some(path.as_ref()), options)
     }
 
-    /// Keeps only the last seconds in memory. Writes them to a file after an incident has ended a
-    /// motion.
+    /// Creates a recorder that keeps only the last seconds in memory. The recorder writes these
+    /// seconds to a file after an incident has ended a motion.
     ///
     /// # Errors
-    /// [`RecordError::Option`], [`RecordError::Thread`].
+    /// Returns [`RecordError::Option`] if an option is invalid, and [`RecordError::Thread`] if a
+    /// thread cannot be started.
     pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
         let options = RecordOptions {
             black_box: Some(black_box),
@@ -100,11 +105,12 @@ impl Recorder {
         Self::start(None, options)
     }
 
-    /// Records nothing to files, and serves the channels of a recording to Foxglove: see
-    /// [`Self::serve`].
+    /// Creates a recorder that writes no files, and serves the channels of a recording to Foxglove
+    /// (see [`Self::serve`]).
     ///
     /// # Errors
-    /// The errors of [`Self::serve`], and [`RecordError::Thread`].
+    /// Returns the errors of [`Self::serve`], and [`RecordError::Thread`] if a thread cannot be
+    /// started.
     #[cfg(feature = "foxglove")]
     pub fn live(live: &Live) -> Result<(Self, core::net::SocketAddr), RecordError> {
         let recorder = Self::start(None, RecordOptions::default())?;
@@ -119,7 +125,8 @@ impl Recorder {
         Self::start_with(path, file, options, HostTime::now)
     }
 
-    /// Starts a recording in `file`, which is at `path`. `wall` reads the wall clock.
+    /// Starts a recording in `file`, whose path is `path`. The function `wall` reads the wall
+    /// clock.
     fn start_with(
         path: Option<&Path>,
         file: Option<File>,
@@ -160,12 +167,13 @@ impl Recorder {
         })
     }
 
-    /// Records `robot` with its `cycles`, until the robot's control thread or the recording ends.
-    /// Pass all other data to the returned handle.
+    /// Records the `cycles` of `robot` until the robot's control thread ends or the recording ends.
+    /// Pass all other data of the robot to the returned handle.
     ///
     /// # Errors
-    /// [`RecordError::SameName`], [`RecordError::Option`] for an invalid name, and
-    /// [`RecordError::Ended`].
+    /// Returns [`RecordError::SameName`] if a robot with this name is attached,
+    /// [`RecordError::Option`] if the name is invalid, and [`RecordError::Ended`] if the recording
+    /// has ended.
     pub fn attach(&self, robot: Robot, cycles: CycleReader) -> Result<RecordHandle, RecordError> {
         robot.check()?;
         let mut robots = lock(&self.robots);
@@ -185,15 +193,18 @@ impl Recorder {
         })
     }
 
-    /// Serves the channels of the recording from now on, until the recording ends. Viewers are
-    /// Foxglove ("Open connection", "Foxglove WebSocket") and other clients that speak
-    /// `foxglove.sdk.v1`. Returns the address; the system chooses the port if the requested port is
-    /// 0. A viewer that is too slow loses messages, but the recording does not. This blocks until
-    /// the server listens.
+    /// Starts a server for the channels of the recording, and returns its address. The server runs
+    /// until the recording ends. Foxglove ("Open connection", "Foxglove WebSocket") and other
+    /// clients that support `foxglove.sdk.v1` can connect to it. If the requested port is 0, the
+    /// system chooses a port.
+    ///
+    /// A slow viewer loses messages, but the recording does not. This method blocks until the
+    /// server listens.
     ///
     /// # Errors
-    /// [`RecordError::Live`] if the server cannot listen at this address, [`RecordError::Option`],
-    /// [`RecordError::Ended`].
+    /// Returns [`RecordError::Live`] if the server cannot listen at this address,
+    /// [`RecordError::Option`] if an option is invalid, and [`RecordError::Ended`] if the recording
+    /// has ended.
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<core::net::SocketAddr, RecordError> {
         let (server, address) = live::Server::start(live)?;
@@ -202,12 +213,12 @@ impl Recorder {
         Ok(address)
     }
 
-    /// Returns the clock of recorded time.
+    /// Returns the clock that dates the recorded data.
     pub fn clock(&self) -> RecordClock {
         self.clock
     }
 
-    /// Returns the progress of the recording, and its failures.
+    /// Returns the progress and the failures of the recording.
     pub fn status(&self) -> RecordStatus {
         let disk = lock(&self.disk).clone();
         let drained = *lock(&self.drained);
@@ -224,19 +235,19 @@ impl Recorder {
         }
     }
 
-    /// Ends the recording and waits until everything is on the disk, at most 10 s.
+    /// Ends the recording, and waits at most 10 s until all data is on the disk.
     ///
     /// # Errors
-    /// The errors of [`Recorder::finish_within`].
+    /// Returns the errors of [`Recorder::finish_within`].
     pub fn finish(self) -> Result<RecordStatus, RecordError> {
         self.finish_within(FINISH_MAX)
     }
 
-    /// Ends the recording and waits, up to `limit`, until everything is on the disk.
+    /// Ends the recording, and waits at most `limit` until all data is on the disk.
     ///
     /// # Errors
-    /// [`RecordError::Unfinished`] if the disk was too slow, and [`RecordError::Write`] or another
-    /// error if the file could not be completed. The written data is readable.
+    /// Returns [`RecordError::Unfinished`] if the disk was too slow, and [`RecordError::Write`] or
+    /// another error if the file could not be completed. The data written so far remains readable.
     pub fn finish_within(self, limit: Duration) -> Result<RecordStatus, RecordError> {
         lock(&self.drained).finish = true;
         // Wakes the thread. If the queue is full, the thread is already awake.
@@ -261,34 +272,34 @@ impl Drop for Recorder {
     }
 }
 
-/// Progress of a recording, and its failures.
+/// Progress and failures of a recording.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RecordStatus {
-    /// Number of cycles received, of all robots.
+    /// Total number of received cycles of all robots.
     pub cycles: u64,
-    /// Number of cycles for which there was no space: in the ring, because this host was busy, or
-    /// in memory or on the disk. The file records where cycles are missing, unless the recording
-    /// ended before.
+    /// Number of dropped cycles. A cycle is dropped if the ring is full because this host was busy,
+    /// or if there is no space in memory or on the disk. The file shows where cycles are missing,
+    /// unless the recording ended earlier.
     pub dropped: u64,
-    /// Number of events for which there was no space.
+    /// Number of events that were dropped because there was no space.
     pub events_dropped: u64,
     /// Number of bytes in the files of the recording.
     pub bytes: u64,
-    /// Number of bytes that wait for the disk.
+    /// Number of bytes that have not been written to the disk yet.
     pub waiting: u64,
     /// The files of the recording, oldest first.
     pub files: Vec<PathBuf>,
-    /// The written files of the black box.
+    /// Black box files written so far.
     pub black_boxes: Vec<PathBuf>,
     /// Error that ended the recording early.
     pub error: Option<RecordError>,
-    /// Error that occurred when the newest black box was written.
+    /// Error that prevented the newest black box file from being written.
     pub black_box_error: Option<RecordError>,
 }
 
-/// Handle that accepts the data of one robot other than cycles. It is cheap to clone. Only
-/// [`Self::resume`] may wait: data for which there is no space is dropped and counted.
+/// Handle that accepts all data of one robot except its cycles. Clones are cheap. Only
+/// [`Self::resume`] may wait. All other methods drop and count data for which there is no space.
 #[derive(Clone, Debug)]
 pub struct RecordHandle {
     orders: SyncSender<Order>,
@@ -298,14 +309,15 @@ pub struct RecordHandle {
 }
 
 impl RecordHandle {
-    /// Returns the clock of recorded time.
+    /// Returns the clock that dates the recorded data.
     pub fn clock(&self) -> RecordClock {
         self.clock
     }
 
-    /// Continues with the cycles of a new control thread of the same robot, after a reconnect. The
-    /// recorder first reads all previous cycles. Does nothing if the newest cycles are already from
-    /// this thread. Waits while the recorder's queue is full.
+    /// Continues with the cycles of a new control thread of the same robot, for example after a
+    /// reconnect. The recorder first reads all cycles of the previous thread. This method does
+    /// nothing if the recorder already reads the cycles of the new thread. It blocks while the
+    /// recorder's queue is full.
     pub fn resume(&self, cycles: CycleReader) {
         // Fails if the recording has ended.
         let _ = self
@@ -328,7 +340,7 @@ impl RecordHandle {
         self.order(Order::Event(self.robot, Box::new(event)));
     }
 
-    /// Records a remark of the program.
+    /// Records a remark of the program, dated with the current time.
     pub fn note(&self, text: impl Into<String>) {
         self.event(EventKind::Note(crate::event::Note {
             source: "program".to_owned(),
@@ -337,17 +349,18 @@ impl RecordHandle {
         }));
     }
 
-    /// Records a state of the gripper with the current time.
+    /// Records a gripper state, dated with the current time.
     pub fn gripper(&self, state: GripperState) {
         self.gripper_at(self.clock.now(), state);
     }
 
-    /// Records a state of the gripper that this host received at `time`.
+    /// Records a gripper state that this host received at `time`.
     pub fn gripper_at(&self, time: HostTime, state: GripperState) {
         self.order(Order::Gripper(self.robot, time, state));
     }
 
-    /// True if the recording has ended. Data passed to this handle is then dropped.
+    /// Returns true if the recording has ended. The recorder drops data that is passed to this
+    /// handle afterwards.
     pub fn has_ended(&self) -> bool {
         lock(&self.drained).ended
     }

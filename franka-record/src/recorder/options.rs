@@ -13,29 +13,31 @@ use crate::recorded_model;
 /// Options of a recording.
 #[derive(Clone, Debug)]
 pub struct RecordOptions {
-    /// True to reduce the rate away from notable events. The recording then keeps every tenth
-    /// cycle, and every second message for viewers (`/tf`, `/target`, `/joints`, `/scene`). Off by
-    /// default.
+    /// True to record at a reduced rate, except near notable events. The recording then keeps every
+    /// tenth cycle, and every second message for viewers (`/tf`, `/target`, `/joints`, `/scene`).
+    /// False by default.
     ///
-    /// Notable events are reflexes and other errors, contacts and collisions, a lost link, failed
-    /// motions or motions aborted by a guard, lost cycles and remarks of level error. The recording
-    /// keeps the full rate from 0.5 s before to 1 s after a notable event. Therefore all messages
-    /// are delayed by 0.5 s.
+    /// Notable events are reflexes and other errors, contacts, collisions, a lost link, failed
+    /// motions, motions aborted by a guard, lost cycles, and remarks at level error. The recording
+    /// keeps the full rate from 0.5 s before a notable event to 1 s after it. Therefore the
+    /// recorder delays all messages by 0.5 s.
     pub thinned: bool,
-    /// Longest time between two writes; 1 s by default and at most. A crash loses at most the data
-    /// of this time.
+    /// Longest time between two writes. The default and the maximum are 1 s. A crash loses at most
+    /// the data of this time.
     pub flush: Duration,
-    /// True to force each write to the disk. A power failure then loses no more than a crash. True
-    /// by default. The robot is not affected, because a separate thread waits for the disk.
+    /// True to force each write to the disk, so that a power failure loses no more data than a
+    /// crash. True by default. This option does not affect the robot, because a separate thread
+    /// waits for the disk.
     pub sync: bool,
-    /// Condition at which the recording continues in a new file. `run-0002.mcap` follows
-    /// `run.mcap`, and so on. Numbers of existing files are skipped.
+    /// Condition under which the recording continues in a new file. The file after `run.mcap` is
+    /// `run-0002.mcap`, and so on. The recorder skips the numbers of existing files.
     pub rotation: Rotation,
-    /// Known facts about the recording, for its metadata.
+    /// Facts about the recording, which the recorder writes to its metadata.
     pub metadata: BTreeMap<String, String>,
-    /// Files that are attached to every file of the recording.
+    /// Data that the recorder attaches to every file of the recording.
     pub attachments: Vec<Attachment>,
-    /// Black box, if any: it writes the last seconds before an incident to a separate file.
+    /// Options of the black box, which writes the last seconds before an incident to a separate
+    /// file; `None` for no black box.
     pub black_box: Option<BlackBox>,
 }
 
@@ -98,7 +100,7 @@ impl RecordOptions {
         Ok(())
     }
 
-    /// Returns the options by their names, except metadata and files.
+    /// Returns the options by name, except the metadata and the attachments.
     pub(super) fn described(&self) -> BTreeMap<String, String> {
         let Self {
             thinned,
@@ -135,19 +137,21 @@ impl RecordOptions {
 const FLUSH_MIN: Duration = Duration::from_millis(10);
 pub(super) const FLUSH_MAX: Duration = Duration::from_secs(1);
 
-/// Smallest permitted size of a file: less than two seconds of one robot.
+/// Smallest permitted file size for rotation, `[bytes]`. One robot fills this size in less than two
+/// seconds.
 const ROTATION_MIN: u64 = 1_000_000;
 
-/// Longest permitted time before an incident: some 200 MB in memory.
+/// Longest permitted time before an incident. This time needs some 200 MB of memory.
 const BEFORE_MAX: Duration = Duration::from_secs(300);
 const AFTER_MAX: Duration = Duration::from_secs(60);
 
-/// Condition at which a recording continues in a new file. By default it never does.
+/// Condition under which a recording continues in a new file. By default, a recording never does
+/// so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rotation {
     /// Size after which a new file begins, in bytes.
     pub bytes: Option<u64>,
-    /// Duration after which a new file begins.
+    /// Recorded time after which a new file begins.
     pub time: Option<Duration>,
 }
 
@@ -162,26 +166,27 @@ pub struct Attachment {
     pub data: Vec<u8>,
 }
 
-/// Options of a black box. It keeps the last seconds in memory, and writes them to a file when a
-/// reflex, a lost link or a guard of the driver ends a motion
+/// Options of a black box. A black box keeps the last seconds in memory. It writes them to a file
+/// when a reflex, a lost link or a guard of the driver ends a motion
 /// ([`Ending::is_incident`](crate::event::Ending::is_incident)).
 #[derive(Clone, Debug)]
 pub struct BlackBox {
-    /// The directory of the files. The recorder creates it if necessary. The name of a file
-    /// contains UTC, robot and cause: `20260301T120000.123Z-fr3-reflex.mcap`.
+    /// Directory of the black box files. The recorder creates the directory if necessary. Each file
+    /// name contains the UTC time, the robot and the cause, for example
+    /// `20260301T120000.123Z-fr3-reflex.mcap`.
     pub directory: PathBuf,
-    /// Recorded time before the incident, 30 s by default. It needs some 0.7 MB per second and
-    /// robot.
+    /// Recorded time before the incident, 30 s by default. Each robot needs some 0.7 MB of memory
+    /// per second of this time.
     pub before: Duration,
-    /// Recorded time after the incident, 1 s by default. Another incident in this time gets no
-    /// separate file.
+    /// Recorded time after the incident, 1 s by default. If another incident occurs in this time,
+    /// the same file covers both incidents.
     pub after: Duration,
-    /// Number of files to keep, 20 by default. The recorder deletes the oldest.
+    /// Number of files to keep, 20 by default. The recorder deletes older files.
     pub keep: usize,
 }
 
 impl BlackBox {
-    /// Creates a black box that writes to `directory`.
+    /// Creates the default options for black box files in `directory`.
     pub fn new(directory: impl Into<PathBuf>) -> Self {
         Self {
             directory: directory.into(),
@@ -196,19 +201,20 @@ impl BlackBox {
 #[derive(Clone, Debug)]
 pub struct Robot {
     /// Name of the robot: letters, digits, `-` and `_`. The default is empty, which is enough for a
-    /// single robot. Channels are then named `/cycle` and so on. With the name `left` they are
-    /// named `/left/cycle` and so on.
+    /// single robot. Without a name, the channels are called `/cycle` and so on. With the name
+    /// `left`, they are called `/left/cycle` and so on.
     pub name: String,
     /// The kind of robot.
     pub kind: RobotKind,
-    /// Lengths of the robot's links that the driver uses. Default: the vendor's description.
+    /// Lengths of the robot's links, as used by the driver. The default comes from the vendor's
+    /// description.
     pub lengths: Lengths,
     /// URDF of the robot, if known. The recorder attaches it to the file.
     pub urdf: Option<String>,
-    /// Other known facts for the metadata: address, version, options.
+    /// Other facts about the robot for the metadata, such as its address, version and options.
     pub metadata: BTreeMap<String, String>,
-    /// Robot clock at the time when the robot is attached, `[ms]`, for events before the first
-    /// cycle; 0 if unknown.
+    /// Robot clock at the time when the robot is attached, `[ms]`; 0 if unknown. The recorder uses
+    /// this value for events before the first cycle.
     pub robot_time: u64,
 }
 
@@ -252,7 +258,7 @@ impl Robot {
         recorded_model::label(&self.name, self.kind)
     }
 
-    /// Returns the name in `franka_description` of the robot's kind of arm.
+    /// Returns the name of the robot's arm in `franka_description`.
     pub(super) fn arm(&self) -> &'static str {
         recorded_model::arm(self.kind)
     }

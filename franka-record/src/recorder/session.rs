@@ -1,4 +1,4 @@
-//! Data that every file of a recording begins with.
+//! Data at the beginning of every file of a recording.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,8 +7,8 @@ use super::error::RecordError;
 use super::options::{Attachment, RecordOptions, Robot};
 use crate::HostTime;
 
-/// Clock of recorded time. It starts with the wall clock at the creation of the recorder, and
-/// continues with the monotonic clock.
+/// Clock that dates recorded data. It starts at the wall clock's time when the recorder is created,
+/// and then advances with the monotonic clock.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordClock {
     wall: HostTime,
@@ -16,7 +16,7 @@ pub struct RecordClock {
 }
 
 impl RecordClock {
-    /// Creates a clock that shows the current wall clock.
+    /// Creates a clock that starts at the current time of the wall clock.
     pub(super) fn start() -> Self {
         Self {
             wall: HostTime::now(),
@@ -24,7 +24,7 @@ impl RecordClock {
         }
     }
 
-    /// Returns the time of `instant`.
+    /// Returns the recorded time at `instant`.
     pub fn at(&self, instant: Instant) -> HostTime {
         match instant.checked_duration_since(self.monotonic) {
             Some(since) => self.wall + since,
@@ -32,13 +32,13 @@ impl RecordClock {
         }
     }
 
-    /// Returns the current time.
+    /// Returns the current recorded time.
     pub fn now(&self) -> HostTime {
         self.at(Instant::now())
     }
 }
 
-/// Data that every file of a recording begins with.
+/// Data at the beginning of every file of a recording.
 #[derive(Debug)]
 pub(super) struct Session {
     began: HostTime,

@@ -1,5 +1,5 @@
-//! Keeps all cycles near notable events, and every tenth cycle elsewhere. Messages for viewers are
-//! kept at half their rate elsewhere.
+//! Keeps all cycles near notable events, and every tenth cycle elsewhere. Elsewhere it also halves
+//! the rate of the messages for viewers.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -8,13 +8,13 @@ use super::encoder::Message;
 use crate::HostTime;
 use crate::schema::Topic;
 
-/// Delays messages until it is known whether a notable event follows soon.
+/// Delays messages until a notable event has followed them, or can no longer follow soon.
 #[derive(Debug, Default)]
 pub(super) struct Thinning {
     waiting: VecDeque<(Message, bool)>,
-    /// Time until which all messages are kept.
+    /// End of the time in which all messages are kept.
     notable_until: HostTime,
-    /// Number of messages so far, by robot and topic.
+    /// Number of messages so far, by robot and by topic.
     counts: Vec<[u64; Topic::ALL.len()]>,
 }
 
@@ -41,7 +41,7 @@ impl Thinning {
         self.waiting.push_back((message, kept));
     }
 
-    /// Counts a message. Returns true if the message is kept even without a notable event.
+    /// Counts a message. Returns true if the message must be kept even without a notable event.
     fn is_next(&mut self, robot: usize, topic: Topic) -> bool {
         if self.counts.len() <= robot {
             self.counts.resize(robot + 1, Default::default());
@@ -52,7 +52,7 @@ impl Thinning {
         is_next
     }
 
-    /// Forwards the delayed messages.
+    /// Forwards all delayed messages.
     pub(super) fn finish(&mut self, mut pass: impl FnMut(Message)) {
         for (message, kept) in self.waiting.drain(..) {
             if kept {
@@ -65,7 +65,7 @@ impl Thinning {
 const BEFORE: Duration = Duration::from_millis(500);
 const AFTER: Duration = Duration::from_secs(1);
 
-/// Returns n for a topic of which every n-th message is kept without a notable event.
+/// Returns the n for which every n-th message of a topic is kept without a notable event.
 fn one_in(topic: Topic) -> u64 {
     match topic {
         Topic::Cycle => 10,
