@@ -1,29 +1,29 @@
-//! Recommended changes of settings and programs.
+//! Recommended changes to settings and programs.
 
 use franka_rt::driver::Commander;
 
-/// A recommended change that should prevent the same end of the next motion.
+/// A recommended change that should prevent the next motion from ending for the same reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Advice {
-    /// Motion commands must continue without a jump.
+    /// Send motion commands that continue without a jump.
     Smooth,
-    /// Torque commands must continue without a step.
+    /// Send torque commands that continue without a step.
     SmoothTorques,
-    /// The motion must be slower: commands are too fast, although they do not jump.
+    /// Move more slowly: the commands are too fast, although they do not jump.
     SlowDown,
-    /// The first command must match the robot's position.
+    /// Send a first command that matches the robot's position.
     StartWhereItIs,
-    /// The last command must be at rest.
+    /// Send a last command that is at rest.
     FinishAtRest,
-    /// Check the network: datagrams get lost between the two computers.
+    /// Check the network: it loses datagrams between the robot and this computer.
     Network,
-    /// Check this computer: it answers too late.
+    /// Check this computer: it replies too late.
     Host,
-    /// Check the thresholds: a contact occurred, or appeared to occur.
+    /// Check the contact and collision thresholds: a contact occurred, or appeared to occur.
     Thresholds,
-    /// Yield to contacts: the contact exceeded the force that the joints can hold.
+    /// Yield to contacts: the contact exceeded the force against which the joints can hold.
     GiveWay,
     /// Avoid poses close to a singularity.
     AvoidSingularity,
@@ -40,8 +40,8 @@ pub enum Advice {
 }
 
 impl Advice {
-    /// Returns the advice as text. It names the settings of this driver that apply to `commander`,
-    /// the source of the commands.
+    /// Returns the advice as text. The text names the settings of this driver that apply to
+    /// `commander`, the source of the commands.
     pub fn text(self, commander: Commander) -> &'static str {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {

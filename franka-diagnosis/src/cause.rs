@@ -1,4 +1,4 @@
-//! Causes in a diagnosis, and their text. `reasoning` selects them.
+//! Causes in a diagnosis and their texts. The module `reasoning` selects the causes.
 
 use core::fmt;
 use core::time::Duration;
@@ -7,27 +7,27 @@ use franka_model::CYCLE;
 
 use super::finding::{Digits, Quantity, Subject};
 
-/// True if the answer to a state took longer than a cycle.
+/// Returns true if the driver took longer than one cycle to answer a state.
 pub(super) fn is_slow(turnaround: Duration) -> bool {
     turnaround.as_secs_f64() > CYCLE
 }
 
-/// An event in the log that led to the end of a motion. A cycle is given as the `message_id` of its
-/// state.
+/// An event in the log that led to the end of a motion. Each cycle is identified by the
+/// `message_id` of its state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Cause {
-    /// A command jumps: it differs from the state that the robot last published as commanded.
+    /// A command jumped: it differs from the command that the robot published in its last state.
     TargetStep {
         /// The part of the command that jumps.
         subject: Subject,
-        /// The quantity that jumps: position, velocity, acceleration or torque.
+        /// The quantity that jumps: the position, velocity, acceleration or torque.
         quantity: Quantity,
-        /// Size of the jump, in the unit of the quantity: the difference from an unchanged
-        /// continuation.
+        /// Size of the jump, in the unit of the quantity. It is the difference between the command
+        /// and an unchanged continuation of the previous commands.
         size: f64,
-        /// Cycle of the state that this command answers.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
     /// The first command did not match the robot's position.
@@ -38,26 +38,26 @@ pub enum Cause {
         quantity: Quantity,
         /// Size of the difference, in the unit of the quantity.
         offset: f64,
-        /// Cycle of the state that this command answers.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
     /// The command that ended the motion was still moving.
     FinishedMoving {
-        /// The part that was moving.
+        /// The part of the arm that was moving.
         subject: Subject,
         /// Velocity of this part, `[rad/s]` or `[m/s]`.
         velocity: f64,
-        /// Cycle of the state that this command answers.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
-    /// Some cycles passed without a command.
+    /// The robot received no command in some cycles.
     LostPackets {
         /// Number of states that did not arrive and were therefore not answered.
         states: u64,
-        /// Number of commands that were sent and did not arrive in time, according to the robot's
+        /// Number of commands that were sent but did not arrive in time, computed from the robot's
         /// success rate.
         commands: u64,
-        /// Number of states that arrived and were not answered.
+        /// Number of states that arrived but were not answered.
         unanswered: u64,
         /// Largest number of consecutive cycles without a command.
         longest_run: u64,
@@ -65,47 +65,48 @@ pub enum Cause {
         first: u64,
         /// Last cycle without a command.
         last: u64,
-        /// `control_command_success_rate` of the last received state of the motion, in `[0, 1]`.
+        /// `control_command_success_rate` in the last received state of the motion, in `[0, 1]`.
         success_rate: f64,
     },
-    /// Some commands left this host after the next state was due, at any time in the motion.
+    /// Some commands of the motion left this host after the next state was due.
     LateCommands {
         /// Number of late commands.
         count: u64,
-        /// Longest time from a state's arrival in the control thread to its command.
+        /// Longest time from the arrival of a state in the control thread to the command that
+        /// answers it.
         worst_turnaround: Duration,
     },
-    /// The estimated external force or torque exceeded the lower threshold.
+    /// The estimated external force or torque exceeded the lower (contact) threshold.
     Contact {
         /// The joint, or the axis of the base frame, with the contact.
         subject: Subject,
-        /// Largest estimate in the cycles of the contact: `[N·m]` for a joint or a rotation, `[N]`
-        /// for a translation. It is positive when the robot pushes the environment.
+        /// Largest estimate during the contact: `[N·m]` for a joint or a rotation, `[N]` for a
+        /// translation. It is positive when the robot pushes the environment.
         value: f64,
-        /// First cycle of the uninterrupted time above the lower threshold.
+        /// First cycle of the uninterrupted period above the lower threshold.
         since: u64,
     },
-    /// A Cartesian motion is in a pose in which small motions require fast joints.
+    /// A Cartesian motion reached a pose in which small motions require fast joints.
     Singularity {
-        /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed.
-        /// Ordinary poses have 0.14 to 0.23.
+        /// Smallest singular value of the Jacobian of the end effector, with rows in metres and
+        /// radians. It is 0.14 to 0.23 in ordinary poses.
         smallest: f64,
-        /// Angle of joint 4 from the position in which the arm is stretched, `[rad]`.
+        /// Angle of joint 4 from its position in the stretched arm, `[rad]`.
         stretch: f64,
-        /// Cycle of the state with this desired pose.
+        /// Cycle of the state that contains this desired pose.
         cycle: u64,
     },
-    /// A joint is near the end of its range, where its speed towards this end is limited.
+    /// A joint is near one end of its range, where its speed towards this end is limited.
     Limit {
         /// Number of the joint, 1 to 7.
         joint: u8,
         /// True for the upper end of the range.
         upper: bool,
-        /// Remaining distance, `[rad]`; negative beyond the end.
+        /// Remaining distance to the end of the range, `[rad]`; negative beyond the end.
         distance: f64,
         /// Largest speed towards the end at this position, `[rad/s]`.
         speed: f64,
-        /// Cycle of the state with this joint position.
+        /// Cycle of the state that contains this joint position.
         cycle: u64,
     },
 }
@@ -238,7 +239,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// A number of things, and the noun for them.
+/// A number with the noun that it counts.
 struct Count(u64, &'static str);
 
 impl fmt::Display for Count {
@@ -257,6 +258,6 @@ fn noun(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Distance of joint 4 from the stretched position, `[rad]`, below which the text mentions the
-/// elbow.
+/// Distance of joint 4 from its stretched position below which the text mentions the elbow,
+/// `[rad]`.
 const STRETCHED: f64 = 0.3;

@@ -1,4 +1,4 @@
-//! Jumps of commands: at the start, at the end, and in between.
+//! Jumps of commands: at the start of a motion, at its end, and in between.
 
 use franka_model::limits::MotionLimits;
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
@@ -10,7 +10,8 @@ use super::commanded::{self, Derivatives, Which};
 use super::evidence::{Evidence, Reading, Sample};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Distance of the first command from the robot's position, for the errors that report it.
+/// Returns the distance of the first command from the robot's position, for the errors that report
+/// such a distance.
 pub(super) fn start_offset(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
     let sample = evidence.first()?;
     let (subject, value) = offset(&sample, error)?;
@@ -35,8 +36,8 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
             let from = transform::isometry_from_array(before.commanded_pose())?;
             let shift = target.translation.vector - from.translation.vector;
             let turn = rotation::error(&target.rotation, &from.rotation);
-            // A radian counts as half a metre, because the vendor does not publish which of the
-            // two the robot checks.
+            // A radian counts as half a metre, because the vendor does not publish whether the
+            // robot checks the translation or the rotation.
             Some(if shift.norm() > 0.5 * turn.norm() {
                 (Subject::component(shift.iamax()), shift.norm())
             } else {
@@ -56,7 +57,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
     }
 }
 
-/// Returns the jump of the command of a finding; `None` if it does not jump.
+/// Returns the jump of a finding's command; `None` if the command does not jump.
 fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     if !evidence.commander.commands_every_cycle() {
         return None;
@@ -116,8 +117,8 @@ fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     }
 }
 
-/// Returns the jump of a Cartesian command. This is the jump of the translation or of the rotation:
-/// the larger one relative to the limits.
+/// Returns the jump of a Cartesian command. It is the jump of the translation or of the rotation,
+/// whichever is larger relative to its limits.
 fn cartesian_leap(
     evidence: &Evidence<'_>,
     sample: &Sample<'_>,
@@ -146,14 +147,15 @@ fn cartesian_leap(
         translation
     };
     let (axis, norms, limits, change, _) = further;
-    // Norms have no direction, so the previous acceleration is this acceleration minus the change.
+    // Norms have no direction. Therefore the previous acceleration is computed as this acceleration
+    // minus the change.
     let (quantity, size) = leap_of(sample, &norms, norms.acceleration[0] - change, limits)?;
     Some((axis, quantity, size))
 }
 
-/// Returns the quantity of a command that jumps. If the acceleration is also too large, it is the
-/// commanded quantity itself, otherwise the acceleration. If the acceleration grew to its limit
-/// within the jerk limit, the command does not jump; the motion is too fast.
+/// Returns the quantity that jumps in a command. If the acceleration is also too large, this is the
+/// commanded quantity itself; otherwise it is the acceleration. If the acceleration grew to its
+/// limit within the jerk limit, the command does not jump, but the motion is too fast.
 fn leap_of(
     sample: &Sample<'_>,
     motion: &Derivatives<1>,
@@ -179,13 +181,13 @@ fn leap_of(
     }
 }
 
-/// Returns the error of a finding's command: a jump, or a last command that still moves. After the
-/// last command the robot would have to stand still.
+/// Returns the fault of a finding's command: a jump, or a last command that still moves. The robot
+/// would have to stand still after the last command.
 pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let leap = leap(evidence, finding);
     match finished_moving(evidence, finding) {
-        // A wrong start has priority over a finish in motion, and so has a jump of at least half
-        // of the velocity.
+        // A wrong start, or a jump of at least half of the velocity, has priority over a last
+        // command that still moves.
         Some((finish, of_leap)) => {
             let is_start = matches!(leap, Some(Cause::WrongStart { .. }));
             leap.filter(|_| is_start || of_leap).or(Some(finish))
@@ -194,7 +196,7 @@ pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Opti
     }
 }
 
-/// Returns the command to which a finding about differences refers, if this command is the last of
+/// Returns the command to which a finding about differences refers, if it is the last command of
 /// the motion.
 fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample<'a>> {
     let of_differences = matches!(finding.quantity, Quantity::Acceleration | Quantity::Jerk);
@@ -203,8 +205,8 @@ fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample
     (of_differences && every_cycle && sample.is_finished()).then_some(sample)
 }
 
-/// Returns the cause that the last command still moves. The flag is true if the command itself
-/// changes at least half of its velocity.
+/// Returns the cause "the last command still moves". The flag is true if the command itself changes
+/// at least half of its velocity.
 fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause, bool)> {
     let sample = last_command(evidence, finding)?;
     let (subject, velocity, acceleration) = match commanded::joints(&sample) {
@@ -231,7 +233,7 @@ fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause,
     (velocity.abs() > STANDSTILL).then_some((finish, of_leap))
 }
 
-/// Returns the step of the acceleration to rest after a last joint command that hardly moves.
+/// Returns the jump of the acceleration to zero after a last joint command that hardly moves.
 fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let sample = last_command(evidence, finding)?;
     let (_, motion) = commanded::joints(&sample)?;
@@ -248,8 +250,8 @@ fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<C
     })
 }
 
-/// Returns the cause that the last command came before the arm was at rest. This applies to motions
-/// with the client's torques, and to the errors that report it.
+/// Returns the cause "the last command came before the arm was at rest". This cause applies to
+/// motions with the client's torques, and to the errors that report it.
 pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError) -> Option<Cause> {
     let says_so = matches!(
         error,
@@ -271,9 +273,9 @@ pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError
     })
 }
 
-/// Returns the largest step of the commanded torques before a cycle, if it is more than half of the
-/// limit. A torque with about the same change in an adjacent cycle is part of a ramp. A change of
-/// exactly the limit comes from the rate limiter, which turns steps into ramps.
+/// Returns the largest step of the commanded torques before a cycle, if the step is larger than
+/// half of the limit. A torque with about the same change in an adjacent cycle is part of a ramp. A
+/// change of exactly the limit comes from the rate limiter, which turns steps into ramps.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let is_limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
@@ -303,19 +305,19 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
     }
 }
 
-/// Measured joint velocity, `[rad/s]`, above which an arm is not at rest. The simulator uses the
+/// Measured joint velocity above which an arm is not at rest, `[rad/s]`. The simulator uses the
 /// same value.
 const AT_REST: f64 = 0.1;
 
-/// Largest commanded velocity, `[rad/s]` or `[m/s]`, at which a motion may end. A stop from this
+/// Largest commanded velocity at which a motion may end, `[rad/s]` or `[m/s]`. A stop from this
 /// velocity within one cycle is below every jerk limit of the arms.
 const STANDSTILL: f64 = 0.003;
 
-/// Relative distance from the limit within which a value counts as limited.
+/// Relative distance from the limit within which a change counts as exactly the limit.
 const LIMITED: f64 = 2e-3;
 
-/// Least change in an adjacent cycle, as a share of a torque's change, for the torque to be part of
-/// a ramp.
+/// Smallest change in an adjacent cycle, as a share of a torque's change, for which the torque is
+/// part of a ramp.
 const RAMP: f64 = 0.9;
 
 /// Offset of a first command that every robot accepts, `[rad]` or `[m]`. The vendor does not

@@ -1,7 +1,7 @@
-//! The differences of commands, as the robot computes them.
+//! Differences of commands, computed as the robot computes them.
 //!
-//! The robot uses backward differences over one cycle, from the commanded values in the answered
-//! state (FCI documentation, control parameters). Limits are the nominal limits.
+//! The robot computes backward differences over one cycle, relative to the commanded values in the
+//! answered state (FCI documentation, control parameters). The limits are the nominal limits.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::MotionLimits;
@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, SVector, Vector3};
 use super::evidence::{Evidence, Reading, Sample, positions, velocities};
 use super::finding::{Origin, Quantity, Subject};
 
-/// A command with its derivatives.
+/// A command and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derivatives<const N: usize> {
     pub(super) velocity: SVector<f64, N>,
@@ -34,13 +34,13 @@ impl<const N: usize> Derivatives<N> {
         }
     }
 
-    /// Derivatives of a standstill in the next cycle, as after a finished command.
+    /// Returns the derivatives if the next cycle is a standstill, as after a finished command.
     pub(super) fn at_rest_next(&self) -> Self {
         Self::of(SVector::zeros(), self.velocity, self.acceleration)
     }
 }
 
-/// Joint positions and their derivatives of a joint command; `None` for other commands.
+/// Returns the joint positions of a joint command and their derivatives; `None` for other commands.
 pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>)> {
     let Sample {
         before, command, ..
@@ -64,7 +64,8 @@ pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>
     Some((q, Derivatives::of(velocity, dq_d, ddq_d)))
 }
 
-/// Pose and derivatives of a Cartesian command; `None` for other commands and for invalid poses.
+/// Returns the pose of a Cartesian command and its derivatives; `None` for other commands and for
+/// invalid poses.
 pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivatives<6>)> {
     let Sample {
         before, command, ..
@@ -94,7 +95,7 @@ pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivati
     ))
 }
 
-/// Angle of the commanded elbow and its derivatives.
+/// Returns the angle of the commanded elbow and its derivatives.
 pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     let [angle, _] = sample.command.elbow_c?;
     let before = sample.before;
@@ -107,9 +108,9 @@ pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     ))
 }
 
-/// Joint positions of a Cartesian command and their derivatives, by Newton's iteration from the
-/// commanded joint positions. The robot's own method is not published; the method's result is known
-/// to be close to the smallest step.
+/// Returns the joint positions of a Cartesian command and their derivatives, with Newton's method
+/// that starts at the commanded joint positions. The robot's own method is not published, but its
+/// result is known to be close to the smallest step.
 pub(super) fn resulting(
     model: &Model,
     sample: &Sample<'_>,
@@ -156,8 +157,8 @@ pub(super) fn resulting(
     Some((q, Derivatives::of((q - from) / CYCLE, dq_d, ddq_d)))
 }
 
-/// Change of a command's torques relative to the torques in the state, `[N·m]`. For the first
-/// command it is relative to zero.
+/// Returns the change of the command's torques relative to the torques in the state, `[N·m]`. For
+/// the first command, the change is relative to zero.
 pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     if !sample.before.controller_running() {
         return None;
@@ -170,12 +171,12 @@ pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     Some(JointVector::from(sample.command.tau_J_d) - before)
 }
 
-/// The client's frames, from a state.
+/// Returns the client's frames from a state.
 pub(super) fn end_effector(state: &RobotState) -> EndEffector {
     EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
 }
 
-/// Selects the order of the difference of a command.
+/// Order of the derivative of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Which {
     Velocity,
@@ -183,12 +184,13 @@ pub(super) enum Which {
     Jerk,
 }
 
-/// Readings of all joint commands of a log, each with the limit of its `which` derivative.
+/// Returns the readings of all joint commands in a log. Each reading has the limit of the
+/// derivative `which`.
 pub(super) fn joint_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Commanded, which, joints)
 }
 
-/// Readings of the joint motion that results from Cartesian commands.
+/// Returns the readings of the joint motion that results from the Cartesian commands.
 pub(super) fn resulting_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Desired, which, |sample| {
         resulting(evidence.model, sample)
@@ -240,7 +242,7 @@ fn of_joints(
     readings
 }
 
-/// Readings of the commanded positions relative to the ranges of the joints.
+/// Returns the readings of the commanded positions relative to the joint ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let mut readings = Vec::new();
     for sample in evidence.samples() {
@@ -258,7 +260,7 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// Readings of all Cartesian commands of a log.
+/// Returns the readings of all Cartesian commands in a log.
 pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     evidence
         .samples()
@@ -270,9 +272,9 @@ pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<R
         .collect()
 }
 
-/// Possible effect of rounding on a derivative of this order of a joint command. The current and
-/// the previous position are rounded, and their difference is divided by powers of the cycle. The
-/// previous derivatives are separate numbers.
+/// Returns the largest effect of rounding on a derivative of this order of a joint command. The
+/// current and the previous position are rounded, and their difference is divided by powers of the
+/// cycle time. The previous derivatives are separate numbers.
 fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order: i32) -> f64 {
     if !evidence.rounded {
         return 0.0;
@@ -280,14 +282,14 @@ fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order:
     let (half, order) = match sample.before.motion_generator_mode {
         Generator::JointPosition => (half_digit(sample.command.q_c[i]), order),
         Generator::JointVelocity => (half_digit(sample.command.dq_c[i]), order - 1),
-        // The joints follow the pose; near a singularity they move ten times as far.
+        // Near a singularity, the joints move ten times as far as the pose.
         _ => (10.0 * half_digit(POSE), order),
     };
     2.0 * half / CYCLE.powi(order)
 }
 
-/// Possible effect of rounding on a derivative of a Cartesian command. The previous derivatives are
-/// differences, too.
+/// Returns the largest effect of rounding on a derivative of a Cartesian command. The previous
+/// derivatives are differences, too.
 fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> f64 {
     let order = match which {
         _ if !evidence.rounded => return 0.0,
@@ -303,13 +305,13 @@ fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> 
     3.0_f64.sqrt() * half_digit(POSE) * (2.0 / CYCLE).powi(order)
 }
 
-/// Half a unit of the last of six significant digits.
+/// Returns half a unit of the last of six significant digits.
 fn half_digit(value: f64) -> f64 {
     let digits = value.abs().max(1e-3).log10().floor();
     0.5 * 10f64.powi(digits as i32 - 5)
 }
 
-/// One reading each for translation and rotation.
+/// Returns one reading for the translation and one for the rotation.
 pub(super) fn cartesian_readings_of(
     model: &Model,
     sample: &Sample<'_>,
@@ -340,7 +342,7 @@ pub(super) fn cartesian_readings_of(
     readings
 }
 
-/// Readings of all commands of the elbow.
+/// Returns the readings of all elbow commands.
 pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limits = &evidence.model.cartesian_limits().elbow;
     let mut readings = Vec::new();
@@ -363,7 +365,7 @@ pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// Readings of the torque rate of every joint and command.
+/// Returns the readings of the torque rate for every joint and every command.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque_rate;
     let mut readings = Vec::new();
@@ -385,8 +387,8 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// Readings of a command. If it is the last command, readings of the standstill after it are
-/// included.
+/// Returns the readings of a command. The last command also has readings of the standstill that
+/// follows it.
 fn with_rest<const N: usize>(
     asked: Derivatives<N>,
     sample: &Sample<'_>,
@@ -410,7 +412,7 @@ fn select<const N: usize>(
     }
 }
 
-/// Displacement and rotation vector from `from` to `to`, in base axes.
+/// Returns the displacement and the rotation vector from `from` to `to`, in base axes.
 pub(super) fn difference(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     let shift = to.translation.vector - from.translation.vector;
     let turn = rotation::error(&to.rotation, &from.rotation);
@@ -424,12 +426,12 @@ fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     )
 }
 
-/// Typical magnitude of the larger numbers of a pose. They are positions, `[m]`, and elements of a
-/// rotation.
+/// Typical magnitude of the larger numbers in a pose: positions, `[m]`, and elements of a rotation
+/// matrix.
 const POSE: f64 = 0.5;
 
-/// Number of Newton steps for one cycle. Two or three are enough away from singular poses.
+/// Number of Newton steps per cycle. Two or three steps are enough away from singular poses.
 const ITERATIONS: usize = 4;
 
-/// Largest step of a joint in one Newton step, `[rad]`.
+/// Largest change of a joint in one Newton step, `[rad]`.
 const LEAP: f64 = 0.5;

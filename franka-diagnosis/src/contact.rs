@@ -1,4 +1,4 @@
-//! External forces and torques that the robot estimated.
+//! External forces and torques, as the robot estimates them.
 
 use franka_proto::{RobotError, RobotState};
 
@@ -6,8 +6,9 @@ use super::cause::Cause;
 use super::evidence::Evidence;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Place where the robot senses a contact: the joints, or the axes of the base at the stiffness
-/// frame. The vendor does not document the axes of the flags; the simulator assumes the same axes.
+/// Place where the robot senses a contact: the joints, or the axes of the base frame at the
+/// stiffness frame. The vendor does not document to which axes the flags belong. The simulator
+/// makes the same assumption.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sense {
     Joints,
@@ -17,7 +18,7 @@ pub(super) enum Sense {
 impl Sense {
     const ALL: [Self; 2] = [Self::Joints, Self::Axes];
 
-    /// External loads in a state. For axes, only six of the numbers are used.
+    /// Returns the external loads in a state. For axes, only six of the numbers are used.
     fn load(self, state: &RobotState) -> [f64; 7] {
         match self {
             Self::Joints => state.tau_ext_hat_filtered,
@@ -54,7 +55,7 @@ impl Sense {
     }
 }
 
-/// The collision, according to the flags of the last state.
+/// Returns the finding for the collision that the flags of the last state report.
 pub(super) fn collision(
     evidence: &Evidence<'_>,
     error: RobotError,
@@ -91,8 +92,8 @@ pub(super) fn collision(
     })
 }
 
-/// The contact at the end of the motion. It is the contact of the finding's subject, or otherwise
-/// the strongest contact relative to the joint's torque.
+/// Returns the contact at the end of the motion. If `of` has a contact, this is its contact.
+/// Otherwise it is the contact that is strongest relative to the torque of its joint.
 pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
     let state = evidence.last()?;
     let named = of.and_then(|subject| {

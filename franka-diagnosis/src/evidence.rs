@@ -1,4 +1,4 @@
-//! Evidence: a log that is prepared for the checks.
+//! Log data, prepared for the checks.
 
 use franka_model::{JointVector, Model};
 use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
@@ -8,7 +8,7 @@ use franka_rt::driver::Commander;
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// Evidence of a diagnosis: a log that is prepared for the checks.
+/// Evidence for a diagnosis: a log that is prepared for the checks.
 pub(super) struct Evidence<'a> {
     pub(super) commander: Commander,
     /// Cycles, oldest first.
@@ -19,7 +19,7 @@ pub(super) struct Evidence<'a> {
     pub(super) rounded: bool,
 }
 
-/// A command, with the state that it answers.
+/// A command and the state that it answers.
 #[derive(Clone, Copy)]
 pub(super) struct Sample<'a> {
     pub(super) before: &'a RobotState,
@@ -28,7 +28,7 @@ pub(super) struct Sample<'a> {
     pub(super) first: bool,
 }
 
-/// One number of one cycle, and its limit.
+/// A number in one cycle, and its limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reading {
     pub(super) subject: Subject,
@@ -42,23 +42,23 @@ pub(super) struct Reading {
 }
 
 impl<'a> Evidence<'a> {
-    /// The newest state. It shows the end of the motion.
+    /// Returns the newest state, which shows the end of the motion.
     pub(super) fn last(&self) -> Option<&'a RobotState> {
         self.entries.last().map(|entry| &entry.state)
     }
 
-    /// All states, oldest first.
+    /// Returns all states, oldest first.
     pub(super) fn states(&self) -> impl DoubleEndedIterator<Item = &'a RobotState> {
         self.entries.iter().map(|entry| &entry.state)
     }
 
-    /// The newest state in which the motion still ran.
+    /// Returns the newest state in which the motion was still running.
     pub(super) fn last_running(&self) -> Option<&'a RobotState> {
         self.states().rev().find(|state| state.motion_running())
     }
 
-    /// The motion generator of the motion. In protocol 5, a torque motion also has a generator; its
-    /// commands are at rest.
+    /// Returns the motion generator of the motion. In protocol 5, a torque motion also has a
+    /// generator, whose commands are at rest.
     pub(super) fn generator(&self) -> MotionGeneratorMode {
         self.last_running()
             .map_or(MotionGeneratorMode::Idle, |state| {
@@ -66,7 +66,7 @@ impl<'a> Evidence<'a> {
             })
     }
 
-    /// True if the motion was commanded in poses or twists.
+    /// Returns true if the motion was commanded with poses or twists.
     pub(super) fn is_cartesian(&self) -> bool {
         matches!(
             self.generator(),
@@ -74,9 +74,9 @@ impl<'a> Evidence<'a> {
         )
     }
 
-    /// The commands that reached the robot, according to its success rate, and whose state is in
-    /// the log. Differences must be computed from the commanded values in this state, because they
-    /// include the robot's extrapolation over cycles without a command.
+    /// Returns the commands that reached the robot (according to its success rate), if the log
+    /// contains the state that they answer. Compute differences from the commanded values in this
+    /// state, because these values include the robot's extrapolation over cycles without a command.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
         self.entries.windows(2).filter_map(|pair| {
             let (before, command) = (&pair[0].state, &pair[1].command);
@@ -89,12 +89,12 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// The command that answers the state with the `message_id` `cycle`.
+    /// Returns the command that answers the state whose `message_id` is `cycle`.
     pub(super) fn sample(&self, cycle: u64) -> Option<Sample<'a>> {
         self.samples().find(|sample| sample.cycle() == cycle)
     }
 
-    /// The first command of the motion, if the log contains it.
+    /// Returns the first command of the motion, if the log contains it.
     pub(super) fn first(&self) -> Option<Sample<'a>> {
         self.samples().find(|sample| sample.first)
     }
@@ -111,8 +111,8 @@ impl Sample<'_> {
 }
 
 impl Reading {
-    /// The same reading, if rounding may have changed its value by `error`. Its score is then
-    /// relative to a limit that is larger by this amount.
+    /// Returns the same reading for a value that rounding may have changed by `error`. The score is
+    /// then relative to a limit that is larger by this amount.
     pub(super) fn within(self, error: f64) -> Self {
         let limit = self.bound.limit().unwrap_or(0.0).abs();
         let share = if error > 0.0 {
@@ -126,7 +126,7 @@ impl Reading {
         }
     }
 
-    /// A reading of a number with a bounded magnitude.
+    /// Returns a reading of a number whose magnitude is limited.
     pub(super) fn magnitude(
         subject: Subject,
         quantity: Quantity,
@@ -153,7 +153,7 @@ impl Reading {
         }
     }
 
-    /// The finding for a reading at the end of the motion.
+    /// Returns the finding for a reading at the end of the motion.
     pub(super) fn finding(&self, error: RobotError) -> Finding {
         Finding {
             error,
@@ -167,18 +167,18 @@ impl Reading {
     }
 }
 
-/// True if the command between two states did not reach the robot in time, according to its success
-/// rate. `skipped` is the number of states between them that were not answered. The state that
-/// shows the end of the motion does not decide this.
+/// Returns true if the command between two states did not reach the robot in time, according to the
+/// robot's success rate. `skipped` is the number of unanswered states between the two states. The
+/// success rate of the state that ends the motion is not considered.
 pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> bool {
-    // The rate covers the last hundred cycles.
+    // The rate covers the last 100 cycles.
     let rate = before.control_command_success_rate - skipped as f64 / 100.0;
     after.message_id == before.message_id + 1 + skipped
         && after.motion_running()
         && after.control_command_success_rate < rate - SAME_RATE
 }
 
-/// Readings of the velocity of every joint, relative to its limit at `q`.
+/// Returns the readings of every joint's velocity, relative to its limit at `q`.
 pub(super) fn velocities(
     model: &Model,
     origin: Origin,
@@ -196,7 +196,7 @@ pub(super) fn velocities(
         .collect()
 }
 
-/// Readings of the position of every joint, relative to the nearer end of its range.
+/// Returns the readings of every joint's position, relative to the nearer end of its range.
 pub(super) fn positions(
     model: &Model,
     origin: Origin,
@@ -225,9 +225,9 @@ pub(super) fn positions(
         .collect()
 }
 
-/// The finding for the worst of some sensor readings, which are given oldest first. It contains the
-/// first of the consecutive cycles in which the limit was exceeded. `None` if no reading is near
-/// its limit.
+/// Returns the finding for the worst of some sensor readings, which are given oldest first. The
+/// finding contains the first of the consecutive cycles in which the limit was exceeded. `None` if
+/// no reading is near its limit.
 pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let worst = readings
         .iter()
@@ -236,9 +236,9 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
     Some(since_first(error, worst, readings))
 }
 
-/// The finding for readings of commands. The robot stops at the first command that exceeds a limit,
-/// so the newest excess counts. If no reading certainly exceeds its limit, the newest reading near
-/// its limit counts.
+/// Returns the finding for readings of commands. The robot stops at the first command that exceeds
+/// a limit, so the newest reading above its limit counts. If no reading is certain to exceed its
+/// limit, the newest reading near its limit counts.
 pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let last = |least: f64| {
         let cycle = readings
@@ -273,7 +273,8 @@ fn since_first(error: RobotError, worst: &Reading, readings: &[Reading]) -> Find
 }
 
 impl Subject {
-    /// True if both are the same part. Components of the same vector count as the same part.
+    /// Returns true if both subjects are the same part. Components of the same vector count as the
+    /// same part.
     fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Translation(_), Self::Translation(_))
@@ -283,15 +284,15 @@ impl Subject {
     }
 }
 
-/// Share of a limit at which the limit counts as reached. Single precision of the states changes a
-/// third difference by up to a twentieth of its limit, and the robot's own computation is not
-/// published.
+/// Share of a limit at which the limit counts as reached. The single precision of the states
+/// changes a third difference by up to a twentieth of its limit, and the robot's own computation is
+/// not published.
 const VISIBLE: f64 = 0.95;
 
 /// Scale that turns the distance of a position from its limit into a score, `[rad]`. With
-/// [`VISIBLE`], half a hundredth of a radian counts as near.
+/// [`VISIBLE`], a position counts as near its limit within half a hundredth of a radian.
 const SCALE: f64 = 0.1;
 
-/// Difference of success rates below which they count as equal. One command in a hundred changes
-/// the rate by a hundredth, and rates have at least single precision.
+/// Largest difference between success rates that count as equal. One command in a hundred changes
+/// the rate by 0.01, and rates have at least single precision.
 const SAME_RATE: f64 = 1e-4;

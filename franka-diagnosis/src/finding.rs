@@ -1,24 +1,24 @@
-//! An exceeded limit: the part of the arm, the quantity, the excess and the first cycle.
+//! Exceeded limits: the part of the arm, the quantity, the excess and the first cycle.
 
 use core::fmt;
 
 use franka_proto::RobotError;
 
-/// The part of the arm to which a number refers.
+/// The part of the arm that a number describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Subject {
-    /// A joint, 1 to 7 from the base.
+    /// A joint, numbered 1 to 7 from the base.
     Joint(u8),
-    /// The translation of the end effector. Limits apply to the norm of the vector; the axis is the
-    /// axis of the largest component.
+    /// The translation of the end effector. Limits apply to the norm of the vector. The axis is the
+    /// direction of its largest component.
     Translation(Axis),
-    /// The rotation of the end effector, with the axis of the largest component.
+    /// The rotation of the end effector. The axis is the direction of the largest component.
     Rotation(Axis),
     /// The elbow: the angle of joint 3 in a Cartesian motion.
     Elbow,
-    /// Two bodies of the arm: link 0 (the base) to 7, and 8 for the tool on the flange.
+    /// Two bodies of the arm: 0 is the base, 1 to 7 are the links, and 8 is the tool on the flange.
     Bodies(u8, u8),
     /// The arm as a whole.
     Arm,
@@ -56,46 +56,49 @@ pub enum Quantity {
     /// The robot's estimate of the external load: `[N·m]` for a joint or a rotation, `[N]` for a
     /// translation.
     ExternalLoad,
-    /// Distance from the commanded position in the state to the first command: `[rad]` or `[m]`.
+    /// Difference between the commanded position in the state and the first command, `[rad]` or
+    /// `[m]`.
     StartOffset,
-    /// Distance between measured and desired pose: `[m]`.
+    /// Distance between the measured pose and the desired pose, `[m]`.
     Deviation,
-    /// Distance between two bodies: `[m]`.
+    /// Distance between two bodies, `[m]`.
     Distance,
-    /// Mechanical power of all joints: `[W]`.
+    /// Mechanical power of all joints, `[W]`.
     Power,
-    /// Consecutive cycles without a command.
+    /// Number of consecutive cycles without a command.
     LostCycles,
     /// Number of sign changes of the velocity within the log.
     Reversals,
 }
 
-/// Origin of a number.
+/// Origin of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Origin {
-    /// The commands: differences from the values that the robot published before, over one cycle.
+    /// Commands. The value is a difference over one cycle, relative to the values that the robot
+    /// published in the state before.
     Commanded,
-    /// The joint positions of a Cartesian command, from this driver's inverse kinematics.
+    /// Joint positions of a Cartesian command, computed by this driver's inverse kinematics.
     Desired,
-    /// The sensors.
+    /// Sensors.
     Measured,
-    /// The robot's estimate of external loads.
+    /// The robot's estimates of external loads.
     Estimated,
 }
 
-/// Limit of a number.
+/// Limit of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Bound {
-    /// The nominal limit of the robot's model on the positive side.
+    /// Upper limit: the nominal limit of the robot's model in the positive direction.
     AtMost(f64),
-    /// The nominal limit of the robot's model on the negative side, or the lower end of a range.
+    /// Lower limit: the nominal limit of the robot's model in the negative direction, or the lower
+    /// end of a range.
     AtLeast(f64),
-    /// A threshold that no state shows. It is between two magnitudes: the first did not exceed it,
-    /// the second did.
+    /// A threshold that no state contains. It lies between two magnitudes: the first magnitude did
+    /// not exceed it, and the second did.
     Between(f64, f64),
-    /// The limit is unknown: it is not published, and no state shows it.
+    /// An unknown limit: it is not published, and no state contains it.
     Unknown,
 }
 
@@ -104,32 +107,33 @@ pub enum Bound {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Finding {
-    /// The error that reports this.
+    /// The error that reports the exceeded limit.
     pub error: RobotError,
     /// The joint, axis or part that exceeded the limit.
     pub subject: Subject,
     /// The quantity that exceeded the limit.
     pub quantity: Quantity,
-    /// The origin of the value.
+    /// The source of the value.
     pub origin: Origin,
-    /// Largest value, in the unit of its [`Quantity`].
+    /// The largest value, in the unit of its [`Quantity`].
     pub value: f64,
     /// The limit of the value, in the same unit.
     pub bound: Bound,
-    /// First of the consecutive cycles in which the limit was exceeded. It is the `message_id` of
-    /// the state that the command answers, or that contains the measurement.
+    /// First of the consecutive cycles in which the limit was exceeded. The cycle is given as the
+    /// `message_id` of the state that the command answers, or that contains the measurement.
     pub since: u64,
 }
 
 impl Finding {
-    /// Excess over the limit, in the unit of the quantity; `None` if the limit is unknown. It is
-    /// zero or slightly negative, by a few hundredths of the limit, if the precision of the state
-    /// is too low.
+    /// Returns the excess over the limit, in the unit of the quantity; `None` if the limit is
+    /// unknown. The excess is zero or slightly negative, by a few hundredths of the limit, if the
+    /// state is not precise enough to show an excess.
     pub fn excess(&self) -> Option<f64> {
         self.bound.excess(self.value)
     }
 
-    /// Ratio of the value to the limit; `None` if the limit is zero, a position, or unknown.
+    /// Returns the ratio of the value to the limit; `None` if the limit is zero, unknown, or the
+    /// limit of a position.
     pub fn times(&self) -> Option<f64> {
         let limit = self.bound.limit()?;
         let is_scale = limit != 0.0 && self.quantity != Quantity::Position;
@@ -146,7 +150,7 @@ impl Bound {
         }
     }
 
-    /// Returns the excess of a value over the limit; negative within the limit.
+    /// Returns the excess of a value over the limit; negative if the value is within the limit.
     pub(super) fn excess(self, value: f64) -> Option<f64> {
         match self {
             Self::AtMost(limit) => Some(value - limit),
@@ -157,12 +161,12 @@ impl Bound {
 }
 
 impl Subject {
-    /// Joint number `index`, counted from 0.
+    /// Returns joint number `index`, counted from 0.
     pub(super) fn joint(index: usize) -> Self {
         Self::Joint(index as u8 + 1)
     }
 
-    /// Component number `index` of a twist or wrench, counted from 0.
+    /// Returns component number `index` of a twist or wrench, counted from 0.
     pub(super) fn component(index: usize) -> Self {
         let axis = [Axis::X, Axis::Y, Axis::Z][index % 3];
         if index < 3 {
@@ -181,7 +185,7 @@ impl Subject {
 }
 
 impl Quantity {
-    /// A value of this quantity, with its unit.
+    /// Returns a value of this quantity with its unit.
     pub(super) fn of(self, subject: Subject, value: f64) -> Measure {
         Measure {
             quantity: self,
@@ -219,7 +223,8 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// The same measure with more digits, if they are needed to tell it from `other`.
+    /// Returns the same measure, with more digits if its text would otherwise equal the text of
+    /// `other`.
     fn told_from(self, other: f64) -> Self {
         let same = |&digits: &u8| Digits(self.value).with(digits) == Digits(other).with(digits);
         let digits = (DIGITS..=DIGITS_MAX).find(|digits| !same(digits));
@@ -253,10 +258,10 @@ impl fmt::Display for Measure {
 /// A number with four significant digits and no exponent, with at most six decimals.
 pub(super) struct Digits(pub(super) f64);
 
-/// Significant digits of a number.
+/// Number of significant digits.
 const DIGITS: u8 = 4;
 
-/// Largest number of significant digits, for a number next to a similar number.
+/// Largest number of significant digits, used if two similar numbers must differ.
 const DIGITS_MAX: u8 = 8;
 
 impl Digits {
@@ -323,8 +328,8 @@ impl fmt::Display for Origin {
 }
 
 impl fmt::Display for Finding {
-    /// Formats as `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times as
-    /// much)`.
+    /// Formats the finding like `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2
+    /// (20 times as much)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             subject,

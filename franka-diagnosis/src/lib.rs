@@ -1,19 +1,20 @@
-//! Explains why a Franka robot ended a motion, by a reflex or otherwise. A diagnosis names the
-//! exceeded limit, the excess and its first cycle, the causes, and the changes to make. `reasoning`
-//! combines the evidence.
+//! Explains why a Franka robot ended a motion, for example with a reflex. A diagnosis lists the
+//! exceeded limit, the excess, the first cycle above the limit, the causes, and the recommended
+//! changes. The module `reasoning` combines the evidence.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
 //!                          +-> causes (steps | contact | lost cycles | posture) --> advice
 //! ```
 //!
-//! The robot only names errors, without a joint or a number. This crate computes both from the log
-//! of the motion's last cycles, with the robot's differences and limits (FCI documentation). The
-//! published data and the single precision of the states limit the accuracy. The crate does not
-//! guess: if the log does not show the cause, the [`Diagnosis`] states this.
+//! The robot reports only the names of errors, without a joint or a number. This crate finds the
+//! joint and the number in the log of the motion's last cycles. It computes differences and applies
+//! limits as the robot does (FCI documentation). The accuracy is limited by the published data and
+//! by the single precision of the states. The crate does not guess: if the log does not show the
+//! cause, the [`Diagnosis`] reports this.
 //!
-//! * [`Diagnose`]: diagnoses an error where it was caught. [`Case`], [`Diagnosis::of`]: diagnose a
-//!   log, saved or live.
+//! * [`Diagnose`]: diagnoses an error in the program that received it. [`Case`] and
+//!   [`Diagnosis::of`]: diagnose a saved or live log.
 //! * [`Finding`]: the exceeded limit. [`Cause`]: an event that led to it. [`Advice`]: a recommended
 //!   change.
 //!

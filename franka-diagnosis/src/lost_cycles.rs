@@ -1,4 +1,4 @@
-//! The cycles that passed without a command.
+//! Cycles without a command.
 
 use core::ops::Range;
 
@@ -8,15 +8,16 @@ use super::cause::Cause;
 use super::evidence::{Evidence, is_lost};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Largest number of consecutive lost cycles in a motion. 20 lost cycles end it (FCI documentation,
-/// `communication_constraints_violation`).
+/// Largest number of consecutive lost cycles that a motion survives. The robot ends a motion after
+/// 20 lost cycles (FCI documentation, `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
-/// Number of cycles between a loss and the last command that it can affect. A jerk is a difference
+/// Number of cycles after a loss in which the loss can affect a command. A jerk is a difference
 /// over two commands.
 const BEFORE: u64 = 2;
 
-/// Cycles without a command, oldest first. Each is identified by the state whose answer is missing.
+/// Cycles without a command, oldest first. Each cycle is identified by the state whose answer is
+/// missing.
 struct Losses {
     states: u64,
     commands: u64,
@@ -51,10 +52,11 @@ impl Losses {
             }
             let missing = next - id - 1;
             let ends = !after.motion_running();
-            // A thread that is delayed during an answer skips the states that arrive meanwhile.
+            // A thread that is delayed while it answers a state skips the states that arrive
+            // meanwhile.
             let skipped = if skips { missing } else { 0 };
             if command.message_id == 0 {
-                // Before the first command, the robot waits.
+                // The robot waits until it receives the first command.
             } else if command.message_id != id {
                 // While the robot plans between two targets, no commands are needed.
                 if evidence.commander.commands_every_cycle() {
@@ -63,7 +65,7 @@ impl Losses {
                 }
             } else if is_lost(before, after, skipped)
                 || (ends && starved && missing == skipped)
-                // No command has arrived in time yet.
+                // No command has reached the robot in time yet.
                 || (!ends && starved && after.control_command_success_rate == 0.0)
             {
                 losses.commands += 1;
@@ -76,7 +78,7 @@ impl Losses {
         losses
     }
 
-    /// The longest run of losses: its length and its first cycle.
+    /// Returns the length and the first cycle of the longest run of losses.
     fn longest(&self) -> Option<(u64, u64)> {
         let mut longest = None;
         let mut run = (0, 0);
@@ -106,7 +108,7 @@ impl Losses {
     }
 }
 
-/// The longest run of cycles without a command, for a robot that stopped because of it.
+/// Returns the longest run of cycles without a command, if the robot stopped because of it.
 pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
     let (length, first) = Losses::of(evidence, true, 0..u64::MAX).longest()?;
     Some(Finding {
@@ -121,15 +123,15 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// The losses in the log, if the robot stopped because of missing commands. In this case the last
-/// command did not reach the robot either.
+/// Returns the losses in the log, if the robot stopped because of missing commands. In this case,
+/// the last command did not reach the robot either.
 pub(super) fn lost_packets(evidence: &Evidence<'_>) -> Option<Cause> {
     Losses::of(evidence, true, 0..u64::MAX).cause()
 }
 
-/// The consecutive losses directly before the wrong command, or in the log if this command is
-/// unknown. The robot extrapolates missing commands, and the next command may jump relative to the
-/// extrapolation.
+/// Returns the consecutive losses directly before the wrong command. If this command is unknown,
+/// returns the losses in the log. The robot extrapolates missing commands, and the next command may
+/// jump relative to the extrapolation.
 pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) -> Option<Cause> {
     let Some(Finding { since, .. }) = finding else {
         return Losses::of(evidence, false, 0..u64::MAX).cause();
@@ -143,7 +145,7 @@ pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) ->
     Losses::of(evidence, false, first..*since).cause()
 }
 
-/// The late commands of the whole motion.
+/// Returns the late commands of the whole motion.
 pub(super) fn late_commands(evidence: &Evidence<'_>) -> Option<Cause> {
     let statistics = evidence.statistics?;
     (statistics.overruns > 0).then_some(Cause::LateCommands {

@@ -1,4 +1,4 @@
-//! The limits of sensor values.
+//! Sensor values relative to their limits.
 
 use franka_model::collision::Shape;
 use franka_model::{Frame, JointVector};
@@ -8,7 +8,7 @@ use super::commanded::end_effector;
 use super::evidence::{Evidence, Reading, positions, velocities};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Readings of the joint velocities, relative to their envelopes.
+/// Returns the readings of the joint velocities relative to their envelopes.
 pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -19,7 +19,7 @@ pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Readings of the joint positions, relative to their ranges.
+/// Returns the readings of the joint positions relative to their ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -34,7 +34,7 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Readings of the speed of the end effector.
+/// Returns the readings of the speed of the end effector.
 pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = evidence.model.cartesian_limits().translation.velocity;
     evidence
@@ -60,8 +60,8 @@ pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Readings of the joint torques, relative to the nominal limits. The slightly larger range of the
-/// sensors is not published.
+/// Returns the readings of the joint torques relative to the nominal limits. The slightly larger
+/// range of the sensors is not published.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque;
     evidence
@@ -83,7 +83,7 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// The largest mechanical power of the joints.
+/// Returns the finding for the largest mechanical power of the joints.
 pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     let powers = evidence.states().map(|state| {
         let power = JointVector::from(state.tau_J)
@@ -103,8 +103,8 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     ))
 }
 
-/// The two bodies of the arm that are closest to each other at the endaccording to the vendor's
-/// capsules. Only bodies three links or more apart count.
+/// Returns the two bodies of the arm that are closest to each other at the end of the motion,
+/// according to the vendor's capsules. Only bodies that are three or more links apart count.
 pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     let state = evidence.last()?;
     let arm = Shape::vendor().with_lengths(*evidence.model.lengths());
@@ -130,7 +130,7 @@ pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// The largest distance between the measured and the desired end effector.
+/// Returns the finding for the largest distance between the measured and the desired end effector.
 pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
     let deviations = evidence.states().map(|state| {
         let shift = |i: usize| state.O_T_EE[12 + i] - state.O_T_EE_d[12 + i];
@@ -143,7 +143,7 @@ pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Fi
         .then(|| unbounded(error, subject, Quantity::Deviation, shift.norm(), since))
 }
 
-/// The joint with the most sign changes of its velocity, if there are at least two.
+/// Returns the joint whose velocity changes its sign most often, if it does so at least twice.
 pub(super) fn shaking(evidence: &Evidence<'_>) -> Option<Finding> {
     let reversals = |i: usize| {
         let mut side = 0.0;
@@ -190,10 +190,10 @@ fn unbounded(
     }
 }
 
-/// Distance, `[m]`, above which two bodies do not explain a stop. Robots are known to stop before
+/// Distance above which two bodies do not explain a stop, `[m]`. Robots are known to stop before
 /// contact, but the distance is not published.
 const NEAR: f64 = 0.1;
 
-/// Velocity below which a joint is at rest, `[rad/s]`: several times the measured velocity of an
-/// arm at rest.
+/// Velocity below which a joint is at rest, `[rad/s]`. It is several times the velocity that the
+/// sensors of an arm at rest report.
 const STILL: f64 = 0.02;

@@ -1,4 +1,4 @@
-//! Poses that make a motion difficult.
+//! Poses in which a motion is difficult.
 
 use franka_model::{Frame, JointVector, elbow};
 use franka_proto::RobotState;
@@ -8,12 +8,13 @@ use super::commanded::end_effector;
 use super::evidence::Evidence;
 use super::finding::{Finding, Origin, Quantity, Subject};
 
-/// The singularity near the last desired pose of a Cartesian motion, if any.
+/// Returns the singularity near the last desired pose of a Cartesian motion, if any.
 pub(super) fn singularity(evidence: &Evidence<'_>) -> Option<Cause> {
     evidence.is_cartesian().then(|| singular_pose(evidence))?
 }
 
-/// The singularity near the last desired pose, if any. There, small torques look like large forces.
+/// Returns the singularity near the last desired pose, if any. Near a singularity, small torques
+/// look like large forces.
 pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     let state = evidence.last_running()?;
     let q = JointVector::from(state.q_d);
@@ -31,7 +32,7 @@ pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     })
 }
 
-/// The position limit towards which the joint of a finding moves, if the limit is near.
+/// Returns the position limit towards which the finding's joint moves, if this limit is near.
 pub(super) fn limit(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let Subject::Joint(joint) = finding.subject else {
         return None;
@@ -72,8 +73,8 @@ fn position(state: &RobotState, origin: Origin) -> JointVector {
     .into()
 }
 
-/// Smallest singular value below which a pose counts as singular. Ordinary poses have 0.14 or more.
+/// Singular value below which a pose counts as singular. Ordinary poses have 0.14 or more.
 const SINGULAR: f64 = 0.1;
 
-/// Remaining distance, `[rad]`, below which a joint is near the end of its range.
+/// Distance below which a joint is near the end of its range, `[rad]`.
 const NEAR: f64 = 0.05;

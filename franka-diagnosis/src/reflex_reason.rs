@@ -1,5 +1,5 @@
-//! Derives the reason of a reflex: from errors to a finding, from a finding to its causes, from
-//! causes to advice.
+//! Derives the reason for a reflex: a finding from the errors, causes from the finding, and advice
+//! from the causes.
 
 use core::time::Duration;
 
@@ -13,7 +13,7 @@ use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::{command_steps, contact, lost_cycles, measured, posture};
 
-/// Category of an error, by its subject.
+/// Category of an error by subject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Category {
     /// Missing commands.
@@ -22,19 +22,19 @@ enum Category {
     Start,
     /// The client's commands.
     Command,
-    /// The joint positions of a Cartesian command.
+    /// The joint positions that result from a Cartesian command.
     Inverse,
     /// Contacts of the arm.
     Contact,
     /// The motion of the arm.
     Arm,
-    /// Settings known only to Desk or the robot's own controllers.
+    /// Settings that only Desk or the robot's own controllers know.
     Desk,
 }
 
-/// Every error, ordered by how much it explains, the most explanatory first. A missing command
-/// comes before the jump that it causes, and a command before the arm's motion. Acceleration comes
-/// before jerk, jerk before velocity, and a contact before the motion that it causes.
+/// Every error, sorted so that an error precedes the errors that it causes. A missing command comes
+/// before the jump that it causes, and a command comes before the arm's motion. Acceleration comes
+/// before jerk, and jerk before velocity. A contact comes before the motion that it causes.
 const ORDER: [(E, Category); 41] = [
     (E::CommunicationConstraintsViolation, Category::Link),
     (
@@ -141,8 +141,8 @@ fn category(error: E) -> Category {
     known.map_or(Category::Desk, |&(_, category)| category)
 }
 
-/// Returns the error that explains the other errors, and its evidence in the log: the first error
-/// with evidence, or otherwise the first error.
+/// Returns the error that explains the other errors, and its evidence in the log. This is the first
+/// error with evidence, or the first error if no error has evidence.
 pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
     let named = || {
         ORDER
@@ -179,7 +179,7 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         | E::CartesianMotionGeneratorStartElbowInvalid
         | E::StartElbowSignInconsistent => command_steps::start_offset(evidence, error),
         E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
-        // The meaning of the error depends on the command: for a velocity command, the acceleration
+        // The meaning of the error depends on the command. For a velocity command, the acceleration
         // is the first difference.
         E::JointMotionGeneratorVelocityDiscontinuity
         | E::JointMotionGeneratorAccelerationDiscontinuity => {
@@ -225,12 +225,12 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     }
 }
 
-/// Returns the finding only if its limit is exceeded, and not if the value is just below the limit.
+/// Returns the finding only if its limit is exceeded. A value just below the limit does not count.
 fn beyond(finding: Option<Finding>) -> Option<Finding> {
     finding.filter(|finding| finding.excess().is_some_and(|excess| excess > 0.0))
 }
 
-/// Returns the causes of an error, the most likely first.
+/// Returns the causes of an error, most likely first.
 pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding>) -> Vec<Cause> {
     let mut causes = Vec::new();
     let subject = finding.map(|finding| finding.subject);
@@ -247,8 +247,8 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence);
             // A command that left too late did not reach the robot in time either. If the thread
-            // does not read states, it loses them. If all states arrived, but late, the network
-            // may have delayed them.
+            // does not read states, it loses them. If all states arrived, but some were late, the
+            // network may have delayed them.
             let turnaround = evidence.statistics.map(|counts| counts.worst_turnaround);
             let turnaround = turnaround.unwrap_or_default();
             let by_host = match lost {
@@ -304,9 +304,8 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// Returns at most two recommended changes. They are derived from the causes. If the causes give no
-/// advice, or if the error is about the arm's motion, they are derived from the error and its
-/// finding.
+/// Returns at most two recommended changes, derived from the causes. If the causes give no advice,
+/// or if the error is about the arm's motion, the advice follows from the error and its finding.
 pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
     let of_arm = category(error) == Category::Arm;
     // Commands that left too late did not reach the robot in time.
@@ -329,7 +328,7 @@ pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> V
         Cause::Limit { .. } => Advice::StayInRange,
     });
     let by_error = match finding.map(|finding| finding.quantity) {
-        // Jumping commands are among the causes.
+        // One of the causes is a command that jumps.
         Some(Quantity::Velocity | Quantity::Acceleration) if by_error(error) == Advice::Smooth => {
             Advice::SlowDown
         }

@@ -14,12 +14,12 @@ pub struct Sample {
     /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
     /// Commanded joint positions, `[rad]`: the reference of target control, or the output of a
-    /// control function. `None` if the client did not control the joints.
+    /// control function. `None` if this cycle commanded no positions.
     pub q_ref: Option<[f64; 7]>,
     /// Measured pose of the end effector in the base frame (`O_T_EE`), `[m]`.
     pub pose: Isometry3<f64>,
-    /// Commanded pose of the end effector in the base frame, `[m]`; `None` if the client did not
-    /// control the joints.
+    /// Commanded pose of the end effector in the base frame, `[m]`; `None` if this cycle commanded
+    /// no positions.
     pub pose_ref: Option<Isometry3<f64>>,
     /// Distance between the fingers, `[m]`; `None` before the first gripper state.
     pub width: Option<f64>,
