@@ -93,7 +93,7 @@ pub(super) fn collision(
 }
 
 /// Returns the contact at the end of the motion. If `of` has a contact, this is its contact.
-/// Otherwise it is the contact that is strongest relative to the torque of its joint.
+/// Otherwise it is the strongest contact of a joint, or of an axis if no joint has a contact.
 pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
     let state = evidence.last()?;
     let named = of.and_then(|subject| {

@@ -1,4 +1,4 @@
-//! Processes cycles and events one after the other.
+//! Processes cycles and events in sequence.
 
 use core::mem;
 use std::collections::VecDeque;
@@ -22,13 +22,14 @@ pub struct Explainer<'a> {
     model: &'a Model,
     /// Data since the last start of the robot.
     run: Run,
-    /// The newest earlier run in which a motion ended.
+    /// The newest earlier run in which a motion ended; `None` if no motion ended before.
     before: Option<Run>,
     /// Number of motions that ended.
     ends: u64,
 }
 
-/// The data since one start of the robot. The robot's clock does not restart within a run.
+/// Data of one run, which starts when the robot starts. The robot's clock does not restart within a
+/// run.
 #[derive(Clone, Debug, Default)]
 struct Run {
     tare: Tare,
@@ -44,12 +45,12 @@ struct Run {
     ended: Option<Ended>,
     first: Option<u64>,
     last: u64,
-    /// Time at which the newest cycle arrived, if known.
+    /// Time at which this host received the newest cycle, if known.
     received: Option<HostTime>,
-    /// Goals that have begun and not ended, oldest first. The flag is true for goals that consist
+    /// Goals that have begun but not ended, oldest first. The flag is true for a goal that consists
     /// of chunks.
     open: Vec<(u64, bool)>,
-    /// Text of the last ended goal, if it failed.
+    /// Result text of the goal that ended last, if it failed.
     failed: Option<String>,
     cycles: u64,
     has_hand: bool,
@@ -64,7 +65,7 @@ struct Told {
     text: String,
 }
 
-/// The newest end of a motion, by the robot, a guard or a lost link.
+/// The newest end of a motion that the robot stopped, a guard aborted or a lost link ended.
 #[derive(Clone, Debug)]
 struct Ended {
     time: u64,
@@ -74,13 +75,13 @@ struct Ended {
     text: String,
     window: VecDeque<Trace>,
     tared: f64,
-    /// Distances from the limits until the arm was at rest.
+    /// Distances to the limits until the arm came to a stop.
     margins: Margins,
     peaks: Peaks,
 }
 
 impl<'a> Explainer<'a> {
-    /// Creates an explainer for cycles of a robot of this model.
+    /// Creates an explainer for the cycles of a robot with this model.
     pub fn new(model: &'a Model) -> Self {
         Self {
             model,
@@ -90,19 +91,19 @@ impl<'a> Explainer<'a> {
         }
     }
 
-    /// Processes the next cycle. A cycle with the same robot time as the last cycle is ignored. An
-    /// earlier robot time means that the robot was restarted.
+    /// Processes the next cycle. Ignores the cycle if its robot time equals the robot time of the
+    /// last cycle. If its robot time is earlier, the robot was restarted.
     pub fn push(&mut self, cycle: &Cycle) {
         self.take(Some(cycle.time), &cycle.state, Some(&cycle.record));
     }
 
-    /// Processes a state without further data, like [`Self::push`].
+    /// Processes a state without a driver record, like [`Self::push`].
     pub fn push_state(&mut self, state: &RobotState) {
         self.take(None, state, None);
     }
 
-    /// Processes an event that came after the cycles so far. Pass goals, outcomes, notes and
-    /// diagnoses. The explainer finds changes of mode and errors in the cycles.
+    /// Processes an event that occurred after the cycles so far. Pass goals, outcomes, notes and
+    /// diagnoses. The explainer itself finds changes of the mode and the errors in the cycles.
     pub fn push_event(&mut self, event: &Event) {
         self.ends += u64::from(self.run.event(event));
     }
@@ -147,7 +148,7 @@ impl Run {
         self.timeline.add(self.last, MomentKind::Note, text);
     }
 
-    /// Processes an event; returns true if it reports the end of a motion.
+    /// Processes an event. Returns true if the event reports the end of a motion.
     fn event(&mut self, event: &Event) -> bool {
         if let EventKind::Diagnosis(diagnosis) = &event.kind {
             self.diagnosis = Some(Told {
@@ -157,12 +158,13 @@ impl Run {
             });
         }
         self.timeline.event(event, self.first.unwrap_or_default());
-        // One loss of the link ends several goals, later requests included. The first end counts.
+        // If the link is lost, several goals end, including later requests. Only the first end
+        // counts.
         let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
             EventKind::Goal(goal) if goal.number > 0 => {
                 let is_chunk = goal.kind == "chunk";
-                // The goal of the first chunk stands for all later chunks.
+                // The goal of the first chunk represents all later chunks.
                 if !(is_chunk && self.open.iter().any(|(_, is_chunk)| *is_chunk)) {
                     self.open.retain(|(open, _)| *open != goal.number);
                     self.open.push((goal.number, is_chunk));
@@ -173,7 +175,7 @@ impl Run {
                 self.open.retain(|(open, _)| *open != outcome.goal);
                 let failed = outcome.ending == Ending::Failed;
                 self.failed = failed.then(|| outcome.text.clone());
-                // Ends caused by the robot are detected in the cycles.
+                // The cycles already show ends that the robot caused.
                 if outcome.ending == Ending::Reflex || !outcome.ending.is_incident() || is_told {
                     return false;
                 }
@@ -191,8 +193,8 @@ impl Run {
         }
     }
 
-    /// Processes a state that is newer than the last state. Returns true if it shows the end of a
-    /// motion.
+    /// Processes a state that is newer than the last state. Returns true if the state shows the end
+    /// of a motion.
     fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) -> bool {
         let time = state.message_id;
         let lost = match self.first {
@@ -235,7 +237,7 @@ impl Run {
             self.window.pop_front();
         }
         let errors = state.reflex_reason;
-        // If the first cycle already shows an error, this error ended an earlier motion.
+        // An error that the first cycle already shows ended an earlier motion.
         let before = self.reflex_reason.replace(errors).unwrap_or(errors);
         let ended = errors != before && !errors.is_empty();
         if ended {
@@ -355,8 +357,8 @@ fn read(_: &str) -> Option<Diagnosis> {
     None
 }
 
-/// Time before the end for which data is kept, `[ms]`.
+/// Length of the period before the end for which data is kept, `[ms]`.
 const SPAN: u64 = 1000;
 
-/// Mass, `[kg]`, below which the flange counts as empty. Above this mass, a Hand is assumed.
+/// Mass below which the flange counts as empty, `[kg]`. Above this mass, a Hand is assumed.
 const BARE: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! Figure of the last second before the end, as an SVG image.
+//! SVG figure of the last second before the end.
 
 use svg::node::element::path::Data;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
@@ -8,18 +8,18 @@ use super::polyline::thinned;
 use super::report::NO_END;
 use super::{Explanation, MomentKind, Trace, sketch};
 
-/// Position and range of values of a panel in the figure.
+/// Position of a panel in the figure, and the range of its values.
 struct Panel {
     top: f64,
     height: f64,
-    /// Values at the lower and upper edge of the panel.
+    /// Values at the lower and the upper edge of the panel.
     low: f64,
     high: f64,
     /// Milliseconds before the end at the left edge of the panel.
     span: f64,
 }
 
-/// One curve: a number per cycle.
+/// A curve: a function that returns one number per cycle.
 type Curve<'a> = &'a dyn Fn(&Trace) -> f64;
 
 pub(super) fn draw(explanation: &Explanation) -> String {
@@ -123,7 +123,7 @@ impl Panel {
         group
     }
 
-    /// Returns the points of a curve, split at missing states.
+    /// Returns the points of a curve as separate runs, with a gap where states are missing.
     fn runs(&self, explanation: &Explanation, of: Curve<'_>) -> Vec<Vec<(f64, f64)>> {
         let mut runs = vec![Vec::new()];
         for trace in &explanation.last_second {
@@ -299,16 +299,16 @@ const CURVES: f64 = 660.0;
 const PANEL: f64 = 120.0;
 const GAP: f64 = 28.0;
 
-/// Largest error of a drawn curve, in pixels; too small to see.
+/// Largest deviation of a drawn curve, in pixels. It is too small to see.
 const TOLERANCE: f64 = 0.2;
 
 const SKETCH_LEFT: f64 = 770.0;
 const SKETCH_SIZE: f64 = 220.0;
 
-/// Colour of text and lines: halfway between white and black.
+/// Colour of text and lines, halfway between white and black.
 pub(super) const INK: &str = "#808080";
 
-/// Colours of the joints: after Okabe and Ito, of medium brightness.
+/// Colours of the joints, after Okabe and Ito, with medium brightness.
 const COLORS: [&str; 7] = [
     "#0b84d8", "#d9660a", "#12a37a", "#cc6fa5", "#8b74e8", "#a98b00", "#d64550",
 ];

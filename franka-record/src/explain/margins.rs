@@ -1,47 +1,51 @@
-//! The smallest distance from each limit, and the largest values.
+//! The smallest distance to each limit, and the largest values.
 
 use franka_model::limits::CartesianLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model};
 use franka_proto::RobotState;
 use franka_rt::driver::Record;
 
-/// A value and its distance from its limit.
+/// A value, its limit, and the distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Approach {
-    /// The joint, 1 to 7; `None` for the end effector.
+    /// Number of the joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
-    /// Measured value.
+    /// The measured value.
     pub value: f64,
-    /// Limit at this moment, on the side of the value.
+    /// The limit at this moment, on the same side as the value.
     pub limit: f64,
-    /// Distance from the value to the limit; negative beyond the limit.
+    /// Distance from the value to the limit; negative if the limit is exceeded.
     pub margin: f64,
     /// Time on the robot's clock, `[ms]`.
     pub time: u64,
 }
 
-/// Smallest distances from the limits; `None` before any cycle.
+/// Smallest distances to the limits; each is `None` before the first cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margins {
-    /// Joint position nearest to an end of its range, relative to the range, `[rad]`.
+    /// The joint position with the smallest distance to an end of its range, compared as a share of
+    /// the range; `[rad]`.
     pub position: Option<Approach>,
-    /// Joint velocity nearest to its limit at that position, relative to the limit, `[rad/s]`.
+    /// The joint velocity with the smallest distance to its limit at that joint position, compared
+    /// as a share of the limit; `[rad/s]`.
     pub velocity: Option<Approach>,
-    /// Joint torque nearest to its limit, relative to the limit, gravity included, `[N·m]`.
+    /// The joint torque, including gravity, with the smallest distance to its limit, compared as a
+    /// share of the limit; `[N·m]`.
     pub torque: Option<Approach>,
-    /// Velocity of the end effector, and the limit of Cartesian commands, `[m/s]`.
+    /// The velocity of the end effector that was closest to the limit of Cartesian commands,
+    /// `[m/s]`.
     pub translation: Option<Approach>,
-    /// Angular velocity of the end effector, and its limit, `[rad/s]`.
+    /// The angular velocity of the end effector that was closest to its limit, `[rad/s]`.
     pub rotation: Option<Approach>,
 }
 
-/// A largest value, and its time.
+/// The largest value of a quantity, and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
-    /// The joint, 1 to 7; `None` for the end effector.
+    /// Number of the joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
     /// Magnitude of the value.
     pub value: f64,
@@ -49,15 +53,16 @@ pub struct Peak {
     pub time: u64,
 }
 
-/// Largest values of some quantities; `None` without data.
+/// Largest values of several quantities; each is `None` without data.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
-    /// External torque of a joint, minus its baseline without contact, `[N·m]`.
+    /// External torque on a joint, minus the baseline without contact, `[N·m]`.
     pub external_torque: Option<Peak>,
-    /// Norm of the robot's estimate of the external force at the end effector, `[N]`.
+    /// Norm of the estimated external force at the end effector, `[N]`. The robot computes the
+    /// estimate.
     pub force: Option<Peak>,
-    /// Distance of a joint from its reference position in target control, `[rad]`.
+    /// Distance of a joint from its reference position during target control, `[rad]`.
     pub following_error: Option<Peak>,
 }
 
@@ -144,7 +149,7 @@ impl Peaks {
     }
 }
 
-/// Returns linear and angular speed of the end effector, `[m/s]`, `[rad/s]`.
+/// Returns the linear speed, `[m/s]`, and the angular speed, `[rad/s]`, of the end effector.
 fn speeds(model: &Model, state: &RobotState) -> (f64, f64) {
     let ee = EndEffector {
         f_t_ee: nalgebra::Matrix4::from_column_slice(&state.F_T_EE),
@@ -164,7 +169,7 @@ fn range_of(model: &Model, approach: &Approach) -> Option<f64> {
     Some(limits.upper[i] - limits.lower[i])
 }
 
-/// Returns the share of the limit that is left.
+/// Returns the remaining share of the limit.
 fn share(approach: &Approach) -> f64 {
     approach.margin / approach.limit.abs().max(f64::MIN_POSITIVE)
 }

@@ -1,4 +1,4 @@
-//! Explains the end of a motion from a series of cycles, or from the log of an error.
+//! Explains why a motion ended, from a series of cycles or from the log of an error.
 //!
 //! ```text
 //! cycles ──> Explainer ──> timeline, margins, peaks, losses, the last second
@@ -17,10 +17,11 @@
 //! | `report` | the text |
 //! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
-//! The module explains the last motion that the robot stopped, that a guard aborted, or that a lost
-//! link ended. Without such a motion, it explains the time up to the newest cycle. After a restart,
-//! the robot's time starts again. The explanation then covers the newest run in which such a motion
-//! ended, or else the newest run. Memory is bounded, regardless of the number of cycles.
+//! The module explains the last motion that the robot stopped, a guard aborted, or a lost link
+//! ended. Without such a motion, it explains the time up to the newest cycle. The robot's clock
+//! starts again when the robot restarts. The module then explains the newest run in which such a
+//! motion ended, or the newest run if no run has such a motion. The memory use is bounded,
+//! regardless of the number of cycles.
 //!
 //! # Example
 //!
@@ -66,17 +67,17 @@ pub use margins::{Approach, Margins, Peak, Peaks};
 pub use place::{Place, Placed};
 pub use timeline::{Moment, MomentKind};
 
-/// Explanation of a series of cycles. `Display` gives a report of one page.
+/// Explanation of a series of cycles. The `Display` implementation writes a report of one page.
 ///
-/// Times are on the robot's clock, `[ms]`: the `message_id` of states.
+/// All times are on the robot's clock, in milliseconds. They are the `message_id` of states.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Explanation {
     /// Kind of the robot.
     pub robot: RobotKind,
-    /// Reason why the limits are constants and not from the robot's description; `None` if
-    /// they are the robot's own.
+    /// Reason why constants replace the limits of the robot's description; `None` if the limits
+    /// come from the description.
     pub fallback: Option<ModelFallback>,
     /// Time of the first cycle.
     pub first: u64,
@@ -84,23 +85,24 @@ pub struct Explanation {
     pub last: u64,
     /// Number of cycles.
     pub cycles: u64,
-    /// Time of the cycle that shows the end of the explained motion. This is the last motion that
-    /// the robot stopped, a guard aborted or a lost link ended. For a guard, it is the cycle in
-    /// which the arm was at rest. Without such an end, it is the last cycle.
+    /// Time of the cycle that shows the end of the explained motion, which is the last motion that
+    /// the robot stopped, a guard aborted or a lost link ended. If a guard aborted the motion, this
+    /// is the cycle in which the arm came to a stop. Without such a motion, this is the last cycle.
     pub end: u64,
-    /// Time at which this host received the cycle at [`end`](Self::end); `None` if unknown, as in a
-    /// log.
+    /// Time at which this host received the cycle at [`end`](Self::end); `None` if the source has
+    /// no such time. A log has none.
     pub received: Option<HostTime>,
-    /// Number of the newest goal without a recorded end, if no motion ended.
+    /// Number of the newest goal whose end was not recorded, if no motion ended.
     pub under_way: Option<u64>,
-    /// Text of the last goal if it failed without a reflex, for example after a user stop or at an
-    /// obstacle; `None` if it did not fail.
+    /// Result text of the last goal, if the goal failed without a reflex, for example after a user
+    /// stop or at an obstacle.
     pub failed: Option<String>,
-    /// Number of motions that ended earlier in the same way: by the robot, a guard or a lost link.
+    /// Number of earlier motions that the robot stopped, a guard aborted or a lost link ended.
     pub earlier: u64,
-    /// Reason for the end of the explained motion; `None` if no motion ended.
+    /// Reason why the explained motion ended; `None` if no motion ended.
     pub cause: Option<Cause>,
-    /// Changes up to half a second after the end, oldest first, at most [`MOMENTS_MAX`].
+    /// Changes up to half a second after the end, oldest first. The timeline contains at most
+    /// [`MOMENTS_MAX`] changes.
     pub timeline: Vec<Moment>,
     /// Number of changes for which the timeline had no space.
     pub moments_left_out: u64,
@@ -108,9 +110,9 @@ pub struct Explanation {
     pub margins: Margins,
     /// Largest values, up to half a second after the end.
     pub peaks: Peaks,
-    /// Contact at the end of the motion; `None` without cycles.
+    /// The contact at the end of the motion; `None` without cycles.
     pub contact: Option<Place>,
-    /// Lost states.
+    /// States that were lost.
     pub lost: Lost,
     /// Commands that left after the next state was due.
     pub late: Late,
@@ -118,16 +120,16 @@ pub struct Explanation {
     pub last_second: Vec<Trace>,
 }
 
-/// Reason for the end of a motion.
+/// Reason why a motion ended.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cause {
-    /// Errors that the robot named; empty if a guard or a lost link ended the motion.
+    /// Errors that the robot reported; empty if a guard or a lost link ended the motion.
     pub errors: Errors,
     /// The exceeded limit and its causes. `None` if the commands of the motion are unknown, for
-    /// example in a recording without a diagnosis event.
+    /// example if a recording contains no diagnosis event.
     pub diagnosis: Option<Diagnosis>,
-    /// The diagnosis as text, or the other known facts.
+    /// The diagnosis as text. Without a diagnosis, the other known facts.
     pub text: String,
 }
 
@@ -139,22 +141,22 @@ pub struct Lost {
     pub states: u64,
     /// Largest number of consecutive lost states.
     pub most_in_a_row: u64,
-    /// Time of the cycle before the longest series of lost states.
+    /// Time of the cycle before the longest run of lost states.
     pub most_at: u64,
     /// Number of lost states in the last second before the end.
     pub in_last_second: u64,
 }
 
-/// Commands that left this computer too late. The times are known in recordings of a robot, but not
-/// in logs and not under active control.
+/// Commands that left this computer too late. Their times are known only in recordings of a robot,
+/// but not in logs and not under active control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Late {
     /// Number of late commands.
     pub commands: u64,
-    /// Largest delay of a command, from the time at which the next state was due.
+    /// Largest delay of a command, measured from the time at which the next state was due.
     pub most: Duration,
-    /// Time of the state that the most delayed command answered.
+    /// Time of the state that the command with the largest delay answered.
     pub at: u64,
     /// Time from the arrival of this state to the departure of its command.
     pub turnaround: Duration,
@@ -170,20 +172,21 @@ pub struct Trace {
     pub lost: u64,
     /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
-    /// Joint velocity divided by the limit in its direction, -1 to 1.
+    /// Joint velocity divided by the limit in its direction, in `[-1, 1]`.
     pub speed: [f64; 7],
-    /// Torque of the environment on each joint, minus its baseline without contact, `[N·m]`.
+    /// Torque that the environment exerts on each joint, minus the baseline without contact,
+    /// `[N·m]`.
     pub external: [f64; 7],
-    /// Joint torque divided by its limit, -1 to 1.
+    /// Joint torque divided by its limit, in `[-1, 1]`.
     pub torque: [f64; 7],
     /// Largest measured joint velocity, `[rad/s]`.
     pub fastest: f64,
-    /// Norm of the robot's estimate of the force at the stiffness frame, `[N]`.
+    /// Norm of the estimated force at the stiffness frame, `[N]`. The robot computes the estimate.
     pub force: f64,
 }
 
 impl Explanation {
-    /// Explains cycles and events, each oldest first.
+    /// Explains cycles and events. Both must be sorted by time, oldest first.
     pub fn of(
         cycles: impl IntoIterator<Item = Cycle>,
         events: impl IntoIterator<Item = Event>,
@@ -193,8 +196,8 @@ impl Explanation {
         Self::of_readable(cycles, events.into_iter().map(Ok), model)
     }
 
-    /// Explains one robot of a recording, or a part of its time, with its
-    /// [model](RobotRecording::model). Unreadable data is skipped and noted in the timeline.
+    /// Explains the recording of one robot, or a time range of it, with its
+    /// [model](RobotRecording::model). Unreadable data is skipped and mentioned in the timeline.
     pub fn of_recording(recording: &RobotRecording<'_>, model: &RecordedModel) -> Self {
         let RecordedModel { model, fallback } = model;
         Self {
@@ -235,12 +238,12 @@ impl Explanation {
         explainer.finish()
     }
 
-    /// Explains an error from its log, which contains the last cycles of the motion.
+    /// Explains an error from its log. The log contains the last cycles of the motion.
     pub fn of_error(error: &ControlError) -> Self {
         Self::of_case(&Case::from(error), &error.model)
     }
 
-    /// Explains a saved log. The result always has a cause, even if the log does not show it.
+    /// Explains a saved log. The result always contains a cause, even if the log does not show one.
     pub fn of_case(case: &Case, model: &Model) -> Self {
         let mut explainer = Explainer::new(model);
         for entry in case.log.iter() {
@@ -260,9 +263,9 @@ impl Explanation {
         }
     }
 
-    /// Explains a log of libfranka. Without errors in the file, it explains the table, and reports
-    /// that the errors are missing. [`Model::fr3`] counts as a fallback, because a log has no
-    /// description.
+    /// Explains a log of libfranka. If the file does not name the errors, the explanation covers
+    /// the table and reports that the errors are missing. The constants of [`Model::fr3`] count as
+    /// a fallback, because a log contains no description of the robot.
     pub fn of_control_log(file: &ControlLogFile, model: &Model) -> Self {
         let case = file.case();
         let mut explanation = Self::of_case(&case, model);
@@ -283,16 +286,17 @@ impl Explanation {
         explanation
     }
 
-    /// Returns an SVG image of the last second before the end. It shows contact torques, velocities
-    /// and torques relative to their limits, the events, and the place of the contact on the arm.
+    /// Returns the last second before the end as an SVG image. The image shows contact torques,
+    /// velocities and torques relative to their limits, events, and the place of the contact on the
+    /// arm.
     ///
-    /// The image has no background, and its colours are easy to distinguish on white and on black.
+    /// The image has no background. Its colours are easy to distinguish on white and on black.
     pub fn figure(&self) -> String {
         figure::draw(self)
     }
 }
 
-/// Text of the cause for a table without the text of the exception.
+/// Text of the cause if the file contains a table but no exception text.
 const UNNAMED: &str = "the file does not name the errors: paste the text of the exception, which \
     names them, into the file";
 

@@ -6,49 +6,49 @@ use franka_model::{JointVector, Model};
 
 use super::Trace;
 
-/// Place and time of a contact, or the reason why it is unknown.
+/// Place and time of a contact. If the place is unknown, the reason.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Place {
-    /// Time of the cycle whose torques were evaluated: the cycle with the strongest torques of the
-    /// last 100 ms.
+    /// Time of the cycle whose torques were evaluated. It is the cycle with the largest torques in
+    /// the last 100 ms.
     pub time: u64,
     /// Joint positions at that time, `[rad]`.
     pub q: [f64; 7],
     /// External torques on the arm at that time, minus their baseline without contact, `[N·m]`.
     pub torque: [f64; 7],
-    /// Time over which the baseline was learned, `[s]`. If it is short, the estimate includes
-    /// torques that are measured without a contact.
+    /// Time over which the baseline was learned, `[s]`. If this time is short, the estimate
+    /// includes torques that the sensors report without a contact.
     pub tared: f64,
-    /// True if the estimate assumed a Hand on the flange.
+    /// True if the estimate assumes a Hand on the flange.
     pub has_hand: bool,
-    /// True if the robot itself detected a contact or collision in the last 100 ms, or since the
-    /// end. If false, and if no motion was stopped, the arm was probably not touched, and the
-    /// estimate has no meaning.
+    /// True if the robot itself detected a contact or a collision in the last 100 ms or after the
+    /// end. If it did not, and no motion was stopped, the arm was probably not touched, and the
+    /// estimate is meaningless.
     pub noticed: bool,
-    /// Contact, if the torques determine it.
+    /// The contact; `None` if the torques do not determine it.
     pub contact: Option<Placed>,
     /// Reason why the touched body is uncertain or unknown; `None` if it is known.
     pub unknown: Option<String>,
 }
 
-/// A contact in the base frame; see [`franka_model::contact`].
+/// A contact in the base frame (see [`franka_model::contact`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Placed {
     /// The touched link, or the tool.
     pub body: Body,
-    /// Position, `[m]`.
+    /// Position of the contact, `[m]`.
     pub point: [f64; 3],
-    /// Force on the arm, `[N]`, in base axes.
+    /// Force on the arm in base axes, `[N]`.
     pub force: [f64; 3],
-    /// Spread of the points that explain the torques equally well, `[m]`.
+    /// Size of the region whose points explain the torques equally well, `[m]`.
     pub spread: f64,
     /// Torques that the contact does not explain, `[N·m]`.
     pub residual: [f64; 7],
-    /// Probability that the contact is on this body, 0 to 1.
+    /// Probability that the contact is on this body, in `[0, 1]`.
     pub probability: f64,
-    /// The second most probable body, and its probability.
+    /// The second most probable body and its probability.
     pub next: Option<(Body, f64)>,
 }
 
@@ -73,7 +73,7 @@ impl Placed {
     }
 }
 
-/// Returns the shape of the arm used in the estimate.
+/// Returns the shape of the arm that the estimate uses.
 pub(super) fn shape(model: &Model, has_hand: bool) -> Shape<'static> {
     let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     if has_hand { shape.with_hand() } else { shape }
@@ -123,7 +123,7 @@ pub(super) fn of(
     })
 }
 
-/// Returns the partial result, and the reason why it is partial.
+/// Returns the partial result and the reason why the result is partial.
 fn said(unknown: Unknown) -> (Option<Placed>, String) {
     match unknown {
         Unknown::Weak { .. } => (
@@ -157,7 +157,7 @@ fn said(unknown: Unknown) -> (Option<Placed>, String) {
     }
 }
 
-/// Returns `link 5`, or `the tool`.
+/// Returns the name of a body, such as `link 5` or `the tool`.
 pub(super) fn name(body: Body) -> String {
     match body {
         Body::Link(link) => format!("link {link}"),
@@ -165,8 +165,8 @@ pub(super) fn name(body: Body) -> String {
     }
 }
 
-/// Time before the end in which a contact is sought, `[ms]`.
+/// Period before the end in which the contact is searched, `[ms]`.
 const NEAR_END: u64 = 100;
 
-/// Joint velocity above which friction is sliding friction, `[rad/s]`.
+/// Joint velocity above which the friction is sliding friction, `[rad/s]`.
 const STILL: f64 = 0.02;

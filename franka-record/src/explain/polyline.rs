@@ -1,8 +1,8 @@
-//! Simplifies lines through many points.
+//! Reduces the number of points of a line.
 
-/// Returns a few of the points, in order. Straight lines between them pass every omitted point
-/// within `tolerance`. A single pass extends each line as long as one slope passes all points on
-/// it. `x` must increase.
+/// Returns some of the points, in order. The straight lines between them pass every omitted point
+/// within `tolerance`. The function makes a single pass, and extends each line as long as one slope
+/// fits all points on it. `x` must increase.
 pub(super) fn thinned(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     let Some(&first) = points.first() else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! An explanation as text.
+//! The text of an explanation.
 
 use core::fmt;
 use core::time::Duration;
@@ -66,7 +66,7 @@ impl fmt::Display for Explanation {
         }
         for moment in &self.timeline[shown..] {
             let before = self.end as i128 - i128::from(moment.time);
-            // A text of several lines stays one entry.
+            // A text of several lines becomes one line.
             let text = moment.text.replace('\n', " ");
             writeln!(f, "  {:>8}  {text}", -before)?;
         }
@@ -210,14 +210,14 @@ fn of(joint: Option<u8>) -> String {
     }
 }
 
-/// Text if no motion ended.
+/// Text for an explanation without the end of a motion.
 pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
 
-/// Text about limits without a description of the robot.
+/// Text for limits that do not come from a description of the robot.
 const CONSTANTS: &str = "limits are the constants for systems before 5.9";
 
 /// Largest number of moments in the report; older moments are omitted.
 const SHOWN: usize = 40;
 
-/// Time over which the baseline was learned, `[s]`, below which the report warns about it.
+/// Duration of baseline learning below which the report warns, `[s]`.
 const SHORT: f64 = 0.2;

@@ -1,4 +1,4 @@
-//! The arm from the side and from above, with the contact on it.
+//! The arm from the side and from above, with the place of the contact.
 
 use franka_model::JointVector;
 use franka_model::Model;
@@ -10,7 +10,7 @@ use svg::node::element::{Circle, Group, Line};
 use super::figure::{INK, line, text};
 use super::{Explanation, place};
 
-/// Direction of view: the coordinates that point right and up, with their signs.
+/// Direction of view: the signed coordinates that point right and up.
 struct View {
     name: &'static str,
     right: fn(&Vector3<f64>) -> f64,
@@ -44,7 +44,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
     for (i, view) in VIEWS.iter().enumerate() {
         let top = top + i as f64 * (size + 28.0);
         group.append(text(left, top - 5.0, view.name));
-        // Fits everything into the picture with one scale.
+        // Everything must fit into the picture at the same scale.
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for (_, capsule) in placed.capsules() {
@@ -70,7 +70,8 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
                 top + 0.5 * size - ((view.up)(p) - middle[1]) * scale,
             )
         };
-        // One group with one opacity, so that overlapping parts have the same colour.
+        // The parts form one group with one opacity, so that overlapping parts have the same
+        // colour.
         let mut arm = Group::new().set("opacity", 0.35);
         let mut hit = Group::new().set("opacity", 0.55);
         for (body, capsule) in placed.capsules() {

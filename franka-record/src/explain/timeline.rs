@@ -1,4 +1,4 @@
-//! The changes from cycle to cycle.
+//! Changes between consecutive cycles.
 
 use franka_proto::{Errors, RobotMode, RobotState};
 use franka_rt::driver::Record;
@@ -43,8 +43,8 @@ pub enum MomentKind {
     Note,
 }
 
-/// Records changes. A recurring condition is recorded when it appears, and again after an absence
-/// of [`PAUSE`].
+/// Collects changes. A recurring condition is recorded when it appears for the first time, and when
+/// it appears again after an absence of [`PAUSE`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
     moments: Vec<Moment>,
@@ -54,14 +54,14 @@ pub(super) struct Timeline {
     errors: Errors,
     reflex_reason: Errors,
     goal: u64,
-    /// Time at which each flag of joints, axes and guards was last set.
+    /// Time at which each joint's, axis's or guard's flag was last set.
     contacts: [Option<u64>; AXES],
     collisions: [Option<u64>; AXES],
     guards: [Option<u64>; Guard::ALL.len()],
     last_loss: Option<u64>,
-    /// True if events report the goals.
+    /// True if the events contain the goals.
     has_goals: bool,
-    /// Time of the newest end of a motion, and the moments until shortly after it.
+    /// Time of the newest end of a motion. `until_end` contains the moments until shortly after it.
     end: Option<u64>,
     until_end: Option<Vec<Moment>>,
 }
@@ -156,17 +156,17 @@ impl Timeline {
         }
     }
 
-    /// Records the end of a motion. Moments long after the end are then dropped.
+    /// Records the end of a motion. Moments long after the end are dropped from then on.
     pub(super) fn ended(&mut self, time: u64) {
         (self.end, self.until_end) = (Some(time), None);
     }
 
-    /// Processes an event of a run that begins with the cycle `first`.
+    /// Processes an event of a run whose first cycle is `first`.
     pub(super) fn event(&mut self, event: &Event, first: u64) {
         let kind = match &event.kind {
             EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
             EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
-            // The cycles show this, or another event reports it.
+            // The cycles or other events already report this change.
             EventKind::Mode { .. } | EventKind::Errors { .. } | EventKind::Diagnosis(_) => return,
             _ => MomentKind::Note,
         };
@@ -175,7 +175,7 @@ impl Timeline {
             let is_goal = |moment: &mut Moment| moment.kind == MomentKind::Goal;
             self.count -= self.moments.extract_if(.., is_goal).count() as u64;
         }
-        // The text does not otherwise name the goal that ended.
+        // The text of an outcome does not name the goal.
         let text = match &event.kind {
             EventKind::Goal(Goal { number, .. })
             | EventKind::Outcome(Outcome { goal: number, .. })
@@ -193,7 +193,7 @@ impl Timeline {
             self.until_end = Some(self.moments.clone());
         }
         self.count += 1;
-        // An event may be older than moments that are already recorded, so there is space for
+        // An event may be older than the newest moments, so the list keeps enough space for
         // sorting.
         if self.moments.len() >= 2 * MOMENTS_MAX {
             self.moments.remove(0);
@@ -201,7 +201,7 @@ impl Timeline {
         self.moments.push(Moment { time, kind, text });
     }
 
-    /// Returns the time when the robot last detected a contact or collision.
+    /// Returns the time at which the robot last detected a contact or a collision.
     pub(super) fn noticed(&self) -> Option<u64> {
         let flags = self.contacts.iter().chain(&self.collisions);
         flags.copied().flatten().max()
@@ -223,17 +223,17 @@ impl Timeline {
     }
 }
 
-/// True if a current condition was absent for a while, or never present.
+/// Returns true if the condition was never present before, or was absent for a while.
 fn appears(last: &mut Option<u64>, now: u64) -> bool {
     let before = last.replace(now);
     before.is_none_or(|before| now > before + PAUSE)
 }
 
-/// Time after the end of a motion in which events still belong to the motion, `[ms]`, because the
-/// arm brakes.
+/// Time after the end of a motion in which events still belong to the motion, `[ms]`. The arm
+/// brakes in this time.
 pub(super) const AFTER: u64 = 500;
 
-/// Absence after which a condition is recorded again, `[ms]`.
+/// Duration of an absence after which a condition is recorded again, `[ms]`.
 const PAUSE: u64 = 200;
 
 /// Number of flags: one per joint, and one per axis of the base at the stiffness frame.

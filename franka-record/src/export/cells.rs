@@ -1,14 +1,14 @@
-//! Selected columns of cycles, for tables of any format.
+//! Column selections for tables in any format.
 
 use franka_rt::driver::Column;
 
 use crate::cycle::Cycle;
 
-/// The columns of a table, which follow the time of each cycle.
+/// A selection of columns. The time of each cycle precedes these columns.
 #[derive(Clone, Debug)]
 pub struct Columns(pub(super) Vec<&'static Column>);
 
-/// Error: no column has this name.
+/// Error for a name that no column has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("got the column {got:?}, expected columns from {}", expected.join(", "))]
 pub struct UnknownColumn {
@@ -25,25 +25,27 @@ impl Columns {
     }
 
     /// Returns all columns of a [control log](crate::control_log). `q_ref`, `dq_ref` and `tau_c`
-    /// are the commands that answer a state. `O_T_EE_c` and `O_dP_EE_c` are the values commanded
-    /// before the state.
+    /// contain the command that answers the state. `O_T_EE_c` and `O_dP_EE_c` contain the values
+    /// that were commanded before the state.
     pub fn of_log() -> Self {
         let find = |name| Column::find(name).expect("a column of a cycle");
         Self(LOGGED.map(find).into())
     }
 
-    /// Returns the columns of a recording with these names, in this order, without repetitions.
+    /// Returns the columns of a recording that have these names, in the given order and without
+    /// repetitions.
     ///
     /// # Errors
-    /// [`UnknownColumn`] for the first name that no column of a recording has.
+    /// Returns [`UnknownColumn`] if a recording has no column with one of the names.
     pub fn named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, UnknownColumn> {
         Self::all().choose(names)
     }
 
-    /// Returns the columns of this selection with these names, in this order, without repetitions.
+    /// Returns the columns of this selection that have these names, in the given order and without
+    /// repetitions.
     ///
     /// # Errors
-    /// [`UnknownColumn`] for the first name that no selected column has.
+    /// Returns [`UnknownColumn`] if the selection has no column with one of the names.
     pub fn choose<'a>(
         &self,
         names: impl IntoIterator<Item = &'a str>,
@@ -63,7 +65,7 @@ impl Columns {
         Ok(Self(columns))
     }
 
-    /// Writes the numbers of a cycle into `row`, in place of its contents.
+    /// Replaces the contents of `row` with the numbers of a cycle.
     pub(super) fn read(&self, cycle: &Cycle, row: &mut Vec<f64>) {
         row.clear();
         for column in &self.0 {
@@ -99,7 +101,7 @@ const LOGGED: [&str; 12] = [
     "O_dP_EE_c",
 ];
 
-/// Fields of the state that are not recorded. They are zero after reading.
+/// Fields of the state that are not recorded and are zero after reading.
 const NOT_RECORDED: [&str; 13] = [
     "theta",
     "dtheta",
@@ -143,7 +145,7 @@ mod tests {
         }
         state.accelerometer_top = [[1.0; 3]; 6];
         state.accelerometer_bottom = [[1.0; 3]; 6];
-        // Derived from the other fields.
+        // These fields are derived from other fields.
         state.elbow = [0.0, 1.0];
         let mut message = franka::Cycle::default();
         message.set(&before);
@@ -154,7 +156,7 @@ mod tests {
             column.append(&after.state, &after.record, &mut got);
             let name = column.name;
             let is_recorded = Columns::named([name]).is_ok();
-            // Compares text, because NaN stands for missing values in both.
+            // The comparison uses text, because NaN represents missing values on both sides.
             let same = format!("{put:?}") == format!("{got:?}");
             assert_eq!(same, is_recorded, "{name}: {put:?}, {got:?}");
         }

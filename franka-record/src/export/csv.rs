@@ -9,15 +9,16 @@ use super::cells::{Columns, name_of};
 use super::error::ExportError;
 use crate::cycle::Cycle;
 
-/// Writes a line with the names of the columns, and one line for each cycle. Returns the number of
-/// cycles. The first columns are `time`, the robot's clock in milliseconds, and `host_time`,
-/// nanoseconds since 1970. A vector has a column for each number, `q[0]` to `q[6]`; a matrix is
-/// row-major. A missing number is left empty.
+/// Writes one line with the column names, and one line for each cycle. Returns the number of
+/// cycles. The first columns are `time` (the robot's clock in milliseconds) and `host_time`
+/// (nanoseconds since 1970). A vector has one column for each number, such as `q[0]` to `q[6]`. A
+/// matrix is row-major. A missing number is an empty cell.
 ///
-/// With `units`, a line before the names begins with `#` and contains the unit of each column.
+/// If `units` is true, the first line begins with `#` and contains the unit of each column.
 ///
 /// # Errors
-/// [`ExportError::Write`], or [`ExportError::Cycles`] with the error of `cycles`.
+/// Returns [`ExportError::Write`] if the output cannot be written, and [`ExportError::Cycles`] if
+/// `cycles` returns an error.
 pub fn write_csv<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,
@@ -64,7 +65,7 @@ pub fn write_csv<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// Returns a text as one field.
+/// Returns a text as a CSV field.
 fn quoted(text: &str) -> String {
     if text.contains(',') {
         format!("\"{text}\"")

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// A file with this name exists, and an export never replaces a file. Choose a different name,
-    /// or delete the file first.
+    /// A file with this name exists. An export never replaces a file, so choose another name or
+    /// delete the file.
     #[error("{} exists, and an export never replaces a file: choose another name", path.display())]
     Exists {
         /// The file.
@@ -23,13 +23,13 @@ pub enum ExportError {
         /// The system's error.
         source: io::Error,
     },
-    /// The stream cannot be written.
+    /// The output stream cannot be written.
     #[error(transparent)]
     Write(#[from] io::Error),
     /// The recording cannot be read.
     #[error(transparent)]
     Cycles(Box<dyn Error + Send + Sync>),
-    /// The rows cannot be written or read as a table.
+    /// The rows of a table cannot be written or read.
     #[cfg(feature = "export")]
     #[error("{}: {source}", path.display())]
     Table {
@@ -48,12 +48,12 @@ pub enum ExportError {
         /// Description of the error.
         why: String,
     },
-    /// The folder is not a dataset that can be written to.
+    /// The folder is not a dataset to which episodes can be added.
     #[error("the dataset {}: {why}", path.display())]
     Dataset {
         /// Folder of the dataset.
         path: PathBuf,
-        /// The value found and the expected value.
+        /// Description of the value found and the value expected.
         why: String,
     },
     /// An option has an invalid value.

@@ -2,7 +2,8 @@
 //!
 //! * `cells`: the columns of a table. [`franka_rt::driver::Column`] defines their names, units and
 //!   shapes.
-//! * `new_file`: files that appear once they are complete, and never replace a file.
+//! * `new_file`: files that appear under their names once they are complete, and never replace
+//!   another file.
 //! * `csv`: text. `table`, `parquet`: Parquet files (feature `export`).
 //! * [`lerobot`]: episodes for training (feature `export`).
 

@@ -1,4 +1,4 @@
-//! Files that appear once they are complete, and never replace another file.
+//! Files that appear under their names once they are complete, and never replace another file.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -8,11 +8,11 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::error::ExportError;
 
-/// A file that is being written. It gets its name with [`finish`](Self::finish). If this value is
-/// dropped earlier, the file is deleted.
+/// A file that is being written. [`finish`](Self::finish) gives the file its final name. If this
+/// value is dropped earlier, the file is deleted.
 ///
-/// Until then the file has a temporary name in the same folder, which ends in `.partial`. If the
-/// process is killed, this temporary file remains; it does not affect other exports.
+/// Until then, the file has a temporary name in the same folder, which ends in `.partial`. If the
+/// process is killed, the temporary file remains. It does not affect other exports.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
@@ -20,10 +20,11 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Creates a file that will be at `path`.
+    /// Creates a temporary file that will later be renamed to `path`.
     ///
     /// # Errors
-    /// [`ExportError::Exists`] if `path` exists, and [`ExportError::Io`].
+    /// Returns [`ExportError::Exists`] if `path` exists, and [`ExportError::Io`] if the file cannot
+    /// be created.
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, ExportError> {
         let path = path.into();
         if fs::symlink_metadata(&path).is_ok() {
@@ -41,24 +42,24 @@ impl NewFile {
         }
         let folder = folder_of(&path);
         let file = builder.tempfile_in(folder).map_err(|error| {
-            // The text of the error contains the name of the partial file, but the user knows only
-            // the final name.
+            // The system's error names the temporary file, but the user knows only the final name.
             let of_folder = fs::metadata(folder).err();
             ExportError::at(&path)(of_folder.unwrap_or(error.kind().into()))
         })?;
         Ok(Self { path, file })
     }
 
-    /// The final name of the file.
+    /// Returns the final name of the file.
     #[cfg(feature = "export")]
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Waits until the disk has stored the whole file, and gives it its name.
+    /// Waits until the disk has stored the whole file, and renames it to its final name.
     ///
     /// # Errors
-    /// [`ExportError::Exists`] if another file now has this name, and [`ExportError::Io`].
+    /// Returns [`ExportError::Exists`] if another file has this name by now, and
+    /// [`ExportError::Io`] if the file cannot be completed.
     pub fn finish(self) -> Result<(), ExportError> {
         let Self { path, file } = self;
         let synced = file.as_file().sync_all();
@@ -88,8 +89,8 @@ fn folder_of(path: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
-/// Makes the name of a file survive a power failure. File systems whose folders cannot be
-/// synchronised do not need this.
+/// Ensures that the name of a file survives a power failure. Some file systems cannot synchronise
+/// folders, and do not need this step.
 pub(super) fn sync_folder_of(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
         let _ = folder.sync_all();

@@ -1,4 +1,5 @@
-//! Tables as Parquet files: numbers, texts, and lists of a fixed length, without missing values.
+//! Tables as Parquet files. They contain numbers, texts, and lists of a fixed length, without
+//! missing values.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -96,7 +97,7 @@ impl Field {
     }
 }
 
-/// A table that is being written. The file gets its name once the table is complete.
+/// A table that is being written. The file appears under its name once the table is complete.
 pub(crate) struct TableWriter {
     path: PathBuf,
     fields: Vec<Field>,
@@ -129,7 +130,7 @@ impl TableWriter {
         })
     }
 
-    /// Appends rows: the values of each field, in the order of the fields.
+    /// Appends rows, as one list of values for each field, in the order of the fields.
     pub(crate) fn write(&mut self, columns: &[Values]) -> std::result::Result<(), ExportError> {
         debug_assert_eq!(columns.len(), self.fields.len());
         let Self { fields, writer, .. } = self;
@@ -152,7 +153,7 @@ impl TableWriter {
         self.writer.bytes_written()
     }
 
-    /// Completes the file and gives it its name.
+    /// Completes the file and renames it to its final name.
     pub(crate) fn finish(self) -> std::result::Result<(), ExportError> {
         let file = self.writer.into_inner().map_err(at(&self.path))?;
         file.finish()
@@ -167,7 +168,7 @@ fn schema(fields: &[Field]) -> Result<TypePtr> {
 
 fn append(column: &mut ColumnWriter<'_>, length: Option<usize>, values: &Values) -> Result<()> {
     let count = values.len();
-    // In a list, no value is missing, and every `length`-th value begins a row.
+    // No value of a list is missing, and every `length`-th value begins a row.
     let levels = length.map(|length| {
         let repetitions = (0..count).map(|i| i16::from(i % length != 0));
         (vec![1; count], repetitions.collect::<Vec<i16>>())
@@ -199,7 +200,7 @@ fn append(column: &mut ColumnWriter<'_>, length: Option<usize>, values: &Values)
 }
 
 impl Values {
-    /// Returns the values as numbers; flags are 0 or 1. Returns an empty list for texts.
+    /// Returns the values as numbers. Flags become 0 or 1. The list is empty for texts.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Bool(values) => values.iter().map(|x| f64::from(u8::from(*x))).collect(),

@@ -12,20 +12,20 @@ use super::new_file::NewFile;
 use super::parquet::{Field, Kind, TableWriter, Values};
 use crate::cycle::Cycle;
 
-/// Number of rows per write: a minute, some 100 MB with all columns.
+/// Number of rows per write: one minute of cycles, which needs some 100 MB with all columns.
 const ROWS: usize = 60_000;
 
-/// Writes the file `path`, with a row for each cycle. Returns the number of rows. The first columns
-/// are `time`, the robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A vector
-/// is a list; a matrix is a row-major list. Flags and counts are integers, modes are texts,
-/// everything else is an `f64`. The file's metadata contains the units, as JSON, with the key
-/// `units`.
+/// Writes the cycles to a new file at `path`, with one row per cycle. Returns the number of rows.
+/// The first columns are `time` (the robot's clock in milliseconds) and `host_time` (nanoseconds
+/// since 1970). A vector is a list, and a matrix is a row-major list. Flags and counts are
+/// integers, modes are texts, and all other numbers are `f64`. The file's metadata contains the
+/// units as JSON with the key `units`.
 ///
-/// The file gets its name once it is complete.
+/// The file appears under its name once it is complete.
 ///
 /// # Errors
-/// [`ExportError::Exists`] if a file with this name exists, other errors of the file, and
-/// [`ExportError::Cycles`] with the error of `cycles`.
+/// Returns [`ExportError::Exists`] if a file with this name exists, [`ExportError::Cycles`] if
+/// `cycles` returns an error, and other errors if the file cannot be written.
 pub fn write_parquet<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,
@@ -66,7 +66,7 @@ pub fn write_parquet<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// Returns the columns of the next rows. At the end there are fewer than [`ROWS`].
+/// Returns the columns of the next rows. The last group has fewer than [`ROWS`] rows.
 fn next_rows<E: Error + Send + Sync + 'static>(
     cycles: &mut impl Iterator<Item = Result<Cycle, E>>,
     columns: &Columns,

@@ -11,8 +11,8 @@ use crate::schema::foxglove::{
 };
 use crate::{Cycle, HostTime};
 
-/// Names of one robot's frames and joints. Each name is the robot's name followed by the name in
-/// `franka_description`.
+/// Names of one robot's frames and joints: the names in `franka_description`, with the robot's name
+/// as prefix.
 #[derive(Debug)]
 pub(super) struct Frames {
     prefix: String,

@@ -1,4 +1,4 @@
-//! The table with a row per episode, and the numbered files of a dataset.
+//! The table with one row per episode, and the numbered files of a dataset.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -24,7 +24,7 @@ pub(super) struct Episode {
     pub(super) stats: Vec<Stats>,
 }
 
-/// Number of a file of a dataset, counted through all chunks.
+/// Number of a file in a dataset, counted across all chunks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct FileNumber(pub(super) u64);
 
@@ -52,7 +52,7 @@ impl FileNumber {
     }
 }
 
-/// Returns the rows of all files in `chunk-…` folders of this folder, and the number of the next
+/// Returns the number of rows in all `chunk-…` folders of this folder, and the number of the next
 /// file.
 pub(super) fn files_in(folder: &Path) -> Result<(u64, FileNumber), ExportError> {
     let (mut rows, mut next) = (0, FileNumber(0));
@@ -65,8 +65,8 @@ pub(super) fn files_in(folder: &Path) -> Result<(u64, FileNumber), ExportError> 
     Ok((rows, next))
 }
 
-/// Returns the entries of a folder whose name is a number between these texts; empty if the folder
-/// does not exist.
+/// Returns the entries of a folder whose names consist of `before`, a number and `after`; empty if
+/// the folder does not exist.
 fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBuf)>, ExportError> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -85,7 +85,7 @@ fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBu
     Ok(found)
 }
 
-/// Writes a table with these episodes as the next table of the dataset in `root`. The file goes to
+/// Writes the next table of the dataset in `root`, with these episodes. The new file is in
 /// `folder`.
 pub(super) fn write(
     root: &Path,

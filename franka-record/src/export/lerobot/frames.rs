@@ -5,8 +5,8 @@ use nalgebra::{Isometry3, Vector4};
 use super::Action;
 use crate::sample::{Sample, told};
 
-/// Returns the names of the numbers of a state or an action: joints, pose of the end effector
-/// (position and quaternion), and the width of the gripper if `gripper` is true.
+/// Returns the names of the numbers in a state or an action: joints, pose of the end effector
+/// (position and quaternion), and the gripper's width if `gripper` is true.
 pub(super) fn names(gripper: bool) -> Vec<String> {
     let joints = (1..=7).map(|joint| format!("joint_{joint}.pos"));
     let pose = ["x", "y", "z", "qx", "qy", "qz", "qw"].map(|axis| format!("ee_{axis}.pos"));
@@ -22,7 +22,7 @@ pub(super) struct Frames {
     pub(super) action: Vec<f32>,
 }
 
-/// The contents of a frame at one moment.
+/// The contents of a frame.
 struct Moment {
     joints: [f64; 7],
     pose: Isometry3<f64>,
@@ -31,10 +31,11 @@ struct Moment {
 
 impl Frames {
     /// Computes frames at this rate, starting at the first sample. The action of a frame is the
-    /// target at the next frame. If the targets are references, samples before the first and after
+    /// target at the next frame. If the targets are references, samples before the first reference
+    /// and after the last reference are omitted.
     /// the last reference are left out.
     ///
-    /// # Errors
+    /// Returns a text that explains why the samples are invalid.
     /// The reason why the samples are invalid.
     pub(super) fn of(
         samples: impl IntoIterator<Item = Sample>,
@@ -129,11 +130,11 @@ fn resampled(
 /// Text for an episode without widths in a dataset with a gripper.
 const NO_WIDTH: &str = "its first cycles have no state of the Hand, expected one for each cycle, since the dataset has the width of a gripper";
 
-/// Longest gap between cycles that is filled at any rate, `[ms]`. The robot itself tolerates this
-/// many lost states.
+/// Longest gap between cycles that is filled at any rate, `[ms]`. The robot itself tolerates a gap
+/// of this length.
 const GAP_MIN: f64 = 20.0;
 
-/// Returns rows of numbers. Quaternions keep their sign from row to row. The first quaternion takes
+/// Returns rows of numbers. Consecutive quaternions have the same sign. The first quaternion has
 /// the sign of the pose `nearest`.
 fn rows(
     moments: impl Iterator<Item = Result<Moment, String>>,
@@ -159,8 +160,8 @@ fn rows(
     Ok(rows)
 }
 
-/// Returns the quaternion that determines the sign of the first row. Without another pose, it is
-/// the quaternion of a hand that points down. Near this orientation, signs do not change between
+/// Returns the quaternion that determines the sign of the first row. If `nearest` is `None`, this
+/// is the quaternion of a hand that points down. Near this orientation, signs do not change between
 /// episodes.
 fn first_sign(nearest: Option<&Isometry3<f64>>) -> Vector4<f64> {
     let down = Vector4::new(1.0, 0.0, 0.0, 0.0);

@@ -22,10 +22,10 @@ pub(super) const VERSION: &str = "v3.0";
 /// Number of files in a folder `chunk-…`.
 pub(super) const FILES_IN_CHUNK: u64 = 1000;
 
-/// Size above which a data file gets no more episodes, `[MB]`.
+/// Size at which the next episode goes to a new data file, `[MB]`.
 pub(super) const DATA_FILE_MB: usize = 100;
 
-/// Columns of each frame that do not describe the robot, in their order.
+/// Columns of each frame that do not describe the robot, in order.
 pub(super) const BOOKKEEPING: [(&str, &str); 5] = [
     ("timestamp", "float32"),
     ("frame_index", "int64"),
@@ -63,7 +63,7 @@ fn features(gripper: bool) -> Value {
     Value::Object(all.map(|(name, it)| (name.to_owned(), it)).collect())
 }
 
-/// Writes tasks and statistics, and finally `info.json`.
+/// Writes the tasks and the statistics, and then `info.json`.
 pub(super) fn write(
     root: &Path,
     options: &DatasetOptions,
@@ -100,7 +100,7 @@ fn info_path(root: &Path) -> PathBuf {
 /// Reads the contents of a dataset, if it matches the options.
 ///
 /// # Errors
-/// [`ExportError::Dataset`] with the difference.
+/// Returns [`ExportError::Dataset`] with the difference if the dataset does not match the options.
 pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, ExportError> {
     let refused = |why: String| ExportError::Dataset {
         path: root.to_owned(),
@@ -148,8 +148,8 @@ pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, Ex
     })
 }
 
-/// Returns the difference between a dataset's features and the features to write, and what the user
-/// can do; `None` if they are the same.
+/// Returns the difference between a dataset's features and the features to write, and the user's
+/// options; `None` if the features are the same.
 fn difference(got: &Value, gripper: bool) -> Option<String> {
     let expected = features(gripper);
     if *got == expected {
@@ -186,7 +186,7 @@ fn difference(got: &Value, gripper: bool) -> Option<String> {
             differences.push(format!("the names of {name} are {}", got["names"]));
         }
     }
-    // The rest may contain other keys, as the features of videos do.
+    // The other features may have more keys, as features of videos do.
     if differences.is_empty() {
         differences.push("the features have other properties".into());
     }

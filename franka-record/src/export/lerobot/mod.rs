@@ -7,12 +7,12 @@
 //! ```
 //!
 //! * `frames`: resampling, and the names of the numbers.
-//! * `stats`: minimum to quantiles of each feature.
+//! * `stats`: statistics of each feature, from the minimum to the quantiles.
 //! * `meta`: the files in `meta/` of the whole dataset.
 //! * `episodes`: the table with a row per episode.
-//! * `staging`: an export as one step.
+//! * `staging`: makes an export one atomic step.
 //!
-//! Every export adds new files. It rewrites only the three files of the whole dataset.
+//! Every export adds new files, and rewrites only the three files of the whole dataset.
 
 mod episodes;
 mod frames;
@@ -37,28 +37,30 @@ use stats::Stats;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DatasetOptions {
-    /// Frames per second, 1 to 1000; policies are usually trained at 15 to 50.
+    /// Frames per second, 1 to 1000. Policies are usually trained at 15 to 50 frames per second.
     pub fps: u16,
-    /// Name of the robot: `franka_fr3`, `franka_fer`.
+    /// Name of the robot, for example `franka_fr3` or `franka_fer`.
     pub robot_type: String,
-    /// True if states and actions include the width of the gripper.
+    /// True if states and actions include the gripper's width.
     pub gripper: bool,
-    /// Source of a frame's action.
+    /// Source of each frame's action.
     pub action: Action,
 }
 
 /// Source of a frame's action.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Action {
-    /// The target of the arm at the next frame. This requires an arm that was under control.
+    /// The arm's target at the next frame. This source requires a recording in which the client
+    /// controlled the arm.
     #[default]
     Reference,
-    /// The measured position of the arm at the next frame. Use it for demonstrations by hand.
+    /// The arm's measured position at the next frame. Use this source for demonstrations in which a
+    /// person guides the arm.
     Measured,
 }
 
 impl DatasetOptions {
-    /// Creates options: 30 frames per second, gripper included, and references as actions.
+    /// Creates options with 30 frames per second, the gripper's width, and actions from references.
     pub fn new(robot_type: impl Into<String>) -> Self {
         Self {
             fps: 30,
@@ -75,7 +77,7 @@ impl DatasetOptions {
         self
     }
 
-    /// Sets whether states and actions include the width of the gripper.
+    /// Sets whether states and actions include the gripper's width.
     #[must_use]
     pub fn gripper(mut self, gripper: bool) -> Self {
         self.gripper = gripper;
@@ -90,14 +92,14 @@ impl DatasetOptions {
     }
 }
 
-/// Writer that adds episodes to a dataset. New episodes become part of the dataset with
-/// [`finish`](Self::finish). If the writer is dropped earlier, or the process is killed, the
-/// dataset stays unchanged.
+/// Writer that adds episodes to a dataset. [`finish`](Self::finish) makes the new episodes part of
+/// the dataset. If the writer is dropped earlier, or the process is killed, the dataset stays
+/// unchanged.
 ///
-/// Each frame contains `observation.state` and `action`, `next.done` and `next.success`, and the
-/// fields common to all datasets. The numbers of a state or action are `joint_1.pos` to
-/// `joint_7.pos` in rad, `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and
-/// `gripper.pos` in metres. The dataset has no images.
+/// Each frame contains `observation.state`, `action`, `next.done`, `next.success`, and the fields
+/// common to all datasets. The numbers of a state or an action are `joint_1.pos` to `joint_7.pos`
+/// in radians, `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos` (a quaternion), and
+/// `gripper.pos` in metres. The dataset contains no images.
 pub struct Dataset {
     root: PathBuf,
     staging: Staging,
@@ -113,10 +115,11 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// Creates a dataset in the folder `root`, which must be empty or not exist.
+    /// Creates a dataset in the folder `root`. The folder must be empty, or must not exist.
     ///
     /// # Errors
-    /// [`ExportError`] for invalid options, and if the folder is not empty or cannot be written to.
+    /// Returns [`ExportError`] if an option is invalid, or if the folder is not empty or cannot be
+    /// written to.
     pub fn create(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
@@ -141,8 +144,8 @@ impl Dataset {
         ))
     }
 
-    /// Opens the dataset in the folder `root` to add episodes. Another program may have written the
-    /// dataset, if it has the same features.
+    /// Opens the dataset in the folder `root`, to add episodes. Another program may have written
+    /// the dataset, provided that it has the same features.
     ///
     /// # Errors
     /// [`ExportError::Dataset`] if the dataset differs in version, robot, rate or features, or if
@@ -190,23 +193,23 @@ impl Dataset {
         }
     }
 
-    /// Number of episodes, new episodes included.
+    /// Returns the number of episodes, including new episodes.
     pub fn episodes(&self) -> u64 {
         self.contents.episodes
     }
 
-    /// Number of frames, new frames included.
+    /// Returns the number of frames, including new frames.
     pub fn frames(&self) -> u64 {
         self.contents.frames
     }
 
-    /// Adds an episode: the description of the task, the success, and every cycle. Returns the
-    /// number of frames. `next.done` is true in the last frame. `next.success` is true in the last
-    /// frame if the episode is known to have succeeded.
+    /// Adds an episode from its task, its success and all its cycles. Returns the number of frames.
+    /// In the last frame, `next.done` is true, and `next.success` is true if the episode is known
+    /// to have succeeded.
     ///
     /// # Errors
-    /// [`ExportError::Episode`] for invalid samples: no samples, gaps of more than a frame, no
-    /// gripper, or no reference. The dataset is then unchanged.
+    /// Returns [`ExportError::Episode`] if the samples are invalid: they are empty, have gaps of
+    /// more than a frame, or lack the gripper or a reference. The dataset then stays unchanged.
     pub fn add_episode(
         &mut self,
         task: &str,
@@ -296,7 +299,7 @@ impl Dataset {
         self.staging.commit()
     }
 
-    /// Creates a data file unless there is a current one. Returns its number.
+    /// Creates a data file unless one is open. Returns the number of the open file.
     fn begin_file(&mut self) -> Result<FileNumber, ExportError> {
         if self.data.is_none() {
             let path = self.next_file.path(&self.staging.folder, "data");
@@ -337,7 +340,7 @@ fn checked(options: &DatasetOptions) -> Result<(), ExportError> {
     })
 }
 
-/// Returns the columns of an episode: vectors, flags, and the other numbers of each frame.
+/// Returns the columns of an episode: the vectors, the flags, and the other numbers of each frame.
 fn columns(
     frames: &Frames,
     before: &Contents,

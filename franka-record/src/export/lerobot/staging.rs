@@ -1,4 +1,4 @@
-//! An export as one atomic step: its files become part of the dataset together, or not at all.
+//! An export as one atomic step: either all of its files become part of the dataset, or none.
 //!
 //! ```text
 //! .export.partial/{data, meta}  --renamed: it counts-->  .export.complete/{data, meta}  --moved-->  {data, meta}
@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use crate::export::error::ExportError;
 use crate::export::new_file::sync_folder_of;
 
-/// A running export to the dataset `root`. Only one export may run at a time. Dropping this value
-/// deletes the files of the export.
+/// An active export to the dataset in `root`. Only one export can be active at a time. Dropping
+/// this value deletes the files of the export.
 #[derive(Debug)]
 pub(super) struct Staging {
     root: PathBuf,
@@ -26,11 +26,12 @@ pub(super) struct Staging {
 }
 
 impl Staging {
-    /// Completes or deletes the remains of an interrupted export in the folder `root`, and begins
+    /// Completes an interrupted export in the folder `root` or deletes its files, and then begins
     /// another export.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if another export is running, and [`ExportError::Io`].
+    /// Returns [`ExportError::Dataset`] if another export is active, and [`ExportError::Io`] if a
+    /// file cannot be changed.
     pub(super) fn begin(root: &Path) -> Result<Self, ExportError> {
         let lock = File::open(root).map_err(ExportError::at(root))?;
         let lock = match lock.try_lock() {
@@ -79,15 +80,15 @@ impl Drop for Staging {
     }
 }
 
-/// Moves the files of a complete export to their places in the dataset `root`. Does nothing if
-/// there is no complete export.
+/// Moves the files of a complete export to their places in the dataset `root`. Does nothing if no
+/// complete export exists.
 fn publish(root: &Path) -> Result<(), ExportError> {
     let complete = root.join(COMPLETE);
     if !complete.exists() {
         return Ok(());
     }
     let mut files = files(&complete)?;
-    // The totals are last, because readers rely on them.
+    // The file with the totals is moved last, because readers rely on the totals.
     files.sort_by_key(|file| file == Path::new(INFO));
     for file in files {
         let to = root.join(&file);

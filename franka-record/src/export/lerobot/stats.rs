@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-/// Quantiles. Statistics of several episodes combine them as means, weighted by the numbers of
+/// Quantiles. The quantiles of several episodes are combined as means, weighted by the number of
 /// frames.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
@@ -12,12 +12,12 @@ const QUANTILES: [(&str, f64); 5] = [
     ("q99", 0.99),
 ];
 
-/// Names of the statistics with a value for each number of a feature.
+/// Names of the statistics that have one value for each number of a feature.
 pub(super) const NAMES: [&str; 9] = [
     "min", "max", "mean", "std", "q01", "q10", "q50", "q90", "q99",
 ];
 
-/// Statistics of one feature over some frames: for each of [`NAMES`], one value per number of the
+/// Statistics of one feature over some frames. Each of [`NAMES`] has one value per number of the
 /// feature.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stats {
@@ -47,8 +47,8 @@ impl Stats {
         Self { values, count }
     }
 
-    /// Combines the statistics of two sets of frames as LeRobot does: quantiles are means of the
-    /// quantiles.
+    /// Combines the statistics of two sets of frames as LeRobot does: the combined quantiles are
+    /// means of the quantiles.
     pub(super) fn and(&self, other: &Self) -> Self {
         let [n, m] = [self, other].map(|stats| stats.count as f64);
         let share = m / (n + m);
