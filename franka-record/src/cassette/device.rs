@@ -1,4 +1,4 @@
-//! The differences between the devices: ports, framing, names of commands.
+//! Differences between the devices: ports, framing, and command names.
 
 use std::fmt;
 
@@ -22,7 +22,7 @@ impl Device {
     /// All devices, ordered by port.
     pub const ALL: [Self; 3] = [Self::Robot, Self::Hand, Self::VacuumGripper];
 
-    /// The TCP port of the device.
+    /// Returns the TCP port of the device.
     #[must_use]
     pub fn port(self) -> u16 {
         match self {
@@ -38,7 +38,7 @@ impl Device {
         Self::ALL.into_iter().find(|device| device.port() == port)
     }
 
-    /// Returns the first message of a stream; `None` while the message is incomplete.
+    /// Returns the first message of a stream; `None` if the message is incomplete.
     pub(crate) fn next_message(self, stream: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
         match self {
             Self::Robot => next_message(stream),
@@ -46,16 +46,16 @@ impl Device {
         }
     }
 
-    /// Returns the `Connect` at the beginning of a client's stream; `None` while the message is
-    /// incomplete, or if the stream begins with another message.
+    /// Returns the `Connect` message at the beginning of a client's stream; `None` if the message
+    /// is incomplete, or if the stream begins with another message.
     pub(crate) fn connect(self, stream: &[u8]) -> Option<ConnectRequest> {
         let message = self.next_message(stream).ok()??;
         let (request, _) = ConnectRequest::read_from_prefix(message.payload).ok()?;
         (message.header.command == 0).then_some(request)
     }
 
-    /// Returns the range of a message's id. The id comes after the command, which is shorter for
-    /// the end effectors.
+    /// Returns the byte range of a message's id. The id follows the command, which is shorter for
+    /// the end effectors than for the arm.
     pub(crate) fn id_range(self) -> std::ops::Range<usize> {
         match self {
             Self::Robot => 4..8,
@@ -63,7 +63,7 @@ impl Device {
         }
     }
 
-    /// Length of the millisecond counter at the beginning of a state, in bytes.
+    /// Returns the size in bytes of the millisecond counter at the beginning of a state.
     pub(crate) fn counter_size(self) -> usize {
         match self {
             Self::Robot => 8,
@@ -71,7 +71,7 @@ impl Device {
         }
     }
 
-    /// Returns the name of a request, for error messages; `version` is the version in `Connect`.
+    /// Returns the name of a request for error messages. `version` is the version in `Connect`.
     pub(crate) fn request_name(self, version: u16, message: &Message<'_>) -> String {
         let number = message.header.command;
         let known = match self {

@@ -1,4 +1,4 @@
-//! Wire cassettes: the bytes of a session between a client and a robot, and their playback.
+//! Wire cassettes: recorded bytes of a session between a client and a robot, and their playback.
 //!
 //! ```text
 //! client <-- TCP, UDP --> Tap <-- TCP, UDP --> robot      records a Cassette
@@ -19,7 +19,7 @@
     doc = "With the feature `pcap`, [`pcap`] converts captures of the network to cassettes and back."
 )]
 //!
-//! A cassette is an MCAP file: see [`CassetteWriter`] for its channels.
+//! A cassette is an MCAP file. See [`CassetteWriter`] for its channels.
 
 mod device;
 mod file;
@@ -42,38 +42,39 @@ pub use script::Unplayable;
 pub use server::{CassetteServer, PlayError, PlayReport};
 pub use tap::{Route, Tap, TapReport};
 
-/// The data that clients and a robot exchanged in one session.
+/// Data that clients and a robot exchanged in one session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cassette {
     /// Start of the recording, in nanoseconds since the Unix epoch.
     pub started: u64,
-    /// The connections, in the order of their opening.
+    /// The connections, in the order in which they were opened.
     pub connections: Vec<Connection>,
     /// Number of events that are missing because the recording thread was too slow.
     pub dropped: u64,
-    /// Number of packets of a network capture that were captured only partly, for example because
-    /// of a snap length. Their contents are missing. Cassette files do not store this number.
+    /// Number of packets that a network capture contains only in part, for example because of a
+    /// snap length. The contents of these packets are missing. Cassette files do not store this
+    /// number.
     pub truncated: u64,
-    /// The reason why the file is truncated, if it is. `connections` contains the events before the
-    /// cut.
+    /// Reason why the file is truncated; `None` if it is complete. `connections` contains the
+    /// events before the cut.
     pub damage: Option<String>,
 }
 
-/// One TCP connection of a client, and the datagrams that belong to it.
+/// One TCP connection of a client, and the datagrams that belong to the connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Connection {
-    /// The client's device.
+    /// The device to which the client connected.
     pub device: Device,
-    /// The events of the connection, in their order.
+    /// The events of the connection, in order.
     pub events: Vec<Event>,
-    /// Number of missing pieces of the connection's TCP streams. A connection with missing pieces
-    /// cannot be played.
+    /// Number of missing pieces in the connection's TCP streams. A connection with missing pieces
+    /// cannot be played back.
     pub missing_stream: u64,
     /// Number of missing datagrams of the connection.
     pub missing_datagrams: u64,
 }
 
-/// One transmission in one direction of a connection.
+/// One transmission on a connection, in one direction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
     /// Time since [`Cassette::started`] on a monotonic clock.
@@ -96,9 +97,9 @@ pub enum Side {
 /// The data sent by a side.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Payload {
-    /// Bytes of the TCP stream. The split into pieces has no meaning.
+    /// Bytes of the TCP stream. The boundaries between pieces have no meaning.
     Stream(Vec<u8>),
-    /// The sender closed its side of the TCP stream.
+    /// The sender closed its direction of the TCP stream.
     End,
     /// One UDP datagram.
     Datagram(Vec<u8>),
@@ -116,7 +117,7 @@ impl Connection {
         }
     }
 
-    /// Returns the bytes that a side sent over TCP, in one piece.
+    /// Returns all bytes that a side sent over TCP.
     #[must_use]
     pub fn stream(&self, from: Side) -> Vec<u8> {
         let events = self.events.iter().filter(|event| event.from == from);
@@ -127,7 +128,7 @@ impl Connection {
         parts.collect::<Vec<_>>().concat()
     }
 
-    /// Returns the datagrams that a side sent, with their times.
+    /// Returns the datagrams that a side sent and their times.
     pub fn datagrams(&self, from: Side) -> impl Iterator<Item = (Duration, &[u8])> {
         let events = self.events.iter().filter(move |event| event.from == from);
         events.filter_map(|event| match &event.what {

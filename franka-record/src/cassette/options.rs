@@ -1,12 +1,12 @@
-//! Options of the playback of a cassette.
+//! Options for the playback of a cassette.
 
 use std::time::Duration;
 
-/// Options of the playback.
+/// Options for the playback of a cassette.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayOptions {
-    /// Requirements on the client's messages.
+    /// How exactly the client's messages must match the recorded messages.
     pub matching: Matching,
     /// Timing of the robot's messages.
     pub pace: Pace,
@@ -24,28 +24,30 @@ impl Default for PlayOptions {
     }
 }
 
-/// Requirements on the client's messages.
+/// How exactly the client's messages must match the recorded messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Matching {
-    /// The client must send the recorded bytes, including every recorded command. Exceptions are
-    /// the UDP port in `Connect`, the ids of requests, and the `message_id` of commands. Repeated
-    /// states change the `message_id`.
+    /// The client must send the recorded bytes, including every recorded command. Three values may
+    /// differ: the UDP port in `Connect`, the ids of requests, and the `message_id` of commands.
+    /// The `message_id` changes when the player repeats states.
     Strict,
-    /// The client must send the recorded kinds of request, in their order, with any parameters. The
-    /// player does not compare commands. The end of a motion counts as a request.
+    /// The client must send the recorded kinds of request in the recorded order, with any
+    /// parameters. The player does not compare commands. The end of a motion counts as a request.
     Lenient,
 }
 
 /// Timing of the robot's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// The recorded times. While the client's next request is missing, the playback waits and
-    /// repeats the last state with increasing ids, so a slower client stays connected.
+    /// The robot's messages are sent at the recorded times. While the client's next request is
+    /// missing, the playback pauses and repeats the last state with increasing ids, so a slower
+    /// client stays connected.
     Recorded,
-    /// Like [`Self::Recorded`], but a state that followed a command is sent as soon as this command
-    /// arrives. The client is never too late, and may be faster than the recorded client.
+    /// Like [`Self::Recorded`], but a state that followed a command is sent as soon as the client
+    /// sends this command. Therefore the client is never too late, and may be faster than the
+    /// recorded client.
     Answered,
-    /// As fast as the caller calls [`super::Player::poll`], without repeated states. Use this for
-    /// tests that have their own clock.
+    /// The robot's messages are sent as fast as the caller calls [`super::Player::poll`], without
+    /// repeated states. Use this variant for tests that have their own clock.
     Lockstep,
 }

@@ -1,12 +1,12 @@
-//! Sockets whose threads check periodically for a stop.
+//! Sockets whose threads check at intervals whether they must stop.
 
 use std::io;
 use std::time::Duration;
 
-/// Interval at which threads check for a stop.
+/// Interval at which threads check whether they must stop.
 pub(super) const TICK: Duration = Duration::from_millis(20);
 
-/// True if no data arrived within the socket's timeout.
+/// Returns true if no data arrived within the socket's timeout.
 pub(super) fn is_timeout(error: &io::Error) -> bool {
     matches!(
         error.kind(),

@@ -1,4 +1,4 @@
-//! A recorded connection as the steps of its playback.
+//! The steps for the playback of a recorded connection.
 
 use std::time::Duration;
 
@@ -7,11 +7,11 @@ use franka_proto::{RobotCommand, Version};
 
 use super::{Connection, Device, Payload, Side};
 
-/// Reason why a recorded connection cannot be played.
+/// Reason why a recorded connection cannot be played back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unplayable {
-    /// Pieces of a stream were not recorded.
+    /// The recording lacks pieces of a stream.
     #[error(
         "{missing} pieces of the {device}'s TCP streams are missing, expected complete streams"
     )]
@@ -39,7 +39,7 @@ pub enum Unplayable {
     },
 }
 
-/// The next step on a connection: the robot performs it, or waits for the client to perform it.
+/// A step of the playback. The robot performs the step, or waits until the client performs it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// The client sends this message.
@@ -56,14 +56,14 @@ pub(super) enum Step {
     RobotEnd,
 }
 
-/// The steps of a connection with their times.
+/// The steps of a connection, with their times.
 #[derive(Clone, Debug)]
 pub(super) struct Script {
     pub(super) device: Device,
-    /// Version that the client announced; 0 if the client sent nothing.
+    /// Version that the client announced; 0 if the client sent no data.
     pub(super) version: u16,
     pub(super) steps: Vec<(Duration, Step)>,
-    /// The mean time between states.
+    /// Mean time between states.
     pub(super) interval: Duration,
 }
 
@@ -106,7 +106,7 @@ impl Script {
                         match next(device, &mut from_robot) {
                             Ok(Some(message)) => step(Step::Reply(message)),
                             Ok(None) => break,
-                            // The player sends invalid data of the robot unchanged.
+                            // The player sends the robot's data unchanged, even if it is invalid.
                             Err(_) => {
                                 step(Step::Reply(std::mem::take(&mut from_robot)));
                                 break;
@@ -145,7 +145,7 @@ impl Script {
         }
     }
 
-    /// True if a datagram of the client ends a motion.
+    /// Returns true if the client ends a motion with this datagram.
     pub(super) fn finishes(&self, datagram: &[u8]) -> bool {
         let version = Version::from_number(self.version);
         version.is_some_and(|version| {
@@ -156,7 +156,7 @@ impl Script {
     }
 }
 
-/// Removes the first message from a stream, if it is complete.
+/// Removes and returns the first message of a stream, if it is complete.
 fn next(device: Device, stream: &mut Vec<u8>) -> Result<Option<Vec<u8>>, FrameError> {
     let size = device
         .next_message(stream)?
@@ -205,7 +205,7 @@ fn interval(device: Device, steps: &[(Duration, Step)]) -> Duration {
     }
 }
 
-/// Bounds of the time between held states. Robots send a state per millisecond. Clients consider an
-/// end effector dead if it is slower than the upper bound.
+/// Smallest and largest interval between repeated states. Robots send one state per millisecond.
+/// Clients regard an end effector as lost if its states are slower than the upper bound.
 const INTERVAL_MIN: Duration = Duration::from_millis(1);
 const INTERVAL_MAX: Duration = Duration::from_millis(200);

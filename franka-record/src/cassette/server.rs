@@ -1,4 +1,4 @@
-//! Serves a cassette as a robot: players on sockets.
+//! A server that plays back a cassette on sockets, as a robot.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _, Write as _};
@@ -14,11 +14,11 @@ use super::{
     Cassette, Connection, Device, Mismatch, Output, PlayOptions, Player, Tally, Unplayable,
 };
 
-/// A server that plays a cassette to any client.
+/// A server that plays back a cassette to any client.
 ///
-/// A client's first connection to a device gets the first recorded connection to this device, and
-/// so on. The server plays each connection separately. If there are connections to an arm and its
-/// hand, only the client synchronises them.
+/// The client's first connection to a device receives the first recorded connection to this device,
+/// and so on. The server plays back each connection separately. The connections to an arm and its
+/// hand are synchronised only by the client.
 #[derive(Debug)]
 pub struct CassetteServer {
     shared: Arc<Shared>,
@@ -26,22 +26,22 @@ pub struct CassetteServer {
     addresses: BTreeMap<Device, SocketAddr>,
 }
 
-/// Result of a playback.
+/// Result of a complete playback.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayReport {
-    /// The connections that were played to their end, in the order in which they ended.
+    /// The connections that were played back to their end, in the order in which they ended.
     pub played: Vec<(Device, Tally)>,
 }
 
-/// Reason why a cassette was not played to its end.
+/// Reason why a cassette was not played back to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlayError {
-    /// A client deviated from the recorded client.
+    /// A client deviated from the recording.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
-    /// A client opened more connections to a device than the recording has.
+    /// A client opened more connections to a device than were recorded.
     #[error(
         "the client opened connection {got} to the {device}, expected {recorded} at most, as \
         recorded"
@@ -49,15 +49,15 @@ pub enum PlayError {
     Connection {
         /// The device to which the client connected.
         device: Device,
-        /// The number of the connection, from 1.
+        /// Number of the connection, counted from 1.
         got: usize,
         /// Number of recorded connections to the device.
         recorded: usize,
     },
-    /// The recording cannot be played.
+    /// The recording cannot be played back.
     #[error(transparent)]
     Unplayable(#[from] Unplayable),
-    /// No client connected, or a client did not complete the recording in time.
+    /// No client connected, or a client did not complete the recorded session in time.
     #[error(
         "{played} of {recorded} connections were played within {patience:?}, expected all; the \
          next is {awaited}"
@@ -65,11 +65,11 @@ pub enum PlayError {
     Unfinished {
         /// Time for which the server waited.
         patience: Duration,
-        /// Number of connections that were played to their end.
+        /// Number of connections that were played back to their end.
         played: usize,
         /// Number of recorded connections.
         recorded: usize,
-        /// The client's next step, as text.
+        /// Description of the step that the client should perform next.
         awaited: String,
     },
     /// A socket failed.
@@ -89,7 +89,7 @@ struct Shared {
 struct State {
     report: PlayReport,
     failure: Option<PlayError>,
-    /// The steps for which the current connections wait, as text.
+    /// Descriptions of the steps for which the current connections wait.
     awaited: BTreeMap<(Device, usize), String>,
 }
 
@@ -112,19 +112,20 @@ impl Shared {
 }
 
 impl CassetteServer {
-    /// Starts to serve a cassette at `ip`, on the devices' own ports.
+    /// Starts a server for a cassette at the address `ip`, on the devices' own ports.
     ///
     /// # Errors
-    /// [`PlayError`] if a recorded connection cannot be played, or a port is not free.
+    /// Returns [`PlayError`] if a recorded connection cannot be played back, or if a port is not
+    /// free.
     pub fn start(cassette: Cassette, ip: IpAddr, options: PlayOptions) -> Result<Self, PlayError> {
         let at = |device: Device| SocketAddr::new(ip, device.port());
         Self::start_at(cassette, at, options)
     }
 
-    /// Starts to serve a cassette, each device at its address; port 0 selects any free port.
+    /// Starts a server for a cassette, with one address per device. Port 0 selects any free port.
     ///
     /// # Errors
-    /// The errors of [`Self::start`].
+    /// Returns the errors of [`Self::start`].
     pub fn start_at(
         cassette: Cassette,
         address: impl Fn(Device) -> SocketAddr,
@@ -133,7 +134,7 @@ impl CassetteServer {
         let recorded = cassette.connections.len();
         let mut devices: BTreeMap<Device, Vec<Connection>> = BTreeMap::new();
         for connection in cassette.connections {
-            // Reports an unplayable connection early.
+            // This call reports early that a connection cannot be played back.
             Player::new(&connection, options, Duration::ZERO)?;
             devices
                 .entry(connection.device)
@@ -163,16 +164,18 @@ impl CassetteServer {
         Ok(this)
     }
 
-    /// Returns the address of a device; `None` if the cassette has no connection to it.
+    /// Returns the server's address for a device; `None` if the cassette contains no connection to
+    /// the device.
     #[must_use]
     pub fn address(&self, device: Device) -> Option<SocketAddr> {
         self.addresses.get(&device).copied()
     }
 
-    /// Waits until every recorded connection has been played, and ends the server.
+    /// Waits until every recorded connection has been played back, and stops the server.
     ///
     /// # Errors
-    /// [`PlayError`] if a client deviated from the recording, or if `patience` expires first.
+    /// Returns [`PlayError`] if a client deviated from the recording, or if `patience` expires
+    /// before the playback is complete.
     pub fn finish(self, patience: Duration) -> Result<PlayReport, PlayError> {
         let recorded = self.shared.recorded;
         let going_on =
@@ -209,7 +212,7 @@ impl Drop for CassetteServer {
     }
 }
 
-/// Accepts clients of a device until the playback ends.
+/// Accepts clients for a device until the playback ends.
 fn accept(
     listener: &TcpListener,
     device: Device,
@@ -270,7 +273,7 @@ enum Input {
     End,
 }
 
-/// Plays a connection to a client; `None` if the playback is stopped before its end.
+/// Plays back a connection to a client. Returns `None` if the playback was stopped before its end.
 fn play(
     mut client: &TcpStream,
     connection: &Connection,
@@ -296,7 +299,7 @@ fn play(
             Output::Stream(bytes) => client.write_all(&bytes),
             Output::End => client.shutdown(Shutdown::Write),
             Output::Datagram(bytes) => match port {
-                // A departing client may have closed its port.
+                // A client that is disconnecting may have closed its port.
                 Some(port) => udp.send_to(&bytes, (ip, port)).map(drop).or(Ok(())),
                 None => Ok(()),
             },
@@ -306,13 +309,13 @@ fn play(
             shared.state().awaited.insert(key, awaited);
         });
         over.store(true, Ordering::Relaxed);
-        // Readers that wait for space in the queue then end.
+        // After this call, readers that wait for space in the queue end.
         drop(inputs);
         outcome
     })
 }
 
-/// Connects a player, a clock, and the client's input.
+/// Connects a player, a clock and the client's input.
 fn drive(
     player: &mut Player,
     inputs: &Receiver<Input>,
@@ -325,7 +328,7 @@ fn drive(
     loop {
         while let Some(output) = player.poll(start.elapsed())? {
             if send(output, player.udp_port()).is_err() {
-                // The client has disconnected. The end of its stream shows missing steps.
+                // The client has disconnected. `on_end` reports any missing steps.
                 break;
             }
         }
@@ -385,8 +388,9 @@ fn read_datagrams(
     }
 }
 
-/// Interval of checks for a new client. Clients connect rarely, and allow a second for it.
+/// Interval at which the server checks for a new client. Clients connect rarely and wait for a
+/// second.
 const ACCEPT_TICK: Duration = Duration::from_millis(5);
 
-/// Capacity of the player's queue; readers wait if it is full.
+/// Capacity of the player's queue. Readers wait while it is full.
 const INPUTS: usize = 256;

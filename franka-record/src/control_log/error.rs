@@ -22,7 +22,7 @@ pub enum ControlLogError {
         /// Number of bytes before the first invalid byte.
         offset: u64,
     },
-    /// The file has no table and no exception text.
+    /// The file contains neither a table nor an exception text.
     #[error(
         "got {got:?}, expected a recording (MCAP); a table of franka::logToCSV, which begins with \
          \"time,success_rate,state.q[0]\"; or the text of a franka::ControlException, which contains \
@@ -32,12 +32,12 @@ pub enum ControlLogError {
         /// The beginning of the file's first line.
         got: String,
     },
-    /// A cell of a table does not match its column.
+    /// A cell of a table does not have the form that its column requires.
     #[error("line {line}, column {column} ({name}): got {got:?}, expected {expected}")]
     Cell {
-        /// The line of the file, from 1.
+        /// Line in the file, counted from 1.
         line: u64,
-        /// The column of the table, from 1.
+        /// Column in the table, counted from 1.
         column: usize,
         /// The name of the column.
         name: String,
@@ -52,39 +52,39 @@ pub enum ControlLogError {
          franka::logToCSV"
     )]
     Column {
-        /// The line of the file, from 1.
+        /// Line in the file, counted from 1.
         line: u64,
         /// Number of columns.
         got: usize,
         /// Name of the missing column.
         missing: String,
     },
-    /// A row has more or fewer cells than the table has columns.
+    /// A row does not have as many cells as the table has columns.
     #[error("line {line}, column {column}: got a row of {got} cells, expected {expected}{}", if *last { ": the file ends too early" } else { "" })]
     Row {
-        /// The line of the file, from 1.
+        /// Line in the file, counted from 1.
         line: u64,
-        /// First column that is missing or excess, counted from 1.
+        /// First missing or surplus column, counted from 1.
         column: usize,
         /// Number of cells in the row.
         got: usize,
         /// Number of columns in the table.
         expected: usize,
-        /// True for the last row of the table.
+        /// True if the row is the last of the table.
         last: bool,
     },
     /// A table has no rows.
     #[error("line {line}: got a table without rows, expected a row for each cycle")]
     NoRow {
-        /// The line of the names, from 1.
+        /// Line of the column names, counted from 1.
         line: u64,
     },
-    /// The text of an exception is damaged or incomplete.
+    /// The exception text is damaged or incomplete.
     #[error("line {line}, column {column}: got {got:?}, expected {expected}")]
     Message {
-        /// The line of the file, from 1.
+        /// Line in the file, counted from 1.
         line: u64,
-        /// The position in the line, in characters from 1.
+        /// Position in the line, in characters, counted from 1.
         column: usize,
         /// The text at this position.
         got: String,

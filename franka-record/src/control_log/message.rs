@@ -6,20 +6,20 @@ use franka_proto::{Errors, RobotError, SuccessRate};
 
 use super::{ControlLogError, SHOWN};
 
-/// The text of a control exception.
+/// The text of a `franka::ControlException`.
 ///
 /// Source: the message format of libfranka 0.9 and 0.21, `robot_impl.cpp`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ControlMessage {
-    /// The robot's answer to the motion, from `libfranka:` to the list of errors or the end of the
-    /// line.
+    /// The robot's answer to the motion. The text starts at `libfranka:` and ends after the list of
+    /// errors, or at the end of the line.
     pub text: String,
-    /// Errors in the list; empty if the motion did not end with a reflex.
+    /// The listed errors; empty if the motion did not end with a reflex.
     pub errors: Errors,
-    /// Success rate and number of lost states at the end of the motion; `None` if the text has no
-    /// rate.
+    /// Success rate and number of lost states at the end of the motion; `None` if the text contains
+    /// no success rate.
     pub success_rate: Option<SuccessRate>,
 }
 
@@ -43,7 +43,7 @@ pub(super) fn all(
     Ok(messages)
 }
 
-/// Returns the position of the first message. The message includes libfranka's name if the name
+/// Returns the position of the first message. The message begins with libfranka's name, if the name
 /// precedes it.
 fn begins(text: &str) -> Option<usize> {
     let found = BEGINNINGS.iter().filter_map(|it| text.find(it)).min()?;
@@ -72,8 +72,8 @@ impl Reader<'_> {
         Ok(message)
     }
 
-    /// Reads `["joint_reflex", "cartesian_reflex"]`, even if an e-mail program has broken it into
-    /// lines.
+    /// Reads a list such as `["joint_reflex", "cartesian_reflex"]`, even if an e-mail program has
+    /// inserted line breaks.
     fn errors(&mut self) -> Result<Errors, ControlLogError> {
         self.expect("[", "a list of errors, such as [\"joint_reflex\"]")?;
         let mut errors = Errors::NONE;
@@ -101,7 +101,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads the success rate, which libfranka adds if its log has two cycles or more.
+    /// Reads the success rate. libfranka writes it if its log has at least two cycles.
     fn success_rate(&mut self) -> Result<Option<SuccessRate>, ControlLogError> {
         let until = begins(self.rest()).unwrap_or(self.rest().len());
         let Some(found) = self.rest()[..until].find(RATE) else {
@@ -124,7 +124,7 @@ impl Reader<'_> {
         let rest = self.rest();
         let number = |c: char| c.is_ascii_alphanumeric() || ['.', '+', '-'].contains(&c);
         let length = rest.find(|c| !number(c)).unwrap_or(rest.len());
-        // The end of a sentence may follow the number.
+        // A full stop may follow the number.
         let Ok(value) = rest[..length].trim_end_matches('.').parse() else {
             return self.fail(expected);
         };
@@ -173,7 +173,7 @@ impl Reader<'_> {
 
 const NAME: &str = "libfranka: ";
 
-/// Beginnings of the answers to a motion.
+/// First words of the robot's answers to a motion.
 const BEGINNINGS: [&str; 4] = [
     "Move command aborted",
     "Move command preempted",
@@ -181,7 +181,7 @@ const BEGINNINGS: [&str; 4] = [
     "Motion finished commanded,",
 ];
 
-/// Answers after which the list of errors follows.
+/// Answers that are followed by a list of errors.
 const LISTED: [&str; 2] = ["motion aborted by reflex!", "the robot is still moving!"];
 
 const RATE: &str = "control_command_success_rate:";

@@ -1,5 +1,5 @@
-//! Reads the data that libfranka provides about a motion that the robot ended: the table of
-//! `franka::logToCSV` and the text of the `franka::ControlException`. This driver's
+//! Reads libfranka's report about a motion that the robot ended. The report is the table of
+//! `franka::logToCSV`, and the text of the `franka::ControlException`. This driver's
 //! `ControlLog::to_csv` writes the same table.
 //!
 //! ```text
@@ -13,9 +13,9 @@
 //! | `message` | the text of the exception, at any place in the file |
 //! | `motion` | data derived from the rows: modes, numbers of commands, derivatives |
 //!
-//! A file may contain a table, a text or both, between other lines, as in the output of a terminal.
-//! If the file contains several, the newest counts. Tables have three generations of columns,
-//! according to the changelog of libfranka:
+//! A file may contain a table, a text or both, surrounded by other lines, such as the output of a
+//! terminal. If the file contains several tables or texts, the reader uses the newest. Tables have
+//! three generations of columns, according to the changelog of libfranka:
 //!
 //! | libfranka | first columns |
 //! |---|---|
@@ -23,8 +23,8 @@
 //! | 0.9.1 to 0.14 | `time, success_rate, state.q[0], state.q[1]` |
 //! | 0.15 and later | `time,success_rate,state.q[0],state.q[1]` |
 //!
-//! Numbers have six significant digits. The diagnosis does not report a difference that may come
-//! from rounding. A log of joint positions therefore shows steps, but rarely a jerk.
+//! Numbers in a table have six significant digits. The diagnosis does not report a difference that
+//! rounding may have caused. Therefore a log of joint positions shows steps, but rarely a jerk.
 //!
 //! # Example
 //!
@@ -66,16 +66,17 @@ pub use self::table::Generation;
 use self::table::Table;
 use crate::Cycle;
 
-/// A file with a log of libfranka, with the text of a control exception, or with both.
+/// A file that contains a log of libfranka, the text of a control exception, or both.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct ControlLogFile {
-    /// The text of the newest exception.
+    /// The newest exception text.
     pub message: Option<ControlMessage>,
-    /// The newest table, oldest cycle first; empty without a table. The states contain the values
-    /// of the table and values derived from them. All other fields have their default.
+    /// The newest table, oldest cycle first; empty if the file contains no table. The states
+    /// contain the values of the table and values derived from them. All other fields have their
+    /// default values.
     pub log: Arc<ControlLog>,
-    /// Generation of the columns of the table.
+    /// Generation of the table's columns.
     pub generation: Option<Generation>,
     /// Number of older tables and texts in the file.
     pub earlier: u64,
@@ -86,7 +87,8 @@ impl ControlLogFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`ControlLogError`] if the file cannot be read, or contains neither a table nor a text.
+    /// Returns [`ControlLogError`] if the file cannot be read, or if it contains neither a table
+    /// nor an exception text.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, ControlLogError> {
         let path = path.as_ref();
         let bytes = fs::read(path).map_err(|source| ControlLogError::File {
@@ -102,8 +104,8 @@ impl ControlLogFile {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// [`ControlLogError`] if the text contains neither a table nor an exception, or if either is
-    /// damaged.
+    /// Returns [`ControlLogError`] if the text contains neither a table nor an exception text, or
+    /// if one of them is damaged.
     pub fn parse(text: &str) -> Result<Self, ControlLogError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (tables, around) = table::find(text);
@@ -135,18 +137,19 @@ impl ControlLogFile {
         })
     }
 
-    /// The kind of robot, if the file identifies it. Before libfranka 0.9.1, only one kind existed.
+    /// Returns the kind of robot if the file identifies it. Before libfranka 0.9.1, only one kind
+    /// existed.
     pub fn kind(&self) -> Option<RobotKind> {
         (self.generation == Some(Generation::Unprefixed)).then_some(RobotKind::Fer)
     }
 
-    /// The errors in the exception text; empty without a text.
+    /// Returns the errors in the exception text; empty if the file contains no exception text.
     pub fn errors(&self) -> Errors {
         let message = self.message.as_ref();
         message.map_or(Errors::NONE, |message| message.errors)
     }
 
-    /// Sets the errors that ended the motion. Use this if the exception text is missing.
+    /// Sets the errors that ended the motion. Use this method if the exception text is missing.
     #[must_use]
     pub fn with_errors(mut self, errors: Errors) -> Self {
         let message = self.message.get_or_insert_default();
@@ -165,13 +168,13 @@ impl ControlLogFile {
         }
     }
 
-    /// Returns the cycles of the table, each with the command that answers its state, for exports
-    /// with [`Columns::of_log`](crate::export::Columns::of_log). A log does not contain the host's
-    /// clock: [`Cycle::time`] is zero.
+    /// Returns the cycles of the table for exports with
+    /// [`Columns::of_log`](crate::export::Columns::of_log). Each cycle contains the command that
+    /// answers its state. A log does not contain the host's clock, so [`Cycle::time`] is zero.
     pub fn cycles(&self) -> impl Iterator<Item = Cycle> {
         motion::cycles(&self.log, &self.commands)
     }
 }
 
-/// Number of characters of a line that an error shows.
+/// Largest number of characters of a line that an error shows.
 const SHOWN: usize = 60;

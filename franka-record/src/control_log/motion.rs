@@ -1,9 +1,9 @@
 //! Data derived from the rows of a table.
 //!
-//! A table omits the modes, the numbers of the commands, and the derivatives that the robot
-//! computes. This module derives them: a motion has one kind of command and zeros for all other
+//! A table lacks the modes, the command numbers, and the derivatives that the robot computes. This
+//! module derives them from two facts: a motion has one kind of command and zeros for all other
 //! kinds, and a robot publishes its previous command as the commanded value. All other fields keep
-//! their default: the log has no tool, no contact flags and no wrench.
+//! their default values, because the log contains no tool, no contact flags and no wrench.
 
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use franka_proto::{
@@ -15,14 +15,14 @@ use nalgebra::Isometry3;
 use super::table::{Row, Table};
 use crate::{Cycle, HostTime};
 
-/// A motion, reconstructed from its table.
+/// A motion that is reconstructed from its table.
 pub(super) struct Motion {
     pub(super) log: ControlLog,
     pub(super) commands: Vec<RobotCommand>,
 }
 
 impl Motion {
-    /// Creates the motion from a table, and the errors that ended the motion.
+    /// Creates the motion from a table and from the errors that ended the motion.
     pub(super) fn of(table: Table, errors: Errors) -> Self {
         let rows = table.rows;
         let generator = generator(&rows);
@@ -54,7 +54,8 @@ impl Motion {
     }
 }
 
-/// Returns the generator whose commands are not zero; `None` if the log has only torques.
+/// Returns the motion generator whose commands are not zero; `None` if the log contains only
+/// torques.
 fn generator(rows: &[Row]) -> Option<Generator> {
     let any = |of: fn(&RobotCommand) -> &[f64]| rows.iter().any(|row| has(of(&row.command)));
     if any(|it| &it.q_c) {
@@ -70,8 +71,8 @@ fn generator(rows: &[Row]) -> Option<Generator> {
     }
 }
 
-/// True if zeros may be a real command. This is possible for velocities and torques, but not for
-/// the first command of a motion.
+/// Returns true if zeros may be a real command. Velocities and torques may be zero, except in the
+/// first command of a motion.
 fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<RobotState>) -> bool {
     let is_velocity = matches!(
         generator,
@@ -80,7 +81,7 @@ fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<Robo
     before.is_some() && (is_velocity || has_torques)
 }
 
-/// Fills in the values that a robot publishes after each command, for the whole motion.
+/// Fills in the values that a robot publishes after each command of the motion.
 fn echo(entries: &mut [LogEntry]) {
     // The first state of a motion precedes every command.
     let is_whole = entries[0].command.message_id == 0;
@@ -110,8 +111,8 @@ fn echo(entries: &mut [LogEntry]) {
     if is_whole {
         return;
     }
-    // The cycles before the log are unknown. The first states are assumed to continue like the
-    // next states.
+    // The cycles before the log are unknown, so the first states are assumed to continue like the
+    // states after them.
     if let [first, second, ..] = entries {
         first.state.ddq_d = second.state.ddq_d;
         if start.is_some() {
@@ -133,8 +134,8 @@ fn difference(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     Twist::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
 }
 
-/// Returns the log with an additional last state, which shows the end of the motion with these
-/// errors. libfranka's log always has such a state, with a success rate of zero.
+/// Returns the log with an additional last state that shows the end of the motion with these
+/// errors. A log of libfranka always has such a state, whose success rate is zero.
 pub(super) fn ended_by(log: &ControlLog, errors: Errors) -> ControlLog {
     let mut entries: Vec<LogEntry> = log.iter().copied().collect();
     if let [.., _, last] = &mut entries[..]
@@ -152,7 +153,7 @@ pub(super) fn ended_by(log: &ControlLog, errors: Errors) -> ControlLog {
     ControlLog::from_iter(entries).rounded()
 }
 
-/// Returns the states, each with the command that answers it.
+/// Returns each state with the command that answers it.
 pub(super) fn cycles(log: &ControlLog, commands: &[RobotCommand]) -> impl Iterator<Item = Cycle> {
     let answers = commands.iter().skip(1).copied().map(Some).chain([None]);
     log.iter().zip(answers).map(|(entry, answer)| {

@@ -7,10 +7,10 @@ use franka_proto::{RobotCommand, RobotState};
 
 use super::{ControlLogError, SHOWN};
 
-/// Generation of the columns of libfranka's table. The names have changed twice.
+/// Generation of the columns in libfranka's table. The column names have changed twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Generation {
-    /// libfranka 0.2 to 0.9.0: `duration, success rate, q[0]`, and an empty column before the
+    /// libfranka 0.2 to 0.9.0: `duration, success rate, q[0]`, with an empty column before the
     /// commands.
     Unprefixed,
     /// libfranka 0.9.1 to 0.14: `time, success_rate, state.q[0]`, with spaces.
@@ -23,7 +23,7 @@ pub enum Generation {
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     bytes: Range<usize>,
-    /// The line of the names, from 1.
+    /// Line of the column names, counted from 1.
     line: u64,
     generation: Generation,
 }
@@ -32,11 +32,11 @@ pub(super) struct Place {
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) generation: Generation,
-    /// Rows, oldest first, at least one.
+    /// At least one row, oldest first.
     pub(super) rows: Vec<Row>,
 }
 
-/// A row: a state, and the command before it.
+/// A row: a state and the command that preceded it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     pub(super) state: RobotState,
@@ -44,7 +44,7 @@ pub(super) struct Row {
     pub(super) command: RobotCommand,
 }
 
-/// Returns the tables of a file, oldest first, and the parts around them.
+/// Returns the tables of a file, oldest first, and the parts of the file between them.
 pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
     let (mut tables, mut around): (Vec<Place>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     let (mut offset, mut is_inside) = (0, false);
@@ -72,7 +72,7 @@ pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
     (tables, around)
 }
 
-/// Returns the generation of a line of names.
+/// Returns the generation to which a line of column names belongs.
 fn generation(line: &str) -> Option<Generation> {
     let mut names = line.split(',');
     let blank = |name: &str| name.starts_with(' ');
@@ -86,21 +86,21 @@ fn generation(line: &str) -> Option<Generation> {
     }
 }
 
-/// True if a line below the names belongs to the table. Truncated or garbled lines belong to it. An
-/// empty line or a line of words ends the table.
+/// Returns true if a line below the column names belongs to the table, even if it is truncated or
+/// garbled. An empty line or a line of words ends the table.
 fn is_row(line: &str) -> bool {
     let line = line.trim();
     let is_number = |c: char| c.is_ascii_digit() || c == '-';
     line.starts_with(is_number) || line.contains(',') && !line.contains("libfranka")
 }
 
-/// Destination of the numbers of a vector of columns.
+/// Field that receives the numbers of a group of columns.
 enum Field {
     State(fn(&mut RobotState) -> &mut [f64]),
     Command(fn(&mut RobotCommand) -> &mut [f64]),
 }
 
-/// The columns by libfranka's names; each is a vector.
+/// The columns with libfranka's names. Each entry is a vector.
 const COLUMNS: [(&str, Field); 11] = [
     ("q", Field::State(|it| &mut it.q)),
     ("q_d", Field::State(|it| &mut it.q_d)),
@@ -127,10 +127,12 @@ struct Layout {
 }
 
 impl Layout {
-    /// Finds the columns. They may have any order, with other columns between them.
+    /// Finds the columns. The columns may have any order, and there may be other columns between
+    /// them.
     fn of(names: &StringRecord, place: &Place) -> Result<Self, ControlLogError> {
         let is_unprefixed = place.generation == Generation::Unprefixed;
-        // Without prefixes, the same names mean states before this column, and commands after it.
+        // Without prefixes, the same column name means a state before this column, and a command
+        // after it.
         let commands = names.iter().position(|name| name == COMMANDS);
         let commands = commands.unwrap_or(names.len());
         let mut numbers = Vec::new();
@@ -173,7 +175,7 @@ impl Field {
 }
 
 impl Table {
-    /// Reads the table at a place of the text.
+    /// Reads the table at this place in the text.
     pub(super) fn read(text: &str, place: &Place) -> Result<Self, ControlLogError> {
         let bytes = &text.as_bytes()[place.bytes.clone()];
         let mut reader = ReaderBuilder::new()
@@ -244,7 +246,7 @@ fn row(
     Ok(row)
 }
 
-/// Returns the error of a cell; `column` counts from 0.
+/// Returns the error for a cell. `column` is counted from 0.
 fn cell(
     names: &StringRecord,
     record: &StringRecord,

@@ -1,4 +1,4 @@
-//! The bytes of a recording: a file or memory.
+//! The bytes of a recording, in a file or in memory.
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
@@ -37,7 +37,8 @@ impl Bytes {
         self.length
     }
 
-    /// Returns `length` bytes from `offset` on; `None`, without allocation, if fewer exist.
+    /// Returns `length` bytes that start at `offset`. If fewer bytes exist, returns `None` without
+    /// allocating memory.
     pub(super) fn read(&self, offset: u64, length: u64) -> io::Result<Option<Vec<u8>>> {
         let end = offset.checked_add(length);
         if end.is_none_or(|end| end > self.length) {
@@ -53,8 +54,8 @@ impl Bytes {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
                 file.seek(SeekFrom::Start(offset))?;
                 let mut bytes = Vec::new();
-                // If the file is truncated in the meantime, it has fewer bytes. The buffer grows
-                // with the data.
+                // Another process may have truncated the file. The buffer grows only with the data
+                // that is read.
                 (&mut *file).take(length).read_to_end(&mut bytes)?;
                 Ok((bytes.len() as u64 == length).then_some(bytes))
             }

@@ -7,7 +7,7 @@ use super::error::RecordingError;
 use super::index::ChunkEntry;
 use super::wire::{self, ChunkHeader, Fields, HEADER, op};
 
-/// A chunk in memory, decompressed.
+/// A decompressed chunk in memory.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
     pub(super) offset: u64,
@@ -67,25 +67,25 @@ impl Chunk {
         })
     }
 
-    /// Returns the kind and the body of the next record; `None` at the end, or if the record cannot
-    /// be read.
+    /// Returns the kind and the body of the next record; `None` at the end, or if the record is
+    /// unreadable.
     pub(super) fn next(&mut self) -> Option<(u8, &[u8])> {
         let (kind, body, _) = wire::split(self.records.get(self.next..)?)?;
         self.next += HEADER as usize + body.len();
         Some((kind, body))
     }
 
-    /// True if unreadable records are left.
+    /// Returns true if unreadable bytes are left.
     pub(super) fn is_cut(&self) -> bool {
         self.next < self.records.len()
     }
 }
 
-/// Name of a compression that the format has and this reader does not support.
+/// Name of a compression that the MCAP format defines but this reader does not support.
 const ZSTD: &str = "zstd";
 
-/// Returns at most one byte more than `size` from LZ4 frames. The memory grows with the actual
-/// output.
+/// Returns the contents of LZ4 frames, but at most one byte more than `size`. Memory grows only
+/// with the actual output.
 fn decompress(data: &[u8], size: u64) -> Result<Vec<u8>, String> {
     let mut records = Vec::new();
     let decoder = lz4::Decoder::new(data).map_err(|error| error.to_string())?;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The file cannot be opened, or a recovery cannot write its file.
+    /// The file cannot be opened, or a recovery cannot write the new file.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
@@ -22,48 +22,49 @@ pub enum RecordingError {
         /// The bytes at the beginning of the file.
         got: Vec<u8>,
     },
-    /// The file is an MCAP file, but not a recording: it describes neither a recording nor a robot.
+    /// The file is an MCAP file but not a recording, because it describes neither a recording nor a
+    /// robot.
     #[error("not a recording of this program: {content}")]
     Foreign {
-        /// Actual content of the file, with the program that wrote it if the file names this
-        /// program.
+        /// Description of the file's actual content. It includes the program that wrote the file,
+        /// if the file contains its name.
         content: String,
     },
-    /// The system reported an error while reading.
+    /// The system reported an error while the file was read.
     #[error("cannot read the recording: {source}")]
     Read {
         /// The system's error.
         source: Arc<io::Error>,
     },
-    /// A chunk is damaged. Later chunks can be read.
+    /// A chunk is damaged. Chunks after it can still be read.
     #[error(
         "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` writes a copy without it"
     )]
     Chunk {
-        /// Offset of the chunk's beginning.
+        /// Position of the chunk's first byte in the file.
         offset: u64,
-        /// The error.
+        /// Description of the damage.
         reason: String,
     },
-    /// A chunk has an unsupported compression, because another tool rewrote the file. Rewrite the
-    /// file with `lz4` or without compression.
+    /// The compression of a chunk is not supported, because another tool rewrote the file. Rewrite
+    /// the file with `lz4` or without compression.
     #[error(
         "the chunk at byte {offset} is compressed with {got:?}; expected \"lz4\" or no compression"
     )]
     Compression {
-        /// Offset of the chunk's beginning.
+        /// Position of the chunk's first byte in the file.
         offset: u64,
-        /// The compression named by the file.
+        /// Name of the compression in the file.
         got: String,
     },
-    /// A message cannot be decoded as the kind of its channel. Later messages can be read.
+    /// A message does not have the type of its channel. Messages after it can still be read.
     #[error("a message of {topic} in the chunk at byte {offset} is damaged: {reason}")]
     Message {
         /// Channel of the message.
         topic: String,
-        /// Offset of the chunk that contains the message.
+        /// Position of the chunk that contains the message.
         offset: u64,
-        /// The error.
+        /// Description of the decoding error.
         reason: String,
     },
     /// The recording contains no robot with this name.

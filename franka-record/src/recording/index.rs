@@ -1,4 +1,4 @@
-//! The positions of a recording's chunks, from its summary or from a scan.
+//! Positions of a recording's chunks, from the summary or from a scan.
 
 use std::collections::BTreeMap;
 
@@ -15,9 +15,9 @@ pub(super) struct Index {
     pub(super) metadata: Vec<Entry>,
     /// Bodies of schema and channel records outside of chunks.
     pub(super) described: Vec<(u8, Vec<u8>)>,
-    /// End of the data, if the file was scanned up to this point.
+    /// End of the data. Set only if the file was scanned up to this point.
     pub(super) data_end: Option<u64>,
-    /// Reason why the file is incomplete or damaged, if it is.
+    /// Description of why the file is incomplete or damaged; `None` if it is intact.
     pub(super) damage: Option<String>,
 }
 
@@ -59,7 +59,7 @@ impl Index {
         }
     }
 
-    /// Returns the index at the end of the file, or the reason why it cannot be used.
+    /// Returns the index at the end of the file, or the reason why that index cannot be used.
     fn of_summary(bytes: &Bytes) -> Result<Result<Self, String>, RecordingError> {
         let missing = |what: &str| Ok(Err(format!("its end is missing: {what}")));
         let Some(start) = bytes.length().checked_sub(FOOTER_LENGTH) else {
@@ -87,7 +87,7 @@ impl Index {
             return missing("no summary");
         };
         if crc != 0 {
-            // The checksum includes the part of the footer before the checksum itself.
+            // The checksum covers the footer up to the checksum itself.
             let mut hasher = crc32fast::Hasher::new();
             hasher.update(&summary);
             hasher.update(&footer[..HEADER as usize + 16]);
@@ -122,7 +122,7 @@ impl Index {
                 _ => {}
             }
         }
-        // An entry that points outside of the file does not belong to this index.
+        // An entry that refers to a position outside of the file does not belong to this index.
         let inside = |offset: u64, length| {
             offset
                 .checked_add(length)
@@ -133,7 +133,7 @@ impl Index {
         (chunks && entries.all(|entry| inside(entry.offset, entry.length))).then_some(index)
     }
 
-    /// Builds the index by a scan from record to record, up to the last readable record.
+    /// Scans the file from record to record, up to the last readable record, and returns the index.
     pub(super) fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
         Self::check_magic(bytes)?;
         let mut index = Self::default();
@@ -156,7 +156,7 @@ impl Index {
                 op::CHUNK => {
                     let part = body.min(ChunkHeader::LENGTH_MAX);
                     let part = bytes.read(offset + HEADER, part)?.unwrap_or_default();
-                    // A chunk without a header is reported as damaged when it is read.
+                    // A chunk without a readable header is reported as damaged when it is read.
                     let times = ChunkHeader::read(&mut Fields(&part));
                     let (begin, end) = times.map_or((0, u64::MAX), |c| (c.begin, c.end));
                     index.chunks.push(ChunkEntry {
@@ -191,7 +191,7 @@ fn entry(fields: &mut Fields<'_>) -> Option<Entry> {
     })
 }
 
-/// Length of the footer and the magic bytes after it.
+/// Number of bytes in the footer and the magic bytes after it.
 const FOOTER_LENGTH: u64 = HEADER + 8 + 8 + 4 + 8;
 
 /// The channels of a recording, with the kinds of their messages.
@@ -210,8 +210,8 @@ pub(super) struct ChannelEntry {
 }
 
 impl Channels {
-    /// Processes a record that describes a schema or a channel; other records are ignored. Returns
-    /// true if the record could be read.
+    /// Processes a record that describes a schema or a channel, and ignores other records. Returns
+    /// true if the record was readable.
     pub(super) fn take(&mut self, kind: u8, body: &[u8]) -> bool {
         match kind {
             op::SCHEMA => match wire::Schema::read(body) {

@@ -11,11 +11,11 @@ use super::wire::{self, op};
 use crate::schema::{Topic, franka};
 use crate::{Cycle, Event, GripperState, HostTime};
 
-/// Walks through the chunks that may contain the requested messages.
+/// Iterates over the chunks that may contain the requested messages.
 #[derive(Debug)]
 struct Walk {
     bytes: Bytes,
-    /// The remaining chunks, with the next chunk last.
+    /// The remaining chunks. The next chunk is the last element.
     chunks: Vec<ChunkEntry>,
     open: Option<Chunk>,
     from: HostTime,
@@ -23,7 +23,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// Starts `before` chunks before the first chunk with requested messages.
+    /// Starts `before` chunks before the first chunk that may contain requested messages.
     fn of(robot: &RobotRecording<'_>, before: usize) -> Self {
         let all = &robot.recording.index.chunks;
         let wanted = |chunk: &ChunkEntry| {
@@ -41,8 +41,8 @@ impl Walk {
         }
     }
 
-    /// Calls `take` with each message until `take` returns a value, and returns this value. `None`
-    /// at the end.
+    /// Calls `take` with one message after the other until `take` returns a value, and returns this
+    /// value. Returns `None` at the end.
     fn next<T>(
         &mut self,
         mut take: impl FnMut(wire::Message<'_>) -> Option<Result<T, (&'static str, String)>>,
@@ -95,7 +95,7 @@ fn channel(robot: &RobotRecording<'_>, topic: Topic) -> Option<u16> {
     channels.find(&topic.channel(&robot.name), &topic.schema())
 }
 
-/// Iterator of the cycles of one robot: see [`RobotRecording::cycles`].
+/// Iterator over the cycles of one robot (see [`RobotRecording::cycles`]).
 #[derive(Debug)]
 pub struct Cycles {
     walk: Walk,
@@ -107,8 +107,8 @@ pub struct Cycles {
 impl Cycles {
     pub(super) fn of(robot: &RobotRecording<'_>) -> Self {
         Self {
-            // Each chunk contains the tool once, or up to half a second later if cycles are
-            // thinned.
+            // Each chunk contains the tool once. In a thinned recording, the tool may come up to
+            // half a second later.
             walk: Walk::of(robot, 2),
             cycles: channel(robot, Topic::Cycle),
             tools: channel(robot, Topic::Tool),
@@ -148,7 +148,7 @@ impl Iterator for Cycles {
     }
 }
 
-/// Iterator of the events of one robot: see [`RobotRecording::events`].
+/// Iterator over the events of one robot (see [`RobotRecording::events`]).
 #[derive(Debug)]
 pub struct Events {
     walk: Walk,
@@ -175,7 +175,7 @@ impl Iterator for Events {
                 return None;
             }
             match franka::Event::decode(message.data) {
-                // An event of a kind from a later version is ignored.
+                // Events of kinds that later versions added are ignored.
                 Ok(read) => read.to_event(time).map(Ok),
                 Err(error) => Some(Err(("event", error.to_string()))),
             }
@@ -183,8 +183,8 @@ impl Iterator for Events {
     }
 }
 
-/// Iterator of the gripper states of one robot, each with its time of arrival: see
-/// [`RobotRecording::gripper_states`].
+/// Iterator over the gripper states of one robot, each with its time of arrival (see
+/// [`RobotRecording::gripper_states`]).
 #[derive(Debug)]
 pub struct GripperStates {
     walk: Walk,

@@ -20,8 +20,9 @@
 //! # Ok::<(), franka_record::recording::RecordingError>(())
 //! ```
 //!
-//! The index at the end of the file locates each part of a recording. The reader reads only the
-//! requested parts. If the end is missing, it scans the file once, from chunk to chunk.
+//! The index at the end of the file contains the position of each part of a recording, so the
+//! reader reads only the requested parts. If the end of the file is missing, the reader scans the
+//! file once, from chunk to chunk.
 
 mod bytes;
 mod chunk;
@@ -63,25 +64,27 @@ pub struct Recording {
     damage: Option<String>,
 }
 
-/// A robot of a recording.
+/// A robot in a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RecordedRobot {
-    /// Name of the robot; empty for a single robot without a name.
+    /// Name of the robot; empty if the recording has a single robot without a name.
     pub name: String,
-    /// Kind of the robot; `None` if the file does not name it, or this version does not know it.
+    /// Kind of the robot; `None` if the file does not contain the kind, or if this version does not
+    /// know it.
     pub kind: Option<RobotKind>,
-    /// Other known facts about the robot.
+    /// Other facts about the robot, as written by the recorder.
     pub metadata: BTreeMap<String, String>,
 }
 
 impl Recording {
-    /// Opens a recording. A recording without an end is read up to the last whole chunk; see
-    /// [`Recording::damage`].
+    /// Opens a recording. If the end of the file is missing, the recording contains all whole
+    /// chunks (see [`Recording::damage`]).
     ///
     /// # Errors
-    /// [`RecordingError::File`], [`RecordingError::NotMcap`], [`RecordingError::Foreign`],
-    /// [`RecordingError::Read`].
+    /// Returns [`RecordingError::File`] if the file cannot be opened, [`RecordingError::NotMcap`]
+    /// if it is not an MCAP file, [`RecordingError::Foreign`] if it is not a recording, and
+    /// [`RecordingError::Read`] if it cannot be read.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         let bytes = File::open(path).and_then(Bytes::of_file);
@@ -91,10 +94,11 @@ impl Recording {
         })?)
     }
 
-    /// Like [`Recording::open`], for the bytes of a file in memory.
+    /// Opens a recording from the bytes of a file in memory, like [`Recording::open`].
     ///
     /// # Errors
-    /// [`RecordingError::NotMcap`], [`RecordingError::Foreign`].
+    /// Returns [`RecordingError::NotMcap`] if the bytes are not an MCAP file, and
+    /// [`RecordingError::Foreign`] if they are not a recording.
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordingError> {
         Self::read(Bytes::of_memory(bytes))
     }
@@ -120,8 +124,8 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Describes a file that lacks the metadata of a recording. `None` if it is a recording that
-    /// was cut off before the metadata. `others` are the names of the metadata that the file has.
+    /// Describes a file that lacks the metadata of a recording. `None` for a recording that was cut
+    /// off before its metadata. `others` are the names of the file's metadata records.
     fn foreign(&self, others: &[String]) -> Result<Option<String>, RecordingError> {
         if others.iter().any(|name| name == CASSETTE_METADATA) {
             return Ok(Some("a cassette, which `franka cassette` reads".to_owned()));
@@ -181,12 +185,13 @@ impl Recording {
         Ok(others)
     }
 
-    /// Finds the channels in the summary, or else in the first chunks.
+    /// Finds the channels in the summary. Without a summary, finds them in the first chunks.
     fn read_channels(&mut self) -> Result<(), RecordingError> {
         for (kind, body) in &self.index.described {
             self.channels.take(*kind, body);
         }
-        // Without a summary, the chunk in which a robot was attached describes its channels.
+        // Without a summary, the channels of a robot are described in the chunk in which the robot
+        // was attached.
         for entry in &self.index.chunks {
             if self.knows_channels() {
                 break;
@@ -205,24 +210,24 @@ impl Recording {
         Ok(())
     }
 
-    /// True if the channels of every robot are known.
+    /// Returns true if the channels of every robot are known.
     fn knows_channels(&self) -> bool {
         let schema = Topic::Gripper.schema();
         self.robots.iter().all(|robot| {
-            // The channel of the gripper is the last that a file describes.
+            // The channel of the gripper is described last.
             let name = Topic::Gripper.channel(&robot.name);
             self.channels.find(&name, &schema).is_some()
         })
     }
 
-    /// Describes the damage of the file, if any. The end is missing after a power failure or a
-    /// crash, or if the disk was full. The index may also be damaged. The data that was flushed can
-    /// still be read.
+    /// Returns a description of the damage if the file is damaged. The end of the file is missing
+    /// after a power failure, after a crash, or if the disk was full. The index can also be
+    /// damaged. Data that was flushed before remains readable.
     pub fn damage(&self) -> Option<&str> {
         self.damage.as_deref()
     }
 
-    /// Returns the times of the first and the last message; `None` if the recording has no
+    /// Returns the times of the first and the last message; `None` if the recording contains no
     /// messages.
     pub fn span(&self) -> Option<(HostTime, HostTime)> {
         let chunks = || self.index.chunks.iter().filter(|chunk| chunk.end > 0);
@@ -231,7 +236,7 @@ impl Recording {
         Some((HostTime::from_nanos(begin), HostTime::from_nanos(end)))
     }
 
-    /// Returns the metadata of the whole recording: versions, host, kernel, options.
+    /// Returns the metadata of the whole recording: versions, host, kernel and options.
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
     }
@@ -241,8 +246,8 @@ impl Recording {
         &self.robots
     }
 
-    /// Returns the recording of one robot. The name of a single robot is empty, unless the program
-    /// set a name.
+    /// Returns the recording of the robot `name`. The name of a single robot is empty unless the
+    /// program set a name.
     ///
     /// # Errors
     /// [`RecordingError::NoRobot`] if the recording has no robot with this name.
@@ -278,7 +283,7 @@ impl Recording {
         Ok(names)
     }
 
-    /// Returns the bytes of an attached file; `None` if no attached file has this name, or if it is
+    /// Returns the bytes of the attached file `name`; `None` if the attachment does not exist or is
     /// damaged.
     ///
     /// # Errors
@@ -303,8 +308,8 @@ impl Recording {
         Ok(None)
     }
 
-    /// Returns the description of a robot. A file that the program attached under the same name
-    /// comes before it.
+    /// Returns the description of a robot. If the program attached another file under the same
+    /// name, that file precedes the description.
     fn description(&self, name: &str) -> Option<String> {
         let newest_first = self.index.attachments.iter().rev();
         let data = self.attachment_in(newest_first, name).ok()??;
@@ -312,7 +317,7 @@ impl Recording {
     }
 }
 
-/// Returns name and bytes of an attachment.
+/// Returns the name and the bytes of an attachment.
 fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     let (op::ATTACHMENT, body, _) = wire::split(record)? else {
         return None;
@@ -326,10 +331,10 @@ fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
 }
 
-/// Largest number of bytes of the first record that the reader reads. Longer texts are not shown.
+/// Largest number of bytes that the reader reads from the first record. Longer texts are not shown.
 const HEADER_MAX: u64 = 1024;
 
-/// The recording of one robot in a time range; initially the whole recording.
+/// The recording of one robot in a time range, which is initially the whole recording.
 #[derive(Clone, Debug)]
 pub struct RobotRecording<'a> {
     recording: &'a Recording,
@@ -339,8 +344,8 @@ pub struct RobotRecording<'a> {
 }
 
 impl RobotRecording<'_> {
-    /// Returns the model of the robot, with the limits of its attached description; `None` if the
-    /// file does not name a known kind of robot.
+    /// Returns the model of the robot with the limits of the attached description; `None` if the
+    /// file does not contain a known kind of robot.
     pub fn model(&self) -> Option<RecordedModel> {
         let mut robots = self.recording.robots.iter();
         let robot = robots.find(|robot| robot.name == self.name)?;
@@ -351,7 +356,7 @@ impl RobotRecording<'_> {
         Some(RecordedModel::of(kind, urdf.as_deref(), lengths))
     }
 
-    /// Returns the part of the recording from `time` on.
+    /// Returns the part of the recording that starts at `time`.
     #[must_use]
     pub fn from(&self, time: HostTime) -> Self {
         Self {
@@ -360,7 +365,7 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// Returns the part of the recording up to and including `time`.
+    /// Returns the part of the recording that ends at `time`, including messages at `time`.
     #[must_use]
     pub fn to(&self, time: HostTime) -> Self {
         Self {
@@ -369,24 +374,26 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// Returns the cycles, oldest first. After an error, the iterator continues behind the damage.
+    /// Returns the cycles, oldest first. After an error, the iterator continues with the data that
+    /// follows the damage.
     pub fn cycles(&self) -> Cycles {
         Cycles::of(self)
     }
 
-    /// Returns the events, oldest first. Errors are handled as in [`RobotRecording::cycles`].
+    /// Returns the events, oldest first. The iterator handles errors as [`RobotRecording::cycles`]
+    /// does.
     pub fn events(&self) -> Events {
         Events::of(self)
     }
 
-    /// Returns the states of the gripper, oldest first. Errors are handled as in
-    /// [`RobotRecording::cycles`].
+    /// Returns the states of the gripper, oldest first. The iterator handles errors as
+    /// [`RobotRecording::cycles`] does.
     pub fn gripper_states(&self) -> GripperStates {
         GripperStates::of(self)
     }
 
-    /// Returns `rate` cycles per second of the robot's clock. Each is the newest cycle at that
-    /// time; in a gap it is the cycle before the gap.
+    /// Returns `rate` cycles per second of the robot's clock. Each is the newest recorded cycle at
+    /// its time. In a gap, this is the cycle before the gap.
     pub fn resampled(&self, rate: f64) -> Resampled {
         Resampled::of(self.cycles(), rate)
     }

@@ -1,4 +1,4 @@
-//! The records of a whole MCAP file in memory, for any bytes.
+//! The records of a whole MCAP file in memory. The file may contain any bytes.
 
 use std::collections::BTreeMap;
 
@@ -26,13 +26,14 @@ pub(crate) enum Record<'a> {
     },
 }
 
-/// Calls `take` with all metadata, and then with the channels and messages of every chunk, in the
-/// order of the file. Stops at the first damaged chunk. Returns the error of the file, if any.
+/// Calls `take` first with all metadata, and then with the channels and messages of every chunk, in
+/// the order of the file. Stops at the first damaged chunk. Returns a description of the file's
+/// damage, if any.
 ///
-/// Before the bytes have been read, a length in the file is not trusted.
+/// The function does not trust a length in the file before it has read that many bytes.
 ///
 /// # Errors
-/// The errors of `take`, and [`RecordingError::NotMcap`].
+/// Returns the errors of `take`, and [`RecordingError::NotMcap`] if the file is not an MCAP file.
 pub(crate) fn each_record<E: From<RecordingError>>(
     file: &[u8],
     mut take: impl FnMut(Record<'_>) -> Result<(), E>,
@@ -88,8 +89,8 @@ pub(crate) fn each_record<E: From<RecordingError>>(
         .or_else(|| damage_outside(file, index.data_end)))
 }
 
-/// Returns an error outside of chunks: the checksum over all bytes before `data_end`, or the end of
-/// the file.
+/// Returns the damage outside of chunks: a wrong checksum over the bytes before `data_end`, or a
+/// damaged end of the file.
 fn damage_outside(file: &[u8], data_end: Option<u64>) -> Option<String> {
     let data_end = usize::try_from(data_end?).ok()?;
     let (data, rest) = file.split_at_checked(data_end)?;

@@ -1,4 +1,4 @@
-//! Recovery of a file without an end.
+//! Recovery of a file whose end is missing.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::BufWriter;
@@ -29,15 +29,16 @@ pub struct Recovery {
 }
 
 impl Recording {
-    /// Writes the intact parts of the MCAP file `damaged` to a new file, and adds the missing
-    /// index. As with `mcap recover` of the standard tool, the intact parts are every message of
-    /// every whole chunk, attachments and metadata. Any MCAP file is possible, with LZ4 or without
-    /// compression. Messages outside of chunks are omitted.
+    /// Writes the intact parts of the MCAP file `damaged` to the new file `whole`, with the missing
+    /// index. The intact parts are every message in every whole chunk, the attachments and the
+    /// metadata, as with `mcap recover` of the standard tool. The function accepts any MCAP file
+    /// that is uncompressed or compressed with LZ4. It omits messages outside of chunks.
     ///
     /// # Errors
-    /// [`RecordingError::NotMcap`], [`RecordingError::Compression`], [`RecordingError::Read`], and
-    /// [`RecordingError::File`] if `whole` exists or cannot be written; the new file is then
-    /// removed.
+    /// Returns [`RecordingError::NotMcap`] if `damaged` is not an MCAP file,
+    /// [`RecordingError::Compression`] if its compression is not supported, and
+    /// [`RecordingError::Read`] if it cannot be read. Returns [`RecordingError::File`] if `whole`
+    /// exists or cannot be written, and removes the incomplete new file.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,
@@ -58,7 +59,7 @@ impl Recording {
             .map_err(|error| of_file(whole, error))?;
         let written = write(&bytes, &index, file);
         if written.is_err() {
-            // The partial file is of no use, and its error has been reported.
+            // The incomplete file is useless, and its error has been reported.
             let _ = fs::remove_file(whole);
         }
         written.map_err(|failure| match failure {

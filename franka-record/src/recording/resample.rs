@@ -1,27 +1,27 @@
-//! Cycles at another rate.
+//! Recorded cycles at a different rate.
 
 use super::{Cycles, RecordingError};
 use crate::Cycle;
 
-/// Iterator of cycles at a constant rate: see
-/// [`RobotRecording::resampled`](super::RobotRecording::resampled).
+/// Iterator over cycles at a constant rate (see
+/// [`RobotRecording::resampled`](super::RobotRecording::resampled)).
 #[derive(Debug)]
 pub struct Resampled {
     cycles: Cycles,
     /// Time between two samples, `[ms]` of the robot's clock.
     period: f64,
-    /// Newest cycle that is not after the next sample.
+    /// Newest cycle that is not later than the next sample.
     held: Option<Cycle>,
     /// The cycle after `held`.
     next: Option<Cycle>,
-    /// Robot time of the first sample, and number of samples since.
+    /// Robot time of the first sample.
     first: u64,
     samples: u64,
 }
 
 impl Resampled {
     pub(super) fn of(cycles: Cycles, rate: f64) -> Self {
-        // With an invalid rate, every cycle is returned.
+        // With an invalid rate, the iterator returns every cycle.
         let period = if rate > 0.0 { 1e3 / rate } else { 1.0 };
         Self {
             cycles,
@@ -52,7 +52,7 @@ impl Iterator for Resampled {
             let due = self.due();
             if let (Some(held), Some(next)) = (self.held, self.next) {
                 let (before, after) = (held.record.time, next.record.time);
-                // The robot was restarted, or cycles are missing for a long time.
+                // The robot was restarted, or many consecutive cycles are missing.
                 if after < before || after - before > GAP_MAX_MS {
                     self.next = None;
                     self.begin(next);
@@ -78,5 +78,5 @@ impl Iterator for Resampled {
     }
 }
 
-/// Longest gap that an old cycle fills, `[ms]`.
+/// Longest gap that is filled with the cycle before it, `[ms]`.
 const GAP_MAX_MS: u64 = 10_000;

@@ -1,7 +1,8 @@
-//! The records of an MCAP file that the reader of recordings needs.
+//! The MCAP records that the reader of recordings needs.
 //!
-//! This module reads the records instead of the crate `mcap`, because it does not trust a length in
-//! a damaged file before it has read the bytes. Source: the MCAP format specification, version 0.
+//! This module replaces the crate `mcap` for reading, because it does not trust a length in a
+//! damaged file before it has read that many bytes. Source: the MCAP format specification, version
+//! 0.
 
 use std::collections::BTreeMap;
 
@@ -24,16 +25,16 @@ pub(super) mod op {
     pub(in crate::recording) const DATA_END: u8 = 0x0f;
 }
 
-/// Number of bytes of a record before its body: the kind and the length of the body.
+/// Number of bytes of a record before its body: the record kind and the length of the body.
 pub(super) const HEADER: u64 = 9;
 
-/// Returns kind and length of the body of a record.
+/// Returns the record kind and the length of the body.
 pub(super) fn header(bytes: &[u8]) -> Option<(u8, u64)> {
     let mut fields = Fields(bytes);
     Some((fields.u8()?, fields.u64()?))
 }
 
-/// Splits off the first record. Returns its kind, its body and the remaining bytes.
+/// Splits off the first record. Returns its kind, its body and the bytes after the record.
 pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (kind, length) = header(bytes)?;
     let rest = &bytes[HEADER as usize..];
@@ -73,7 +74,7 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// Reads a text that follows its length.
+    /// Reads a text and the length before it.
     pub(super) fn text(&mut self) -> Option<&'a str> {
         let length = usize::try_from(self.u32()?).ok()?;
         std::str::from_utf8(self.bytes(length)?).ok()
@@ -185,7 +186,7 @@ impl<'a> ChunkHeader<'a> {
     }
 }
 
-/// An attachment, and the position of its data in the body of its record.
+/// An attachment. The position of its data is relative to the record's body.
 pub(super) struct AttachmentHeader<'a> {
     pub(super) log_time: u64,
     pub(super) create_time: u64,

@@ -1,4 +1,4 @@
-//! The schedule of a replay on the robot's clock.
+//! The timing of a replay on the robot's clock.
 
 use core::time::Duration;
 
@@ -8,33 +8,33 @@ use franka_rt::session::Chunk;
 use super::error::ReplayError;
 use super::plan::{PERIOD, ReplayPlan};
 
-/// Number of targets of a chunk before the next chunk takes over: 1 s. The replay sends the next
-/// chunk when this chunk begins.
+/// Number of targets from the beginning of a chunk to the beginning of the next chunk: 1 s. The
+/// replay sends the next chunk when this chunk begins.
 const WINDOW: usize = 100;
 
-/// Number of targets that a chunk repeats from before it takes over: 0.2 s. It thus agrees with the
-/// previous chunk at that moment.
+/// Number of targets at the beginning of a chunk that repeat targets of the previous chunk: 0.2 s.
+/// Because of these targets, both chunks agree when the next chunk takes over.
 const BEFORE: usize = 20;
 
-/// Number of additional targets at the end of a chunk: 0.5 s. They bridge the time if the host is
-/// late with the next chunk. If no chunk follows, the arm stops at their end.
+/// Number of additional targets at the end of a chunk: 0.5 s. They bridge the time until the next
+/// chunk if the host is late. If no chunk follows, the arm stops at the last target.
 const AFTER: usize = 50;
 
-/// Time from the first chunk's departure to its first target.
+/// Time from the departure of the first chunk to its first target.
 const LEAD_IN: Duration = Duration::from_millis(100);
 
-/// A running replay. It provides each chunk of targets when it is due, on the robot's clock.
+/// A replay in progress. It provides each chunk of targets when the chunk is due on the robot's
+/// clock.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayCourse {
-    /// Time of the first target, as a `message_id`.
+    /// Time of the first target, as the `message_id` of a state.
     begin: u64,
     /// The number of the next chunk.
     next: usize,
 }
 
 impl ReplayCourse {
-    /// Creates a replay that begins a tenth of a second after the state with the `message_id`
-    /// `now`.
+    /// Creates a replay that begins 0.1 s after the state whose `message_id` is `now`.
     pub fn new(now: u64) -> Self {
         Self {
             begin: now + milliseconds(LEAD_IN),
@@ -42,22 +42,22 @@ impl ReplayCourse {
         }
     }
 
-    /// Returns the time of the first target, as a `message_id`.
+    /// Returns the time of the first target, as the `message_id` of a state.
     pub fn begin(&self) -> u64 {
         self.begin
     }
 
-    /// Returns the time of the last target, as a `message_id`.
+    /// Returns the time of the last target, as the `message_id` of a state.
     pub fn end(&self, plan: &ReplayPlan) -> u64 {
         self.begin + milliseconds(plan.duration())
     }
 
-    /// Returns the chunk that must be sent at the state with the `message_id` `now`; `None` if no
-    /// chunk is due. The first chunk is due immediately. Every other chunk is due when the chunk
-    /// before it begins.
+    /// Returns the chunk that the caller must send after the state whose `message_id` is `now`;
+    /// `None` if no chunk is due. The first chunk is due immediately. Every later chunk is due when
+    /// the previous chunk begins.
     ///
     /// # Errors
-    /// [`ReplayError::Chunk`] for targets that do not form a motion.
+    /// Returns [`ReplayError::Chunk`] if the targets do not form a motion.
     pub fn due(
         &mut self,
         plan: &ReplayPlan,
@@ -76,7 +76,7 @@ impl ReplayCourse {
         Ok(Some(chunk.observed_at(self.time_of(first))))
     }
 
-    /// Returns the time of a target, as a `message_id`.
+    /// Returns the time of a target, as the `message_id` of a state.
     fn time_of(&self, target: usize) -> u64 {
         self.begin + milliseconds(PERIOD) * target as u64
     }

@@ -1,40 +1,40 @@
-//! The deviation of a replay from the recorded motion.
+//! Deviation of a replayed motion from the recorded motion.
 
 use franka_model::Model;
 use franka_proto::RobotState;
 
 use super::plan::{PERIOD, ReplayPlan, ReplayTargets, pose_at};
 
-/// Collects the distances between the arm and the recorded arm during a replay.
+/// Collects the distances of the arm from the recorded arm during a replay.
 #[derive(Clone, Debug, Default)]
 pub struct ReplayDeviation {
     joints: Vec<f64>,
     position: Vec<f64>,
 }
 
-/// Distance of the arm from the recorded arm.
+/// Distance of the arm from the recorded arm in one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
-    /// Largest distance of a joint, `[rad]`.
+    /// Largest distance of any joint from its recorded position, `[rad]`.
     pub joints: f64,
-    /// Distance of the end effector from the recorded end effector, `[m]`.
+    /// Distance of the end effector from its recorded position, `[m]`.
     pub position: f64,
 }
 
-/// Median, 95th percentile and maximum of some distances.
+/// Median, 95th percentile and maximum of a set of distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Median: half of the distances are smaller.
+    /// Median. Half of the distances are smaller.
     pub median: f64,
-    /// 95th percentile: 95 % of the distances are smaller.
+    /// 95th percentile. 95 % of the distances are smaller.
     pub p95: f64,
     /// Largest distance.
     pub max: f64,
 }
 
 impl ReplayDeviation {
-    /// Records a state that came `since_begin` milliseconds after the first target. Returns its
-    /// distance.
+    /// Processes a state that arrived `since_begin` milliseconds after the first target. Returns
+    /// the arm's distance in this state.
     pub fn note(
         &mut self,
         plan: &ReplayPlan,
@@ -52,36 +52,36 @@ impl ReplayDeviation {
         Distance { joints, position }
     }
 
-    /// Returns the spread of the largest joint distance per state, `[rad]`.
+    /// Returns the spread of the joint distances of all states, `[rad]`.
     pub fn joints(&self) -> Spread {
         Spread::of(&self.joints)
     }
 
-    /// Returns the spread of the end effector's distance per state, `[m]`.
+    /// Returns the spread of the end effector's distances of all states, `[m]`.
     pub fn position(&self) -> Spread {
         Spread::of(&self.position)
     }
 
-    /// Number of recorded states.
+    /// Returns the number of processed states.
     pub fn len(&self) -> usize {
         self.joints.len()
     }
 
-    /// True if no state was recorded.
+    /// Returns true if no state was processed.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
 }
 
 impl ReplayPlan {
-    /// Distance of a joint, `[rad]`, above which a replay by joints should be aborted. Springs,
-    /// friction and lag cause a tenth of this distance.
+    /// Joint distance above which a replay by joints should be aborted, `[rad]`. Springs, friction
+    /// and lag cause a tenth of this distance.
     pub const JOINTS_OFF_MAX: f64 = 0.15;
 
-    /// Distance of the end effector, `[m]`, above which a replay by poses should be aborted.
+    /// Distance of the end effector above which a replay by poses should be aborted, `[m]`.
     pub const POSITION_OFF_MAX: f64 = 0.05;
 
-    /// Returns the distance and its limit as text, if the replay should be aborted.
+    /// If the replay should be aborted, returns the distance and the limit as text.
     pub fn too_far(&self, distance: Distance) -> Option<(String, String)> {
         let (what, got, most, unit) = match self.targets {
             ReplayTargets::Joints => ("a joint", distance.joints, Self::JOINTS_OFF_MAX, "rad"),
@@ -99,8 +99,8 @@ impl ReplayPlan {
         })
     }
 
-    /// Returns the recorded position of the arm, `since_begin` milliseconds after the start of the
-    /// replay.
+    /// Returns the recorded joint positions of the arm, `since_begin` milliseconds after the start
+    /// of the replay.
     fn measured_at(&self, since_begin: u64) -> [f64; 7] {
         let period = PERIOD.as_millis() as u64;
         let last = self.measured.len() - 1;

@@ -7,10 +7,10 @@ use franka_rt::session::{ChunkError, GoalError};
 
 use super::plan::ReplayOptions;
 
-/// Longest time without a cycle that is bridged, `[ms]`.
+/// Longest gap between two cycles that a replay bridges, `[ms]`.
 pub(super) const GAP_MAX: u64 = 50;
 
-/// Reason why a recording is not replayed. No motion of the replay has begun.
+/// Reason why a recording cannot be replayed. The replay has not moved the arm.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
@@ -19,7 +19,7 @@ pub enum ReplayError {
     Kind {
         /// Kind of the recorded robot.
         got: RobotKind,
-        /// Kind of the robot for the replay.
+        /// Kind of the robot on which the replay should run.
         expected: RobotKind,
     },
     /// The requested speed is out of bounds.
@@ -37,7 +37,7 @@ pub enum ReplayError {
         /// Number of cycles.
         got: usize,
     },
-    /// Cycles are missing, or not in order.
+    /// Cycles are missing or not in order.
     #[error(
         "the recording has a gap from {from} to {to} ms of the robot's clock, expected gaps of \
          {GAP_MAX} ms at most"
@@ -54,7 +54,7 @@ pub enum ReplayError {
         /// `message_id` of the cycle.
         time: u64,
     },
-    /// The joints were not under control in a part of the recording.
+    /// The client did not command the joints in a part of the recording.
     #[error(
         "the recording has no commanded position at {time} ms of the robot's clock: record \
          a motion of an engaged arm, or replay the measured positions (source `measured`)"
@@ -63,25 +63,25 @@ pub enum ReplayError {
         /// `message_id` of the cycle.
         time: u64,
     },
-    /// A joint would exceed its velocity limit.
+    /// A joint would exceed the velocity that a replay may use.
     #[error(
         "joint {joint} would move at {got:.3} rad/s, expected {most:.3} rad/s at most: replay at \
          speed {speed:.2} or less"
     )]
     Fast {
-        /// The joint, from 1.
+        /// Number of the joint, counted from 1.
         joint: usize,
-        /// Its largest velocity, `[rad/s]`.
+        /// Largest velocity of the joint in the replay, `[rad/s]`.
         got: f64,
-        /// The allowed velocity of a replay, `[rad/s]`.
+        /// Largest velocity that a replay may use, `[rad/s]`.
         most: f64,
-        /// A speed at which the replay is possible.
+        /// A speed factor at which the replay is possible.
         speed: f64,
     },
-    /// A target is outside the limits or out of reach.
+    /// A target is outside the limits, or the arm cannot reach it.
     #[error("{after:.3?} after the start of the replay: {error}")]
     Target {
-        /// Time in the replay.
+        /// Time of the target, counted from the beginning of the replay.
         after: Duration,
         /// Reason why the target is refused.
         error: GoalError,

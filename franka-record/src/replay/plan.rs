@@ -1,4 +1,4 @@
-//! The targets of a replay, checked before a motion.
+//! The targets of a replay, which are checked before any motion.
 
 use core::time::Duration;
 
@@ -14,45 +14,46 @@ use crate::sample::{Sample, told};
 /// Time between targets.
 pub(super) const PERIOD: Duration = Duration::from_millis(10);
 
-/// Half of the time over which measured positions are averaged, `[ms]`.
+/// Half of the period over which measured positions are averaged, `[ms]`.
 const HALF_WINDOW: u64 = 20;
 
-/// Share of a joint's velocity limit that a replay may use. The rest is for catching up.
+/// Share of a joint's velocity limit that a replay may use. The arm needs the rest to catch up.
 const VELOCITY_SHARE_MAX: f64 = 0.9;
 
-/// Ratio of the limits to the requirements of the recorded motion.
+/// Ratio of the replay's limits to the largest values of the recorded motion.
 const RESERVE: f64 = 1.25;
 
 /// Options of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReplayOptions {
-    /// Speed relative to the recording: 1 is as recorded, 0.5 takes twice the time.
+    /// Speed as a factor of the recorded speed. At 0.5, the replay takes twice the recorded time.
     pub speed: f64,
-    /// Recorded positions that the arm follows.
+    /// Recorded positions that the arm should follow.
     pub source: ReplaySource,
-    /// Kind of targets that the arm follows.
+    /// Kind of targets that the arm should follow.
     pub targets: ReplayTargets,
 }
 
-/// Recorded positions that an arm follows.
+/// Recorded positions that the arm should follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplaySource {
-    /// The commanded positions, from the first command to the last.
+    /// Commanded positions, from the first command to the last.
     #[default]
     Reference,
-    /// The measured positions, averaged over 40 ms. Use them if the arm was moved by hand or by
-    /// torques.
+    /// Measured positions, averaged over 40 ms. Use them if a person or torque commands moved the
+    /// arm.
     Measured,
 }
 
-/// Kind of targets that an arm follows.
+/// Kind of targets that the arm should follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplayTargets {
-    /// Joint positions: every joint moves as recorded.
+    /// Joint positions. Every joint moves as recorded.
     #[default]
     Joints,
-    /// Poses of the recorded end effector: the hand moves as recorded, but the elbow may differ.
+    /// Poses of the recorded end effector. The end effector moves as recorded, but the elbow may
+    /// differ.
     Poses,
 }
 
@@ -67,17 +68,17 @@ impl Default for ReplayOptions {
 }
 
 impl ReplayOptions {
-    /// Smallest permitted speed.
+    /// Smallest permitted speed factor.
     pub const SPEED_MIN: f64 = 0.01;
 
-    /// Sets the speed.
+    /// Sets the speed factor.
     #[must_use]
     pub fn speed(mut self, speed: f64) -> Self {
         self.speed = speed;
         self
     }
 
-    /// Sets the recorded positions that the arm follows.
+    /// Sets the recorded positions that the arm should follow.
     #[must_use]
     pub fn source(mut self, source: ReplaySource) -> Self {
         self.source = source;
@@ -92,12 +93,12 @@ impl ReplayOptions {
     }
 }
 
-/// A recorded motion, prepared for an arm.
+/// A recorded motion that is prepared for an arm.
 #[derive(Clone, Debug)]
 pub struct ReplayPlan {
     kind: RobotKind,
     pub(super) targets: ReplayTargets,
-    /// Joint positions, with the time [`PERIOD`] between them.
+    /// Joint positions at intervals of [`PERIOD`].
     pub(super) points: Vec<[f64; 7]>,
     /// Measured positions at the times of `points`.
     pub(super) measured: Vec<[f64; 7]>,
@@ -108,12 +109,12 @@ pub struct ReplayPlan {
 }
 
 impl ReplayPlan {
-    /// Prepares the motion in these samples for an arm of this model. `recorded` is the kind of the
+    /// Prepares the motion in `samples` for an arm with this model. `recorded` is the kind of the
     /// recorded robot.
     ///
     /// # Errors
-    /// [`ReplayError`] for a recording that cannot be replayed. Call [`Self::check`] to find
-    /// whether the arm can reach the targets from a given state.
+    /// Returns [`ReplayError`] if the recording cannot be replayed. To find out whether the arm can
+    /// reach the targets from a given state, call [`Self::check`].
     pub fn new(
         recorded: RobotKind,
         samples: &[Sample],
@@ -157,8 +158,8 @@ impl ReplayPlan {
         self.kind
     }
 
-    /// Returns the first target as joint positions, `[rad]`. The arm must rest there when the
-    /// replay begins.
+    /// Returns the joint positions of the first target, `[rad]`. The arm must be at rest there when
+    /// the replay begins.
     pub fn start(&self) -> [f64; 7] {
         self.points[0]
     }
@@ -168,23 +169,23 @@ impl ReplayPlan {
         PERIOD * (self.points.len() as u32 - 1)
     }
 
-    /// Returns the speed of the replay, as a share of the recorded speed. The motion to the first
-    /// target uses the same share of the usual speed.
+    /// Returns the speed factor of the replay. The motion to the first target uses the same factor
+    /// of its usual speed.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Returns the limits for the arm: a quarter more than the motion requires, and at least the
-    /// limits of other goals.
+    /// Returns the limits for the arm. They are a quarter larger than the motion requires, and at
+    /// least as large as the limits of other goals.
     pub fn budget(&self) -> Budget {
         self.budget
     }
 
-    /// Checks all targets for an arm in this state.
+    /// Checks all targets for an arm that is in this state.
     ///
     /// # Errors
-    /// [`ReplayError::Target`] for the first target outside the limits or out of reach, and
-    /// [`ReplayError::Kind`] for an arm of a different kind.
+    /// Returns [`ReplayError::Target`] for the first target that is outside the limits or out of
+    /// reach, and [`ReplayError::Kind`] if the arm is of a different kind.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), ReplayError> {
         if model.kind() != self.kind {
             return Err(ReplayError::Kind {
@@ -204,7 +205,7 @@ impl ReplayPlan {
         Ok(())
     }
 
-    /// Returns the motion through these targets. The first target is at the start of the chunk.
+    /// Returns the motion through these targets. The chunk starts at the first target.
     pub(super) fn chunk(
         &self,
         model: &Model,
@@ -232,7 +233,7 @@ pub(super) fn pose_at(model: &Model, q: &[f64; 7], tool: &Isometry3<f64>) -> Iso
     flange * tool
 }
 
-/// Checks that the times of the cycles increase without gaps.
+/// Checks that the times of the cycles increase and that the cycles have no large gaps.
 fn check_times(samples: &[Sample]) -> Result<(), ReplayError> {
     if samples.len() < 2 {
         return Err(ReplayError::Short { got: samples.len() });
@@ -246,7 +247,7 @@ fn check_times(samples: &[Sample]) -> Result<(), ReplayError> {
     Ok(())
 }
 
-/// Returns the joint positions to follow, for each sample.
+/// Returns the joint positions that the arm should follow, one for each sample.
 fn followed(samples: &[Sample], source: ReplaySource) -> Result<Vec<[f64; 7]>, ReplayError> {
     let of = |(i, sample): (usize, &Sample)| {
         let q = match source {
@@ -264,8 +265,8 @@ fn followed(samples: &[Sample], source: ReplaySource) -> Result<Vec<[f64; 7]>, R
     samples.iter().enumerate().map(of).collect()
 }
 
-/// Returns the mean of the measured positions around sample `i`, over equal times before and after
-/// it.
+/// Returns the mean of the measured positions near sample `i`, over equal periods before and after
+/// the sample.
 fn averaged(samples: &[Sample], i: usize) -> [f64; 7] {
     let time = samples[i].time;
     let room = (time - samples[0].time).min(samples[samples.len() - 1].time - time);
@@ -285,12 +286,12 @@ fn averaged(samples: &[Sample], i: usize) -> [f64; 7] {
     sum.map(|sum| sum / count)
 }
 
-/// Returns positions at the times of the targets, interpolated linearly between samples.
+/// Returns the positions at the times of the targets, linearly interpolated between samples.
 fn resampled(samples: &[Sample], q: &[[f64; 7]], speed: f64) -> Vec<[f64; 7]> {
     let begin = samples[0].time;
     let step = PERIOD.as_secs_f64() * 1e3 * speed;
     let last = (samples[samples.len() - 1].time - begin) as f64;
-    // The last target is at the last sample, or less than a step before it.
+    // The last target is at most one step before the last sample.
     let count = (last / step + 1e-9).floor() as usize + 1;
     let mut next = 1;
     let at = |k: usize| {
@@ -305,7 +306,7 @@ fn resampled(samples: &[Sample], q: &[[f64; 7]], speed: f64) -> Vec<[f64; 7]> {
     (0..count.max(2)).map(at).collect()
 }
 
-/// Returns the limits that the motion needs, plus a reserve.
+/// Returns the limits that the motion requires, plus a reserve.
 fn budget(
     model: &Model,
     points: &[[f64; 7]],
@@ -360,7 +361,7 @@ fn budget(
         (&mut budget.translation, &ends.translation),
         (&mut budget.rotation, &ends.rotation),
     ] {
-        // A recording is within the robot's limits, regardless of its goals.
+        // A recorded motion stays within the robot's limits, regardless of its goals.
         axis.acceleration = most.acceleration;
         axis.jerk = most.jerk;
     }

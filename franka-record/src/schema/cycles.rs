@@ -74,7 +74,8 @@ impl franka::Cycle {
             .map(|slack| (slack.as_nanos() as f64 * 1e-9) as f32);
     }
 
-    /// Returns the cycle of this message. The message lacks the tool, so the caller provides it.
+    /// Returns the cycle in this message. The caller provides the tool, because the message does
+    /// not contain it.
     pub fn to_cycle(&self, tool: Option<&franka::Tool>) -> Cycle {
         let mut cycle = Cycle {
             time: HostTime::from_nanos(self.host_time),
@@ -155,13 +156,13 @@ impl franka::Cycle {
     }
 }
 
-/// Fills in the values that are derived from other values.
+/// Fills in the values that can be computed from other values.
 fn derive(state: &mut RobotState) {
     let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
     let stiffness = pose(&state.O_T_EE) * pose(&state.EE_T_K);
     let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
     let (force, torque) = (Vector3::new(x, y, z), Vector3::new(a, b, c));
-    // In base axes, the torque of the wrench refers to the origin of the base.
+    // In base axes, the torque of the wrench is relative to the origin of the base.
     let torque = torque - stiffness.translation.vector.cross(&force);
     let force: [f64; 3] = stiffness.inverse_transform_vector(&force).into();
     let torque: [f64; 3] = stiffness.inverse_transform_vector(&torque).into();

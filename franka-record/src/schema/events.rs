@@ -24,8 +24,8 @@ impl From<&Event> for franka::Event {
 }
 
 impl franka::Event {
-    /// Returns the event of this message; `time` is the time of the message's record. `None` if the
-    /// kind of event is from a later version of this crate.
+    /// Returns the event in this message; `None` if a later version of this crate added this kind
+    /// of event. `time` is the time of the message.
     pub fn to_event(&self, time: HostTime) -> Option<Event> {
         Some(Event {
             time,

@@ -37,7 +37,8 @@ impl From<&GripperState> for franka::Gripper {
 }
 
 impl franka::Gripper {
-    /// Returns the state of this message; `None` for a kind that this version does not know.
+    /// Returns the state in this message; `None` for a kind of gripper that this version does not
+    /// know.
     pub fn to_state(&self) -> Option<GripperState> {
         Some(match self.kind.as_ref()? {
             franka::gripper::Kind::Hand(hand) => GripperState::Hand(gripper::State {

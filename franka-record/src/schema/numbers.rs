@@ -34,19 +34,19 @@ pub(super) fn generator(number: u32) -> MotionGeneratorMode {
     }
 }
 
-/// Returns the number of a guard in messages: one more than its own number, because 0 represents an
-/// unnamed guard.
+/// Returns the number of a guard in messages. It is the guard's own number plus one, because 0
+/// represents an unnamed guard.
 pub(super) fn guard_number(guard: Guard) -> i32 {
     guard as i32 + 1
 }
 
-/// Returns the guard of a number.
+/// Returns the guard with this number in messages.
 pub(super) fn guard(number: i32) -> Option<Guard> {
     let index = usize::try_from(number).ok()?.checked_sub(1)?;
     Guard::ALL.get(index).copied()
 }
 
-/// Returns the guards of these numbers; undefined numbers are ignored.
+/// Returns the guards with these numbers, and ignores undefined numbers.
 pub(super) fn bindings(numbers: &[i32]) -> Bindings {
     let mut bindings = Bindings::default();
     for guard in numbers.iter().filter_map(|&number| guard(number)) {
@@ -55,7 +55,7 @@ pub(super) fn bindings(numbers: &[i32]) -> Bindings {
     bindings
 }
 
-/// Converts a time of a message in seconds; zero for an invalid time.
+/// Converts a time in seconds from a message. Returns zero if the time is invalid.
 pub(super) fn seconds(seconds: f64) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }

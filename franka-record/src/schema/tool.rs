@@ -23,7 +23,7 @@ impl franka::Tool {
         }
     }
 
-    /// True if `state` has the same tool.
+    /// Returns true if `state` contains the same tool.
     pub fn is_of(&self, state: &RobotState) -> bool {
         self.f_t_ee == state.F_T_EE
             && self.ee_t_k == state.EE_T_K

@@ -8,7 +8,7 @@ use crate::event::Level;
 /// Name of the metadata record of the whole recording.
 pub(crate) const METADATA: &str = "recording";
 
-/// Prefix of the name of a robot's metadata record. The robot's name follows.
+/// Prefix of the name of a robot's metadata record. The robot's name follows the prefix.
 pub(crate) const ROBOT_METADATA: &str = "robot:";
 
 /// Name of the first metadata record of a cassette.
@@ -20,7 +20,7 @@ pub(crate) const CASSETTE_METADATA: &str = "franka cassette";
 pub(crate) enum Topic {
     /// Every cycle.
     Cycle,
-    /// The tool, repeated at each change.
+    /// The tool, written again at each change.
     Tool,
     /// Events, as values.
     Event,
@@ -28,7 +28,7 @@ pub(crate) enum Topic {
     Log,
     /// Poses of links, end effector, reference and target.
     Tf,
-    /// The pose that the reference moves towards.
+    /// The pose towards which the reference moves.
     Target,
     /// Joint positions, velocities and torques.
     Joints,
@@ -51,7 +51,8 @@ impl Topic {
         Self::Gripper,
     ];
 
-    /// Returns the name of a robot's channel; the name of a single robot may be empty.
+    /// Returns the name of a robot's channel. The robot's name may be empty if it is the only
+    /// robot.
     pub(crate) fn channel(self, robot: &str) -> String {
         match robot {
             "" => format!("/{}", self.name()),
@@ -59,7 +60,7 @@ impl Topic {
         }
     }
 
-    /// Returns the topic and the robot of a channel named by [`Self::channel`].
+    /// Returns the topic and the robot for a channel name from [`Self::channel`].
     #[cfg(test)]
     pub(crate) fn of_channel(channel: &str) -> Option<(Self, &str)> {
         let (before, name) = channel.rsplit_once('/')?;
@@ -82,7 +83,7 @@ impl Topic {
         }
     }
 
-    /// Returns the full name of the type of the channel's messages.
+    /// Returns the full name of the type of this channel's messages.
     pub(crate) fn schema(self) -> String {
         match self {
             Self::Cycle => franka::Cycle::full_name(),

@@ -1,4 +1,4 @@
-//! The cassette file: MCAP, one channel per connection, transport and direction.
+//! The cassette file, an MCAP file with one channel per connection, transport and direction.
 
 mod read;
 mod write;
@@ -21,19 +21,19 @@ pub enum CassetteError {
     /// The file cannot be written.
     #[error("cannot write the MCAP file: {0}")]
     Mcap(#[from] mcap::McapError),
-    /// The file is MCAP, but not a cassette.
+    /// The file is an MCAP file, but not a cassette.
     #[error(
         "not a cassette (recorded session): expected the metadata record `{START}` before the \
         first message"
     )]
     NotACassette,
-    /// The file has a newer version of the format than this library.
+    /// The format version of the file is newer than this library.
     #[error("the cassette has version {got:?} of the format, expected {VERSION}")]
     Version {
         /// The version in the file.
         got: String,
     },
-    /// The file has a channel that cassettes do not have.
+    /// The file contains a channel that does not belong to a cassette.
     #[error(
         "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or the \
          same below /udp"
@@ -106,7 +106,7 @@ mod tests {
             .unwrap();
         writer.write(0, Device::Robot, first).unwrap();
         writer.write(0, Device::Robot, second).unwrap();
-        // No events follow on these channels. One of them has no events at all.
+        // Both channels contain no later events. One of them contains no events at all.
         for (from, stream) in [(Side::Robot, true), (Side::Client, false)] {
             writer
                 .note_dropped(0, Device::Robot, from, stream, 1)
@@ -141,7 +141,7 @@ mod tests {
         }
     }
 
-    /// The reader returns every whole chunk of a file that was cut off at any point.
+    /// The reader returns every whole chunk, regardless of where the file was cut off.
     #[test]
     fn a_file_that_was_cut_off_is_read_as_far_as_it_goes() {
         let file = Shared::default();
@@ -173,7 +173,8 @@ mod tests {
         }
     }
 
-    /// A text claims a length of 4 GB. The reader reserves no memory for it, and reads the rest.
+    /// A text claims a length of 4 GB. The reader allocates no memory for the text, and reads the
+    /// rest.
     #[test]
     fn a_length_beyond_the_file_is_not_believed() {
         let cassette = sample();

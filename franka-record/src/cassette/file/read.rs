@@ -1,4 +1,4 @@
-//! Reads the file of a cassette, for any bytes.
+//! Reader for cassette files. The file may contain any bytes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,13 +12,13 @@ impl Cassette {
     /// Reads the file at `path`.
     ///
     /// # Errors
-    /// The errors of [`Self::read`], and [`CassetteError::Io`].
+    /// Returns [`CassetteError::Io`] if the file cannot be read, and the errors of [`Self::read`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, CassetteError> {
         Self::read(&std::fs::read(path)?)
     }
 
-    /// Reads a file. For a truncated file, the cassette contains the data up to the cut, and
-    /// [`Cassette::damage`] contains the reason.
+    /// Reads a cassette from the bytes of a file. If the file is truncated, the cassette contains
+    /// the data before the cut, and [`Cassette::damage`] contains the reason.
     ///
     /// # Errors
     /// [`CassetteError`] if the bytes are not a cassette.
@@ -32,17 +32,18 @@ impl Cassette {
     }
 }
 
-/// The contents read so far.
+/// The contents that were read so far.
 #[derive(Default)]
 struct Reading {
     started: Option<u64>,
     channels: BTreeMap<u16, ReadChannel>,
-    /// Connections by device and number. The first value gives the order in which they appear.
+    /// Connections by device and number. The first value is the position in the order of
+    /// appearance.
     connections: BTreeMap<(Device, usize), (usize, Connection)>,
-    /// Total of missing events, from the end of the file.
+    /// Total number of missing events, as recorded at the end of the file.
     dropped: u64,
-    /// Missing events after the last event of a connection: the connection, true for its stream,
-    /// and the number of events.
+    /// Number of missing events after the last event of a connection. The key is the connection;
+    /// the flag is true for its stream.
     missing_at_end: Vec<((Device, usize), bool, u64)>,
 }
 
@@ -125,7 +126,7 @@ impl Reading {
         data: &[u8],
     ) -> Result<(), CassetteError> {
         let started = self.started.ok_or(CassetteError::NotACassette)?;
-        // A message without a channel is damage of the file and is ignored.
+        // A message without a channel is a sign of damage and is ignored.
         let Some(channel) = self.channels.get_mut(&channel) else {
             return Ok(());
         };
@@ -156,7 +157,8 @@ impl Reading {
         let mut connections: Vec<_> = self.connections.into_values().collect();
         connections.sort_by_key(|(order, _)| *order);
         let connections = connections.into_iter().map(|(_, mut connection)| {
-            // The threads of a tap record events in any order. Their times give the true order.
+            // The threads of a tap record events in any order. The times of the events determine
+            // the true order.
             connection.events.sort_by_key(|event| event.at);
             connection
         });
@@ -185,7 +187,7 @@ impl Connection {
     }
 }
 
-/// Returns the transport (true for a stream), the connection and the sender of a topic.
+/// Returns the transport (true for a stream), the connection and the sender that a topic describes.
 fn parse_topic(topic: &str) -> Option<(bool, (Device, usize), Side)> {
     let mut parts = topic.strip_prefix('/')?.split('/');
     let stream = match parts.next()? {

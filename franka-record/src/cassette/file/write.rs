@@ -1,4 +1,4 @@
-//! Writes the file of a cassette.
+//! Writer for cassette files.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -10,7 +10,7 @@ use mcap::records::MessageHeader;
 use super::{CassetteError, END, MESSAGE_ENCODING, START, VERSION};
 use crate::cassette::{Cassette, Device, Event, Payload, Side};
 
-/// Writes a cassette during the session.
+/// Writer that creates a cassette file during the session.
 ///
 /// The file is MCAP, so MCAP tools can read it (`mcap info`, `mcap recover`). Version 1:
 ///
@@ -22,9 +22,9 @@ use crate::cassette::{Cassette, Device, Event, Payload, Side};
 /// | channels `/udp/1337/1/in`, `/udp/1337/1/out` | the datagrams that belong to the connection |
 /// | metadata `franka cassette end` | `dropped`: number of missing events; by channel name, the events missing after its last event |
 ///
-/// Channels have no schema, and the message encoding `franka`. `log_time` is `started` plus a
-/// monotonic clock, so it does not jump when the wall clock is set. `sequence` counts the events of
-/// a channel, missing events included.
+/// Channels have no schema and the message encoding `franka`. `log_time` is `started` plus the time
+/// of a monotonic clock, so steps of the wall clock do not change it. `sequence` counts the events
+/// of a channel, including missing events.
 #[derive(Debug)]
 pub struct CassetteWriter<W: Write + Seek> {
     mcap: Mcap<W>,
@@ -55,11 +55,11 @@ struct Channel {
 type Key = (usize, bool, bool);
 
 impl<W: Write + Seek> CassetteWriter<W> {
-    /// Creates a writer of a cassette that begins at `started`, in nanoseconds since the Unix
+    /// Creates a writer for a cassette that begins at `started`, in nanoseconds since the Unix
     /// epoch.
     ///
     /// # Errors
-    /// [`CassetteError`] if the beginning cannot be written.
+    /// Returns [`CassetteError`] if the beginning of the file cannot be written.
     pub fn new(file: W, started: u64) -> Result<Self, CassetteError> {
         let options = mcap::WriteOptions::new()
             .compression(Some(mcap::Compression::Lz4))
@@ -82,11 +82,11 @@ impl<W: Write + Seek> CassetteWriter<W> {
         })
     }
 
-    /// Writes an event of the connection with this number. Each connection must have a different
-    /// number. The device of a connection is the device of its first event.
+    /// Writes an event of connection `number`. Each connection must have a different number. The
+    /// first event of a connection determines its device.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file cannot be written.
+    /// Returns [`CassetteError`] if the file cannot be written.
     pub fn write(
         &mut self,
         connection: usize,
@@ -94,7 +94,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         event: &Event,
     ) -> Result<(), CassetteError> {
         let (stream, bytes) = match &event.what {
-            // An empty message means the end.
+            // In the file, an empty message represents the end of a stream.
             Payload::Stream(bytes) if bytes.is_empty() => return Ok(()),
             Payload::Stream(bytes) => (true, bytes.as_slice()),
             Payload::End => (true, &[][..]),
@@ -115,10 +115,10 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(())
     }
 
-    /// Records the number of missing events of a connection.
+    /// Records how many events of a connection are missing.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file cannot be written.
+    /// Returns [`CassetteError`] if the file cannot be written.
     pub fn note_dropped(
         &mut self,
         connection: usize,
@@ -142,10 +142,10 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(())
     }
 
-    /// Ends the chunk. Everything written so far can then be read, even if the process crashes.
+    /// Ends the chunk. All data written so far is then readable, even if the process crashes.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file cannot be written.
+    /// Returns [`CassetteError`] if the file cannot be written.
     pub fn flush(&mut self) -> Result<(), CassetteError> {
         Ok(self.mcap.0.flush()?)
     }
@@ -153,7 +153,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
     /// Writes the end of the file.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file cannot be written.
+    /// Returns [`CassetteError`] if the file cannot be written.
     pub fn finish(mut self) -> Result<W, CassetteError> {
         let mut end = metadata(END, [("dropped", self.dropped.to_string())]);
         let missing = self.channels.into_values();
@@ -165,7 +165,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(self.mcap.0.into_inner())
     }
 
-    /// Returns the channel of this key, and creates the channel if necessary.
+    /// Returns the channel of this key. Creates the channel if necessary.
     fn channel(&mut self, key: Key, device: Device) -> Result<&mut Channel, CassetteError> {
         let (connection, stream, client) = key;
         let channel = match self.channels.entry(key) {
@@ -193,19 +193,19 @@ impl<W: Write + Seek> CassetteWriter<W> {
 }
 
 impl Cassette {
-    /// Returns the file of this cassette.
+    /// Returns the contents of a cassette file for this cassette.
     ///
     /// # Errors
-    /// [`CassetteError`] if there are more channels than a file can have.
+    /// Returns [`CassetteError`] if the cassette needs more channels than a file can contain.
     pub fn to_bytes(&self) -> Result<Vec<u8>, CassetteError> {
         let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), self.started)?;
         let mut order: Vec<_> = Vec::new();
         for (number, connection) in self.connections.iter().enumerate() {
-            // The file also contains a connection without events.
+            // The file must also contain connections without events.
             writer.channel((number, true, true), connection.device)?;
             order.extend(connection.events.iter().map(|event| (number, event)));
         }
-        // A stable sort: simultaneous events keep their order.
+        // The sort is stable, so simultaneous events keep their order.
         order.sort_by_key(|(_, event)| event.at);
         for (number, event) in order {
             writer.write(number, self.connections[number].device, event)?;
@@ -233,10 +233,10 @@ fn metadata<const N: usize>(name: &str, fields: [(&str, String); N]) -> mcap::re
     }
 }
 
-/// Returns the nanoseconds for the file. 64 bits are enough for 584 years.
+/// Returns a time in nanoseconds for the file. 64 bits are enough for 584 years.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// Size of a chunk, uncompressed, in bytes: half a second of a robot's states.
+/// Uncompressed size of a chunk, `[bytes]`. It corresponds to half a second of a robot's states.
 const CHUNK_SIZE: u64 = 1 << 20;

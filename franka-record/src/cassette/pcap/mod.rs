@@ -23,10 +23,10 @@ pub enum CaptureError {
     /// The bytes are not a network capture.
     #[error("not a readable pcap or pcapng file: {what}")]
     Format {
-        /// The error.
+        /// Description of the problem.
         what: String,
     },
-    /// The capture contains no connection of a client.
+    /// The capture contains no connection between a client and a robot.
     #[error(
         "none of the {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339{}",
         captured_in_part(*truncated)
@@ -34,24 +34,26 @@ pub enum CaptureError {
     NoConnection {
         /// Number of packets in the capture.
         packets: usize,
-        /// Number of packets that were captured only partly.
+        /// Number of packets that were captured only in part.
         truncated: u64,
     },
 }
 
-/// Converts a capture, pcap or pcapng, to a cassette. Supported link types: Ethernet, Linux cooked
-/// (also version 2), loopback, and raw IP.
+/// Converts a network capture (pcap or pcapng) to a cassette. Supported link types are Ethernet,
+/// Linux cooked (versions 1 and 2), loopback, and raw IP.
 ///
-/// The conversion orders TCP segments and drops repeated segments. It reassembles IP fragments,
-/// which carry the states of protocol 5.
+/// The conversion sorts TCP segments, drops repeated segments, and reassembles IP fragments. States
+/// of protocol 5 arrive in fragments.
+///
 /// [`Connection::missing_stream`](super::Connection::missing_stream) counts the segments that were
-/// not captured. [`Cassette::truncated`] counts the packets that were captured only partly, for
-/// example because of a snap length. Datagrams belong to the connection whose `Connect` announced
-/// their port, so the capture must contain this message. A truncated file is read up to the cut:
-/// see [`Cassette::damage`].
+/// not captured. [`Cassette::truncated`] counts the packets that were captured only in part, for
+/// example because of a snap length. A datagram belongs to the connection whose `Connect` message
+/// announced the datagram's port, so the capture must contain this message. If the file is
+/// truncated, the cassette contains the data before the cut (see [`Cassette::damage`]).
 ///
 /// # Errors
-/// [`CaptureError`] if the bytes are not a capture, or contain no client and robot.
+/// Returns [`CaptureError`] if the bytes are not a capture, or if the capture contains no client
+/// and robot.
 pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
     let mut packets = Packets::new(file)?;
     let mut sessions = Sessions::default();
@@ -72,7 +74,7 @@ pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
     Ok(cassette)
 }
 
-/// Returns the end of an error text, which describes partly captured packets.
+/// Returns the last part of an error text, which reports packets that were captured only in part.
 fn captured_in_part(packets: u64) -> String {
     match packets {
         0 => String::new(),
@@ -97,7 +99,8 @@ mod tests {
         Event { at, from, what }
     }
 
-    /// Returns two simultaneous connections, datagrams longer than an Ethernet packet, and an end.
+    /// Returns two simultaneous connections, with datagrams longer than an Ethernet packet and the
+    /// end of a stream.
     fn sample() -> Cassette {
         let hello = Session::new(Version::V5).connect(4711).as_bytes().to_vec();
         let mut robot = Connection::new(Device::Robot);
@@ -169,7 +172,8 @@ mod tests {
         }
     }
 
-    /// Returns the capture as `tcpdump -s` would write it, with at most `length` bytes of a packet.
+    /// Returns the capture that `tcpdump -s` would write, with at most `length` bytes of each
+    /// packet.
     fn with_a_snap_length(capture: &[u8], length: usize) -> Vec<u8> {
         let (header, mut rest) = capture.split_at(24);
         let mut cut = header.to_vec();

@@ -12,7 +12,7 @@ use pcap_parser::{Block, Linktype, PcapBlockOwned, PcapError, create_reader};
 
 use super::CaptureError;
 
-/// The packets of a file, in the order of the file. Packets that are neither TCP nor UDP are
+/// Iterator over the packets of a file, in order. Packets that are neither TCP nor UDP are
 /// [`Body::Other`].
 pub(super) struct Packets<'a> {
     reader: Box<dyn PcapReaderIterator + 'a>,
@@ -25,7 +25,7 @@ pub(super) struct Packets<'a> {
 #[derive(Clone, Copy)]
 struct Interface {
     link: Linktype,
-    /// Time units per second, and seconds to add.
+    /// Number of time units per second. `offset` is the number of seconds to add.
     resolution: u64,
     offset: i64,
 }
@@ -44,7 +44,7 @@ pub(super) enum Body {
         to: SocketAddr,
         payload: Vec<u8>,
     },
-    /// A datagram that was captured only partly, for example because of a snap length.
+    /// A datagram that was captured only in part, for example because of a snap length.
     Cut {
         from: SocketAddr,
         to: SocketAddr,
@@ -81,12 +81,12 @@ impl<'a> Packets<'a> {
         })
     }
 
-    /// Number of packets so far that are shorter than their headers declare.
+    /// Returns the number of packets so far that are shorter than their headers declare.
     pub(super) fn truncated(&self) -> u64 {
         self.truncated
     }
 
-    /// Returns the reason why the file is truncated, if it is.
+    /// Returns the reason why the file is truncated, if it is truncated.
     pub(super) fn damage(self) -> Option<String> {
         self.damage
     }
@@ -120,7 +120,7 @@ impl<'a> Packets<'a> {
     }
 }
 
-/// Returns the packet of a block, and true if it was captured only partly.
+/// Returns the packet in a block, and true if the packet was captured only in part.
 fn on_block(
     block: PcapBlockOwned<'_>,
     interfaces: &mut Vec<Interface>,
@@ -179,7 +179,7 @@ fn on_block(
     Some((packet, truncated))
 }
 
-/// Returns the addresses of a datagram that was captured only partly.
+/// Returns the addresses of a datagram that was captured only in part.
 fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
     let sliced = match link {
         Linktype::ETHERNET => LaxSlicedPacket::from_ethernet(data).ok()?,
@@ -208,8 +208,8 @@ fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
     }
 }
 
-/// Returns the program that compressed a file, from the first bytes of the file. Wireshark reads
-/// and writes compressed captures.
+/// Returns the program that compressed a file, determined from the first bytes of the file.
+/// Wireshark reads and writes compressed captures.
 fn compression(file: &[u8]) -> Option<&'static str> {
     match file {
         [0x1f, 0x8b, ..] => Some("gzip"),
@@ -224,7 +224,7 @@ fn body(link: Linktype, data: &[u8], fragments: &mut IpDefragPool<(), ()>) -> Op
     let sliced = match link {
         Linktype::ETHERNET => SlicedPacket::from_ethernet(data),
         Linktype::LINUX_SLL => SlicedPacket::from_linux_sll(data),
-        // A header of 20 bytes, and one of 4 bytes; the rest is IP, or from_ip refuses it.
+        // A header of 20 or 4 bytes precedes the IP packet. `from_ip` refuses all other data.
         Linktype::LINUX_SLL2 => SlicedPacket::from_ip(data.get(20..)?),
         Linktype::NULL | Linktype::LOOP => SlicedPacket::from_ip(data.get(4..)?),
         _ => SlicedPacket::from_ip(data),
@@ -279,10 +279,10 @@ fn describe(error: &PcapError<&[u8]>) -> String {
     }
 }
 
-/// Bounds of the size of the reader's buffer. The lower bound is above the size of a header, the
-/// upper bound above the size of any record.
+/// Smallest and largest size of the reader's buffer. The lower bound is larger than any header, and
+/// the upper bound is larger than any record.
 const BUFFER_MIN: usize = 64;
 const BUFFER_MAX: usize = 1 << 20;
 
-/// Longest text of a parser error, which may contain the unreadable data.
+/// Largest length of a parser's error text, which may contain the unreadable data.
 const ERROR_LENGTH: usize = 100;

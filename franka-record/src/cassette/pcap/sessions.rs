@@ -1,5 +1,5 @@
-//! Groups packets into connections. It orders the streams, and assigns datagrams by the port in
-//! `Connect`.
+//! Groups packets into connections. Puts the streams in order, and assigns datagrams to connections
+//! by the port in `Connect`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::net::{IpAddr, SocketAddr};
@@ -8,14 +8,15 @@ use std::time::Duration;
 use super::packets::{Body, Packet, Segment};
 use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
 
-/// The connections of a capture so far.
+/// The connections found in a capture so far.
 #[derive(Default)]
 pub(super) struct Sessions {
     started: Option<u64>,
     sessions: Vec<Session>,
     /// Open connections, by client and device.
     open: HashMap<(SocketAddr, SocketAddr), usize>,
-    /// Connections by the client's address for datagrams and the robot's IP address.
+    /// Connections by two addresses: the client's address for datagrams, and the robot's IP
+    /// address.
     announced: HashMap<(SocketAddr, IpAddr), usize>,
 }
 
@@ -34,7 +35,7 @@ struct Session {
 struct Stream {
     /// Sequence number of the next byte.
     next: Option<u32>,
-    /// Segments that arrived too early.
+    /// Segments that arrived before a missing segment.
     early: BTreeMap<u32, Vec<u8>>,
     end: Option<u32>,
     ended: bool,
@@ -85,7 +86,8 @@ impl Sessions {
         };
         let new = from == Side::Client && segment.opens;
         let known = self.open.get(&(client, robot)).copied();
-        // A client opens the same port again. A repeated packet would have the same number.
+        // The client reuses its port for a new connection. In a repeated packet, the sequence
+        // number would be the same.
         let reopened = new
             && known.is_some_and(|index| {
                 let stream = &self.sessions[index].from_client;
@@ -160,8 +162,8 @@ impl Stream {
             self.next.get_or_insert(segment.sequence.wrapping_add(1));
             return events;
         }
-        // If the capture began after the connection, the stream begins with the first captured
-        // segment.
+        // If the capture starts later than the connection, the first captured segment is the
+        // beginning of the stream.
         let next = self.next.get_or_insert(segment.sequence);
         if !segment.payload.is_empty() {
             let longest = self.early.get(&segment.sequence).map_or(0, Vec::len);
@@ -194,20 +196,20 @@ impl Stream {
         events
     }
 
-    /// Number of pieces that do not directly follow the preceding data.
+    /// Returns the number of pieces that do not directly follow the data before them.
     fn missing(&self) -> u64 {
         self.early.len() as u64
     }
 }
 
-/// Returns the distance of `one` ahead of `other` in a stream's sequence numbers, which wrap
+/// Returns how far `one` is ahead of `other` in the sequence numbers of a stream, which wrap
 /// around.
 fn ahead(one: u32, other: u32) -> i32 {
     one.wrapping_sub(other).cast_signed()
 }
 
 /// Largest number of segments that wait for a missing segment. A stream with a gap cannot be played
-/// anyway.
+/// back.
 const EARLY_MAX: usize = 1024;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! A cassette as a capture: raw IPv4 packets in a pcap file with nanoseconds.
+//! Converts a cassette to a capture: a pcap file of raw IPv4 packets with times in nanoseconds.
 
 use std::time::Duration;
 
@@ -6,8 +6,8 @@ use etherparse::PacketBuilder;
 
 use crate::cassette::{Cassette, Connection, Payload, Side};
 
-/// Converts a cassette to a capture for Wireshark. Addresses are invented: the client is 192.0.2.1
-/// and the robot 192.0.2.2.
+/// Converts a cassette to a pcap capture that Wireshark can open. The addresses are invented: the
+/// client is 192.0.2.1, and the robot is 192.0.2.2.
 #[must_use]
 pub fn to_capture(cassette: &Cassette) -> Vec<u8> {
     let mut packets = Vec::new();
@@ -29,7 +29,7 @@ pub fn to_capture(cassette: &Cassette) -> Vec<u8> {
     file
 }
 
-/// The ports of a connection, and the current positions in its streams.
+/// The ports of a connection, and the current positions in its two streams.
 struct Conversation {
     client_tcp: u16,
     client_udp: u16,
@@ -131,8 +131,8 @@ fn addressed(from: Side) -> etherparse::PacketBuilderStep<etherparse::IpHeaders>
     PacketBuilder::ipv4(source, destination, HOPS)
 }
 
-/// Magic number with nanoseconds, version 2.4, time zone, accuracy, longest packet, link type: raw
-/// IP (101).
+/// File header: magic number for nanoseconds, version 2.4, time zone, accuracy, longest packet, and
+/// link type 101 (raw IP).
 const HEADER: [[u8; 4]; 6] = [
     0xa1b2_3c4d_u32.to_le_bytes(),
     [2, 0, 4, 0],
@@ -142,7 +142,7 @@ const HEADER: [[u8; 4]; 6] = [
     101_u32.to_le_bytes(),
 ];
 
-/// Addresses for documentation, RFC 5737.
+/// Address reserved for documentation (RFC 5737).
 const CLIENT: [u8; 4] = [192, 0, 2, 1];
 const ROBOT: [u8; 4] = [192, 0, 2, 2];
 

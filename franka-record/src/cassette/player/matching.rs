@@ -31,8 +31,8 @@ impl Player {
         Ok(())
     }
 
-    /// Returns the difference between a message and the recorded message, if the difference
-    /// matters.
+    /// Returns the difference between a message and the recorded message; `None` if the difference
+    /// does not matter.
     fn difference(&self, recorded: &[u8], got: &[u8], connect: bool) -> Option<String> {
         let device = self.script.device;
         let name = self.script.describe(&Step::Request(got.to_vec()));
@@ -41,8 +41,7 @@ impl Player {
         if recorded[..command] != got[..command] {
             return Some(name);
         }
-        // The version in a handshake determines everything that follows. The port comes after the
-        // version.
+        // The version in a handshake determines all later messages. The port follows the version.
         let (start, end) = match (connect, self.options.matching) {
             (true, _) => (payload, payload + 2),
             (false, Matching::Strict) => (payload, recorded.len().max(got.len())),
@@ -92,8 +91,8 @@ impl Player {
         Ok(())
     }
 
-    /// Accepts a command in place of all recorded commands up to the state that it answers. A
-    /// command that ends a motion also replaces all other commands of this motion.
+    /// Accepts a command. The command replaces all recorded commands up to the state that it
+    /// answers. A command that ends a motion also replaces all other commands of this motion.
     pub(super) fn accept_command(&mut self, id: Option<u64>, got: &[u8]) {
         let finishes = self.script.finishes(got);
         while let Some(step) = self.next_command() {

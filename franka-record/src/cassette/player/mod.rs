@@ -1,4 +1,4 @@
-//! Plays one recorded connection to a client: bytes and time in, bytes out.
+//! Playback of one recorded connection, without sockets and without a clock.
 
 mod matching;
 mod pace;
@@ -12,26 +12,26 @@ use super::script::{Script, Step, Unplayable, counter};
 use super::{Connection, Device};
 use pace::Gate;
 
-/// The output of a player.
+/// Output of a player, which the caller must perform.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// Bytes to send over TCP.
+    /// Send these bytes over TCP.
     Stream(Vec<u8>),
-    /// A datagram to send over UDP to the client's port, [`Player::udp_port`].
+    /// Send this datagram over UDP to the client's port ([`Player::udp_port`]).
     Datagram(Vec<u8>),
     /// Close the TCP stream.
     End,
 }
 
-/// Error: a client deviated from the recording.
+/// Error for a client that deviated from the recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the client of the {device} differs from the recording: got {got}, expected {expected}")]
 pub struct Mismatch {
     /// The device of the connection.
     pub device: Device,
-    /// The client's actual step.
+    /// Description of what the client did.
     pub got: String,
-    /// The recorded client's step.
+    /// Description of what the recorded client did.
     pub expected: String,
 }
 
@@ -45,28 +45,29 @@ pub struct Tally {
     pub commands: u64,
     /// Number of states sent, including repeated states.
     pub states: u64,
-    /// Number of states that were repeated while a request was missing.
+    /// Number of states that were repeated because a request was missing.
     pub held: u64,
 }
 
-/// A recorded connection that is played to a client.
+/// A state machine that plays back a recorded connection to a client.
 ///
 /// * Input: [`Self::on_stream`], [`Self::on_datagram`], [`Self::on_end`].
-/// * Output: [`Self::poll`] until it returns `None`, after every input and at [`Self::deadline`].
+/// * Output: call [`Self::poll`] until it returns `None`, after every input and at
+///   [`Self::deadline`].
 ///
-/// `now` is the time since any fixed moment, and must not decrease. After an error the playback has
-/// ended.
+/// Each `now` is the time since a fixed moment of your choice, and must not decrease. An error ends
+/// the playback.
 #[derive(Clone, Debug)]
 pub struct Player {
     script: Script,
     options: PlayOptions,
     /// Index of the next step.
     position: usize,
-    /// Time at which the next step is due according to the recording.
+    /// Time at which the next step is due, as recorded.
     due: Duration,
-    /// Time since which a step of the client is missing, if one is.
+    /// Time since which the player has waited for a step of the client; `None` if it does not wait.
     blocked: Option<Duration>,
-    /// Indices of steps; all requests, or commands, before them have arrived.
+    /// Indices of steps. All requests (or all commands) before the index have arrived.
     requested: usize,
     commanded: usize,
     client_ended: bool,
@@ -75,11 +76,11 @@ pub struct Player {
     /// Ids of this client's requests, by the ids of the recorded requests.
     ids: HashMap<[u8; 4], [u8; 4]>,
     last_state: Option<(Duration, Vec<u8>)>,
-    /// Difference between the ids of sent and recorded states.
+    /// Difference between the ids of the states sent and the ids of the recorded states.
     shift: u64,
-    /// Ids of the states sent, and the recorded ids; `None` for a repeated state.
+    /// Ids of the states sent, each with the recorded id; `None` for a repeated state.
     sent: VecDeque<(u64, Option<u64>)>,
-    /// True if a command did not arrive in time, and no later command has arrived.
+    /// True if a command did not arrive in time and no command has arrived since.
     silent: bool,
     failure: Option<Mismatch>,
     tally: Tally,
@@ -89,7 +90,8 @@ impl Player {
     /// Creates a player for a recorded connection. Playback begins at `now`.
     ///
     /// # Errors
-    /// [`Unplayable`] if the recording is incomplete or does not begin with a client's `Connect`.
+    /// Returns [`Unplayable`] if the recording is incomplete, or does not begin with a client's
+    /// `Connect`.
     pub fn new(
         connection: &Connection,
         options: PlayOptions,
@@ -116,19 +118,19 @@ impl Player {
         })
     }
 
-    /// Returns the client's port for datagrams, once the client has sent `Connect`.
+    /// Returns the client's UDP port; `None` until the client has sent `Connect`.
     #[must_use]
     pub fn udp_port(&self) -> Option<u16> {
         self.udp_port
     }
 
-    /// True if every step has been played.
+    /// Returns true if every step has been played back.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.position == self.script.steps.len()
     }
 
-    /// Describes the client's next step, for messages.
+    /// Returns a description of the client's next step.
     #[must_use]
     pub fn awaited(&self) -> String {
         self.expected(self.position)
@@ -143,7 +145,7 @@ impl Player {
     /// Processes bytes of the client's stream.
     ///
     /// # Errors
-    /// [`Mismatch`] if the bytes contain a request that differs from the recording.
+    /// Returns [`Mismatch`] if the bytes contain a request that differs from the recorded request.
     pub fn on_stream(&mut self, bytes: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.received.extend_from_slice(bytes);
@@ -170,14 +172,14 @@ impl Player {
     /// Processes a datagram of the client.
     ///
     /// # Errors
-    /// [`Mismatch`] if the command differs from the recorded command.
+    /// Returns [`Mismatch`] if the command differs from the recorded command.
     pub fn on_datagram(&mut self, datagram: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.silent = false;
         let got = counter(self.script.device, datagram);
         let sent = got.and_then(|id| self.sent.iter().rev().find(|(sent, _)| *sent == id));
         let recorded = match sent {
-            // The recording contains no command for a state that it does not contain.
+            // The recording contains no command that answers a repeated state.
             Some((_, None)) if !self.script.finishes(datagram) => return Ok(()),
             Some((_, None)) => None,
             Some((_, recorded)) => *recorded,
@@ -196,8 +198,8 @@ impl Player {
     /// Processes the end of the client's stream.
     ///
     /// # Errors
-    /// [`Mismatch`] if the recording has more requests; with [`Matching::Strict`], also if it has
-    /// more commands.
+    /// Returns [`Mismatch`] if the recording contains further requests. With [`Matching::Strict`],
+    /// also returns it if the recording contains further commands.
     pub fn on_end(&mut self) -> Result<(), Mismatch> {
         self.checked()?;
         self.client_ended = true;
@@ -212,11 +214,12 @@ impl Player {
         Ok(())
     }
 
-    /// Returns the next output; `None` if nothing is due before [`Self::deadline`] or the next
+    /// Returns the next output; `None` if no output is due before [`Self::deadline`] or the next
     /// input.
     ///
     /// # Errors
-    /// [`Mismatch`] if the client deviated from the recording, or did not send a command in time.
+    /// Returns [`Mismatch`] if the client deviated from the recording, or did not send a command in
+    /// time.
     pub fn poll(&mut self, now: Duration) -> Result<Option<Output>, Mismatch> {
         self.checked()?;
         while let Some((_, step)) = self.script.steps.get(self.position) {
@@ -241,8 +244,8 @@ impl Player {
         Ok(None)
     }
 
-    /// Returns the time of the next output if no further input arrives; `None` if no output will
-    /// come.
+    /// Returns the time of the next output, assuming that no further input arrives; `None` if there
+    /// will be no output without input.
     #[must_use]
     pub fn deadline(&self) -> Option<Duration> {
         let held = || {
@@ -277,7 +280,7 @@ impl Player {
         Some(from + found)
     }
 
-    /// Describes the client's first step from `step` on.
+    /// Describes the client's first step at or after `step`.
     fn expected(&self, step: usize) -> String {
         let is_clients =
             |step: &Step| matches!(step, Step::Request(_) | Step::Command(_) | Step::ClientEnd);

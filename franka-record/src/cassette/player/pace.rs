@@ -1,11 +1,11 @@
-//! Timing of the player's robot side, and its output.
+//! The timing and the output of the player's robot side.
 
 use std::time::Duration;
 
 use super::{Matching, Mismatch, Output, Pace, Player, Step, counter};
 
 impl Player {
-    /// Decides whether the playback may pass the step of a missing command.
+    /// Decides whether the playback may continue although a command is missing.
     pub(super) fn command_gate(&mut self, now: Duration) -> Result<Gate, Mismatch> {
         if self.position < self.commanded {
             return Ok(Gate::Open);
@@ -13,8 +13,8 @@ impl Player {
         if self.is_unfinished_motion(self.position) {
             return Ok(Gate::Hold);
         }
-        // A client that has already sent its next request must not send commands until the request
-        // is answered.
+        // A client that has already sent its next request must not send commands until the robot
+        // has answered the request.
         let ahead = self.requested > self.position;
         if self.options.pace == Pace::Recorded || self.silent || ahead {
             return Ok(Gate::Open);
@@ -34,15 +34,15 @@ impl Player {
         Ok(Gate::Open)
     }
 
-    /// True if a step is the last command of a motion. Lenient playback must wait for this command
-    /// as for a request.
+    /// Returns true if a step is the last command of a motion. Lenient playback must wait for this
+    /// command as it waits for a request.
     pub(super) fn is_unfinished_motion(&self, step: usize) -> bool {
         let waits = self.options.matching == Matching::Lenient && step >= self.commanded;
         waits
             && matches!(&self.script.steps[step].1, Step::Command(bytes) if self.script.finishes(bytes))
     }
 
-    /// Advances to the next step, which is due after the recorded interval. A delay of the client
+    /// Advances to the next step, which is due after the recorded interval. A client's delay
     /// postpones all later steps.
     pub(super) fn pass(&mut self, now: Duration) {
         let steps = &self.script.steps;
@@ -79,7 +79,7 @@ impl Player {
         }
     }
 
-    /// Repeats the last state, if a state is due while the client's step is missing.
+    /// Repeats the last state if a state is due and the client's step is missing.
     pub(super) fn hold(&mut self, now: Duration) -> Option<Output> {
         self.blocked.get_or_insert(now);
         if self.options.pace == Pace::Lockstep {
@@ -95,7 +95,7 @@ impl Player {
         Some(self.send_state(now, state, None, 1))
     }
 
-    /// Returns a state with its id increased by `ahead`.
+    /// Returns a state whose id is increased by `ahead`.
     fn send_state(
         &mut self,
         now: Duration,
@@ -118,14 +118,15 @@ impl Player {
     }
 }
 
-/// Decision about a step of the client.
+/// Decision about a missing step of the client.
 pub(super) enum Gate {
     Open,
-    /// Wait, and send states meanwhile.
+    /// Wait, and repeat states meanwhile.
     Hold,
-    /// Wait, and send nothing.
+    /// Wait, and send no states.
     Wait,
 }
 
-/// Number of state ids that are remembered: four seconds. Clients do not answer older states.
+/// Number of state ids that the player remembers: four seconds of states. Clients do not answer
+/// older states.
 const REMEMBERED: usize = 4096;

@@ -1,4 +1,4 @@
-//! The thread that writes the events, and the queue to it.
+//! The thread that writes events to the file, and its queue.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -18,14 +18,14 @@ pub(super) struct Journal {
     thread: JoinHandle<Outcome>,
 }
 
-/// Sends events of one lane to the journal.
+/// Sender of one lane's events to the journal.
 #[derive(Clone, Debug)]
 pub(super) struct Recorder {
     start: Instant,
     notes: SyncSender<Note>,
 }
 
-/// One direction of one transport of a connection, whose events are recorded.
+/// One lane: a transport of a connection in one direction. Its events are recorded.
 #[derive(Debug)]
 pub(super) struct Lane {
     recorder: Recorder,
@@ -45,7 +45,7 @@ pub(super) struct Source {
 #[derive(Debug)]
 struct Note {
     source: Source,
-    /// Number of events, directly before this event, that did not fit into the queue.
+    /// Number of events directly before this event that did not fit into the queue.
     missing: u32,
     event: Option<Event>,
 }
@@ -67,7 +67,7 @@ impl Journal {
         self.recorder.clone()
     }
 
-    /// Ends the file once all lanes are dropped. Returns the numbers of recorded and missing
+    /// Completes the file after all lanes are dropped. Returns the numbers of recorded and missing
     /// events.
     pub(super) fn finish(self) -> Outcome {
         drop(self.recorder);
@@ -89,12 +89,12 @@ impl Recorder {
 }
 
 impl Lane {
-    /// The time on the cassette's clock.
+    /// Returns the current time on the cassette's clock.
     pub(super) fn now(&self) -> Duration {
         self.recorder.start.elapsed()
     }
 
-    /// Records an event. If the queue is full, the event is dropped and counted.
+    /// Records an event. Drops and counts the event if the queue is full.
     pub(super) fn note(&mut self, at: Duration, what: Payload) {
         let from = self.source.from;
         let note = Note {
@@ -114,8 +114,8 @@ impl Lane {
 impl Drop for Lane {
     fn drop(&mut self) {
         if self.missing > 0 {
-            // The lane has stopped forwarding, so this call may wait. The journal may already have
-            // ended.
+            // The lane has stopped forwarding, so this call may block. The journal may have ended
+            // already.
             let _ = self.recorder.notes.send(Note {
                 source: self.source,
                 missing: self.missing,
@@ -125,8 +125,8 @@ impl Drop for Lane {
     }
 }
 
-/// Writes events until all senders are dropped. After an error it still receives events, so no
-/// sender waits.
+/// Writes events until all senders are dropped. After an error, it continues to receive events, so
+/// that no sender blocks.
 fn write(notes: &Receiver<Note>, mut writer: Writer) -> Outcome {
     let (mut events, mut dropped) = (0, 0);
     let mut flushed = Instant::now();
@@ -182,7 +182,8 @@ fn put(writer: &mut Writer, note: &Note) -> Result<(), CassetteError> {
     }
 }
 
-/// Capacity of the queue in events: about two seconds of one robot in motion, 7 MB at most.
+/// Capacity of the queue, in events. It holds about two seconds of one robot in motion, and needs 7
+/// MB at most.
 const QUEUE: usize = 4096;
 
 /// Interval of flushes. A power failure loses at most the events of this time.

@@ -1,4 +1,4 @@
-//! One client's connection through the tap: two streams and two directions of datagrams.
+//! One client's connection through the tap, with two streams and two directions of datagrams.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{IpAddr, Shutdown, SocketAddr, TcpStream, UdpSocket};
@@ -14,7 +14,7 @@ use super::journal::{Lane, Recorder, Source};
 use crate::cassette::polling::{TICK, is_timeout};
 use crate::cassette::{Device, Payload, Side};
 
-/// The shared state of the threads of a link.
+/// State that the threads of a link share.
 struct Link<'a> {
     stop: &'a AtomicBool,
     /// Time at which the first of the two streams ended.
@@ -23,7 +23,7 @@ struct Link<'a> {
     over: AtomicBool,
     /// The client's address for datagrams.
     client: OnceLock<SocketAddr>,
-    /// The robot's source address of datagrams; commands are sent to it.
+    /// The address from which the robot sends datagrams. The tap sends commands to this address.
     robot: Mutex<Option<SocketAddr>>,
 }
 
@@ -32,16 +32,16 @@ impl Link<'_> {
         self.stop.load(Ordering::Relaxed) || self.over.load(Ordering::Relaxed)
     }
 
-    /// True if a silent stream must be closed, because the other stream has ended some time ago.
-    /// This occurs, for example, after a power failure.
+    /// Returns true if a silent stream must be closed because the other stream ended some time ago.
+    /// This happens, for example, after a power failure.
     fn abandoned(&self) -> bool {
         let ended = self.ended.get();
         self.stopped() || ended.is_some_and(|ended| ended.elapsed() > LINGER)
     }
 }
 
-/// Forwards until both sides have closed, or the tap is stopped. If the robot is unreachable, this
-/// logs it and ends the client's connection immediately.
+/// Forwards data until both sides have closed their streams or the tap is stopped. If the robot is
+/// unreachable, this function logs the error and closes the client's connection immediately.
 pub(super) fn serve(
     client: TcpStream,
     route: Route,
@@ -74,14 +74,14 @@ fn forward(
     stop: &AtomicBool,
 ) -> io::Result<()> {
     let robot = TcpStream::connect_timeout(&route.robot, CONNECT_TIME_MAX)?;
-    // On some systems a connection inherits this option from the listener.
+    // On some systems, a connection inherits this option from its listener.
     client.set_nonblocking(false)?;
     for stream in [client, &robot] {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(TICK))?;
     }
-    // A client accepts states only from the robot's address. For the client, this is the address
-    // of the tap.
+    // A client accepts states only from the robot's address, which for the client is the address of
+    // the tap.
     let to_client = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
     let to_robot = UdpSocket::bind((robot.local_addr()?.ip(), 0))?;
     for socket in [&to_client, &to_robot] {
@@ -142,7 +142,7 @@ fn copy(
                 let sent = to.write_all(&passed(received));
                 lane.note(at, Payload::Stream(received.to_vec()));
                 if sent.is_err() {
-                    // The receiver has disconnected, so end the sender's stream, too.
+                    // The receiver has disconnected, so the sender's stream must end, too.
                     let _ = from.shutdown(Shutdown::Both);
                     break;
                 }
@@ -168,7 +168,7 @@ fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket,
         }
         let at = lane.now();
         if let Some(client) = link.client.get() {
-            // A departing client may have closed its port.
+            // A client that is disconnecting may have closed its port.
             let _ = to.send_to(&buffer[..length], client);
         }
         *link.robot.lock().unwrap_or_else(PoisonError::into_inner) = Some(sender);
@@ -176,7 +176,7 @@ fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket,
     }
 }
 
-/// Forwards the client's datagrams to the address from which the newest state came.
+/// Forwards the client's datagrams to the source address of the newest state.
 fn pass_commands(
     link: &Link<'_>,
     client: IpAddr,
@@ -206,8 +206,8 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
     match socket.recv_from(buffer) {
         Ok(received) => Some(received),
         Err(error) => {
-            // Other errors return immediately, for example if one of our datagrams reached a
-            // closed port.
+            // Other errors return immediately, for example if an earlier datagram reached a closed
+            // port.
             if !is_timeout(&error) && error.kind() != io::ErrorKind::ConnectionRefused {
                 std::thread::sleep(TICK);
             }
@@ -216,7 +216,7 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
     }
 }
 
-/// The client's stream up to `Connect`. The port in `Connect` is replaced.
+/// The client's stream up to the end of `Connect`, in which the tap replaces the port.
 struct Handshake {
     device: Device,
     port: u16,
@@ -234,7 +234,7 @@ impl Handshake {
         }
     }
 
-    /// Returns the bytes to forward in place of these bytes.
+    /// Returns the bytes to forward instead of `bytes`.
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         let Some(mut waiting) = self.waiting.take() else {
             return bytes.to_vec();
@@ -254,7 +254,7 @@ impl Handshake {
                 }
                 waiting
             }
-            // This is not a client's handshake. The robot's answer decides what happens.
+            // These bytes are not a client's handshake. The robot decides how to answer them.
             Ok(Some(_)) | Err(_) => waiting,
         }
     }
@@ -263,14 +263,14 @@ impl Handshake {
 /// Time limit for a connection to the robot.
 const CONNECT_TIME_MAX: Duration = Duration::from_secs(1);
 
-/// Time for which one side may stay open after the other has closed.
+/// Time for which one side may stay open after the other side has closed its stream.
 const LINGER: Duration = Duration::from_secs(1);
 
-/// Size of the stream buffer. All messages fit, except a model library of protocol 5, which has one
-/// megabyte.
+/// Size of the stream buffer. All messages fit, except the model library of protocol 5, whose size
+/// is one megabyte.
 const STREAM_BUFFER: usize = 64 << 10;
 
-/// Size of the datagram buffer, above the longest datagram of 2373 bytes.
+/// Size of the datagram buffer. The longest datagram has 2373 bytes.
 const DATAGRAM_BUFFER: usize = 4096;
 
 #[cfg(test)]

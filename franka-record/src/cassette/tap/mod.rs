@@ -1,4 +1,4 @@
-//! A tap between clients and a robot: it forwards and records all data.
+//! A tap between clients and a robot, which forwards and records all data.
 
 mod journal;
 mod link;
@@ -15,14 +15,15 @@ use self::journal::Journal;
 use super::polling::TICK;
 use super::{CassetteError, CassetteWriter, Device};
 
-/// A tap on the connections to a robot and its end effectors, with its own threads.
+/// A tap on the connections to a robot and its end effectors. It runs on its own threads.
 ///
 /// A client connects to the tap instead of the robot, and the tap connects to the robot. The tap
-/// forwards bytes unchanged, except for the UDP port in `Connect`, because states and commands must
-/// also pass through the tap. The recording contains the bytes as they were sent. A separate thread
-/// records and never delays the bytes. Events that it cannot record in time count as missing.
+/// forwards all bytes unchanged, except the UDP port in `Connect`, because states and commands must
+/// also pass through the tap. The recording contains the bytes as their sender sent them. A
+/// separate thread writes the recording and never delays the bytes. Events that this thread cannot
+/// record in time count as missing.
 ///
-/// Dropping the tap ends all connections, as [`Self::finish`] does.
+/// Dropping the tap ends all connections, like [`Self::finish`].
 #[derive(Debug)]
 pub struct Tap {
     stop: Arc<AtomicBool>,
@@ -32,18 +33,18 @@ pub struct Tap {
     journal: Option<Journal>,
 }
 
-/// Address at which clients connect to a device through the tap, and address of the device.
+/// A device, and the address at which clients connect to it through the tap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Route {
     /// The device.
     pub device: Device,
-    /// The address to listen on; port 0 selects any free port.
+    /// The address at which the tap listens. Port 0 selects any free port.
     pub listen: SocketAddr,
     /// The address of the device, or of a simulator.
     pub robot: SocketAddr,
 }
 
-/// Result of a tap's recording.
+/// Result of a recording with a tap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TapReport {
@@ -51,12 +52,13 @@ pub struct TapReport {
     pub connections: usize,
     /// Number of events in the file.
     pub events: u64,
-    /// Number of events that are missing in the file.
+    /// Number of events that are missing from the file.
     pub dropped: u64,
 }
 
 impl Route {
-    /// Returns the routes of an arm, its Hand and its vacuum gripper at their own ports.
+    /// Returns the routes of an arm, its Hand and its vacuum gripper. All routes use the devices'
+    /// own ports.
     #[must_use]
     pub fn all(robot: IpAddr, listen: IpAddr) -> [Self; 3] {
         Device::ALL.map(|device| Self {
@@ -68,11 +70,11 @@ impl Route {
 }
 
 impl Tap {
-    /// Starts a tap that records into a new file at `path`.
+    /// Starts a tap that records to a new file at `path`.
     ///
     /// # Errors
-    /// [`CassetteError`] if an address is not free or the file cannot be created. The tap does not
-    /// overwrite an existing file.
+    /// Returns [`CassetteError`] if an address is not free, or if the file exists or cannot be
+    /// created.
     pub fn start(routes: &[Route], path: impl AsRef<Path>) -> Result<Self, CassetteError> {
         let listeners = routes.iter().map(|route| {
             let listener = TcpListener::bind(route.listen)?;
@@ -105,7 +107,8 @@ impl Tap {
         Ok(this)
     }
 
-    /// Returns the address for clients of a device; `None` if the tap has no route for it.
+    /// Returns the address at which clients connect to a device; `None` if the tap has no route for
+    /// the device.
     #[must_use]
     pub fn address(&self, device: Device) -> Option<SocketAddr> {
         let mut addresses = self.addresses.iter();
@@ -116,7 +119,8 @@ impl Tap {
     /// Ends all connections and completes the file.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file could not be written. The tap forwarded all data nevertheless.
+    /// Returns [`CassetteError`] if the file could not be written. The tap has forwarded all data
+    /// nevertheless.
     pub fn finish(mut self) -> Result<TapReport, CassetteError> {
         self.end()
     }
@@ -125,7 +129,7 @@ impl Tap {
         // Relaxed: the threads are joined below, and the flag guards no data.
         self.stop.store(true, Ordering::Relaxed);
         for listener in self.listeners.drain(..) {
-            // The panic of this thread has been printed. The recording so far is kept.
+            // The panic message of this thread has been printed. The data recorded so far is kept.
             let _ = listener.join();
         }
         let Some(journal) = self.journal.take() else {
@@ -142,12 +146,12 @@ impl Tap {
 
 impl Drop for Tap {
     fn drop(&mut self) {
-        // Call `finish` to receive errors.
+        // The error is ignored here. `finish` returns it.
         let _ = self.end();
     }
 }
 
-/// Accepts clients until the tap is stopped, then ends their connections.
+/// Accepts clients until the tap is stopped, and then ends their connections.
 fn accept(
     listener: &TcpListener,
     route: Route,
@@ -158,7 +162,7 @@ fn accept(
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         let Ok((client, _)) = listener.accept() else {
-            // No client connected, or the client has already disconnected.
+            // No client connected, or the client has disconnected already.
             std::thread::sleep(TICK);
             continue;
         };
@@ -171,7 +175,7 @@ fn accept(
     }
 }
 
-/// Starts to serve a client. If this is not possible, it closes the client's connection.
+/// Starts to serve a client. Closes the client's connection if this fails.
 fn start(
     client: TcpStream,
     number: usize,
