@@ -1,4 +1,4 @@
-//! Estimates the place of a contact on the arm from its external torques.
+//! Estimates the place of a contact on the arm from the external torques.
 
 use std::time::Duration;
 
@@ -19,11 +19,11 @@ pub(crate) struct Contact {
     force: [f64; 3],
     /// Uncertainty of the point on this link, `[m]`.
     spread: f64,
-    /// Probability that the contact is on this link, 0 to 1.
+    /// Probability that the contact is on this link, in `[0, 1]`.
     probability: f64,
 }
 
-/// Finds contacts in states. It learns the torques without a contact.
+/// Finds contacts in states. It learns the torques that the robot reports without a contact.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     tare: Tare,
@@ -32,14 +32,16 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Returns the contact in this state, if any. A few dozen states per second are enough.
+    /// Returns the contact in this state, if any. It is enough to pass a few dozen states per
+    /// second.
     pub(crate) fn update(&mut self, model: &Model, state: &RobotState) -> Option<Contact> {
         let last = self.last.replace(state.message_id);
         let passed = state
             .message_id
             .saturating_sub(last.unwrap_or(state.message_id));
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
-        // The robot estimates the torque that it exerts; the contact needs the opposite sign.
+        // The robot reports the torque that it exerts. The contact estimate needs the opposite
+        // sign.
         let read = -JointVector::from(state.tau_ext_hat_filtered);
         let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
         if !self.tare.is_touched() || self.tare.learned() < LEARNED {
@@ -54,7 +56,7 @@ impl Watch {
             true => shape.with_hand(),
             false => shape,
         };
-        // No contact is shown if several links explain the torques.
+        // If several links could explain the torques, no contact is shown.
         let found = locate(&shape.at(&q), &torque, &error).ok()?;
         Some(Contact {
             link: match found.body {
@@ -75,7 +77,7 @@ pub(crate) const EVERY: Duration = Duration::from_millis(50);
 /// Joint velocity below which the arm is at rest, `[rad/s]`.
 const STILL: f64 = 0.02;
 
-/// Time without a contact after which contacts are shown, `[s]`.
+/// Duration of learning before contacts are shown, `[s]`.
 const LEARNED: f64 = 0.5;
 
 #[cfg(test)]

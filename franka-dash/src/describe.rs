@@ -1,4 +1,4 @@
-//! The constant data of a page, sent once as the first message.
+//! The first message to a page, which contains the constant data.
 
 use franka_async::goal::target_range;
 use franka_async::model::collision::{Body, Obstacle, Shape};
@@ -19,14 +19,14 @@ use crate::simulated::Simulated;
 pub(crate) struct Hello {
     frame_version: u8,
     viewer: ViewerId,
-    /// Start of the server, `[ms]` since 1970. The times in its frames are relative to this time.
+    /// Start of the server, `[ms]` since 1970. Frame times are relative to this time.
     server: u64,
     robot: &'static str,
     /// True if the robot is simulated and viewers may disturb it.
     simulated: bool,
     /// True if the simulated robot has a Hand.
     simulated_hand: bool,
-    /// True if the robot is simulated in virtual time, whose speed can be set.
+    /// True if the robot is simulated in virtual time, so its speed can be set.
     virtual_time: bool,
     motion_allowed: bool,
     /// True if the server accepts any command.
@@ -50,7 +50,7 @@ pub(crate) struct Hello {
     /// Names of the guards, in the order of the bits of a state frame.
     guards: Vec<String>,
     keep_out: Vec<Region>,
-    /// The names of all robots of the server, if it has several.
+    /// Names of all robots of the server, if it has several robots.
     siblings: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ pub(crate) struct Hello {
 enum Region {
     /// All points p with `normal . p < offset`.
     Plane { normal: [f64; 3], offset: f64 },
-    /// A box, by its centre, its orientation (x y z w) and half of its side lengths.
+    /// A box with its centre, its orientation (x y z w) and half of each side length.
     Box {
         position: [f64; 3],
         orientation: [f64; 4],
@@ -87,15 +87,15 @@ impl From<&Obstacle> for Region {
     }
 }
 
-/// A stiffness setting of the page with a name.
+/// A stiffness setting and its name.
 #[derive(Debug, Serialize)]
 struct Named {
     name: &'static str,
     tuning: Tuning,
 }
 
-/// A capsule of the driver's collision guard, in the frame of its link, `[m]`. Link 0 is the base,
-/// 1 to 7 are the links, 8 is the flange.
+/// A capsule of the driver's collision guard in the frame of its link, `[m]`. Link 0 is the base, 1
+/// to 7 are the links, and 8 is the flange.
 #[derive(Debug, PartialEq, Serialize)]
 struct Capsule {
     link: usize,
@@ -156,7 +156,7 @@ impl Hello {
     }
 }
 
-/// Returns the capsules with which the guards check distances to obstacles.
+/// Returns the capsules whose distances to obstacles the guards check.
 fn capsules(model: &Model, with_hand: bool) -> Vec<Capsule> {
     let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     let shape = if with_hand { shape.with_hand() } else { shape };

@@ -1,5 +1,5 @@
-//! Controls a Franka Hand for viewers. An action ends when its viewer loses the lease, and with a
-//! stop. A held object stays held.
+//! Controls a Franka Hand for viewers. A stop ends an action. An action also ends when its viewer
+//! loses the lease. A held object stays held.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -65,7 +65,7 @@ impl Fingers {
         }
     }
 
-    /// Starts an action for a viewer, and ends the previous action. The future resolves with the
+    /// Starts an action for a viewer and ends the previous action. The future resolves with the
     /// result: true for success, and a line of text.
     pub(crate) fn begin(
         &self,
@@ -86,7 +86,7 @@ impl Fingers {
                 () = end.cancelled() => return (false, "Gripper: stopped".to_owned()),
                 outcome = act(&fingers.gripper, action) => outcome,
             };
-            // Clears the action, unless another action has replaced it.
+            // Clears the action unless a newer action has replaced it.
             fingers.lock().take_if(|_| !end.is_cancelled());
             let text = match &outcome {
                 Ok(done) => word(action, *done),
@@ -101,7 +101,7 @@ impl Fingers {
         self.lock().take();
     }
 
-    /// Ends the current action, unless the commander started it.
+    /// Ends the current action unless `commander` started it.
     pub(crate) fn end_unless(&self, commander: Option<ViewerId>) {
         self.lock().take_if(|it| Some(it.viewer) != commander);
     }
@@ -136,7 +136,7 @@ async fn act(gripper: &Gripper, action: GripperAction) -> Result<bool, GripperEr
     }
 }
 
-/// Returns the text of an action's result.
+/// Returns the text for the result of an action.
 fn word(action: GripperAction, done: bool) -> &'static str {
     match (action, done) {
         (GripperAction::Home {}, true) => "homed: the greatest width is known",

@@ -1,4 +1,4 @@
-//! The motion of one hold. It begins a session of target control, moves until the hold must end,
+//! The motion of a hold. It starts a session of target control, moves the arm until the hold ends,
 //! and releases the arm.
 
 use std::time::Duration;
@@ -18,16 +18,15 @@ use crate::plan::{self, Plan};
 use crate::request::{Axes, Motion, SPEED_MAX, Tuning};
 use crate::way::Way;
 
-/// The server's handle of a hold. Dropping it brakes the arm, in two ways: the token stops the
-/// task, and the deadman makes the control thread brake, even if the runtime of this process fails.
+/// The server's handle of a hold. Dropping it makes the arm brake in two ways. The token stops the
+/// task. The deadman makes the control thread brake, even if the runtime of this process fails.
 pub(crate) struct Hold {
     deadman: Deadman,
     end: CancellationToken,
 }
 
 impl Hold {
-    /// Creates the hold, and the inputs of its motion. Messages of the hold may be late by
-    /// `patience`.
+    /// Creates a hold and the inputs of its motion. Messages of the hold may be late by `patience`.
     pub(crate) fn new(patience: Duration) -> (Self, DeadmanMonitor, CancellationToken) {
         let (deadman, monitor) = Deadman::new(SILENCE + patience);
         deadman.keep_alive();
@@ -55,10 +54,10 @@ pub(crate) struct Settings {
     pub(crate) tuning: Tuning,
 }
 
-/// The end of a motion before its button was released.
+/// Reason why a motion ended before its button was released.
 #[derive(Debug)]
 pub(crate) enum Ended {
-    /// The motion reached its target, or a viewer requested its end.
+    /// The motion reached its target, or a viewer ended it.
     AsAsked,
     /// The motion failed. The values are one line of text, and the recommended change.
     Failed(String, Option<String>),
@@ -73,14 +72,14 @@ pub(crate) struct Task {
     pub(crate) end: CancellationToken,
 }
 
-/// Moves until the task is cancelled or the target is reached. When this returns, the arm has
-/// braked and is released. For a planned motion, this calls `show` with the plan before the motion
-/// begins.
+/// Moves the arm until the task is cancelled or the target is reached. Before this function
+/// returns, the arm has braked and is released. For a planned motion, the function calls `show`
+/// with the plan before the arm moves.
 pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Ended {
     let end = task.end.clone();
     match attempt(robot, task, show).await {
         Ok(()) => Ended::AsAsked,
-        // The error follows from the end of the hold, or from a viewer's stop.
+        // The end of the hold, or a viewer's stop, caused this error.
         Err(Fault::Motion(
             MotionError::Stopped | MotionError::Held(_) | MotionError::Disengaged,
         )) if end.is_cancelled() => Ended::AsAsked,
@@ -115,7 +114,7 @@ async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(
         .deadman(deadman);
     let arm = tokio::select! {
         biased;
-        // Dropping the future ends the session.
+        // Dropping the future of the motion ends the session.
         () = end.cancelled() => return Ok(()),
         arm = robot.engage(engage) => arm.map_err(Fault::Motion)?,
     };
@@ -155,7 +154,7 @@ async fn keep_tuned(
     arm.ended().await.map(drop)
 }
 
-/// Moves to the target, or moves in a direction until the future is dropped.
+/// Moves to the target. For a motion without a target, moves until the future is dropped.
 async fn go(
     arm: &Arm,
     motion: Motion,
@@ -164,7 +163,7 @@ async fn go(
 ) -> Result<(), MotionError> {
     match way {
         Way::Joints { target, .. } => return arm.move_joints(target).await.map(drop),
-        // As in the preview, the path is straight, or the motion is refused.
+        // As in the preview, the driver refuses the motion if no straight path is possible.
         Way::Pose(pose) => return arm.move_through([pose]).await.map(drop),
         Way::EndEffector => {}
     }
@@ -206,8 +205,8 @@ async fn go(
     }
 }
 
-/// Returns linear and angular velocity in base axes for a speed of 1 m/s, `[m/s]` and `[rad/s]`;
-/// `None` for a motion without a direction.
+/// Returns the linear velocity, `[m/s]`, and the angular velocity, `[rad/s]`, for a speed of 1 m/s,
+/// in base axes. `None` for a motion without a direction.
 fn direction(start: &Pose, motion: Motion) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let along = |direction: [f64; 3], axes: Axes| {
         let direction = Vector3::from(direction).normalize();
@@ -236,7 +235,7 @@ fn ticks(period: Duration) -> tokio::time::Interval {
     clock
 }
 
-/// Silence after which the control thread itself brakes, in robot time.
+/// Silence after which the control thread itself brakes, measured in robot time.
 const SILENCE: Duration = Duration::from_millis(200);
 
 /// Interval between two targets of a motion in a direction.

@@ -1,4 +1,4 @@
-//! A browser page that shows a robot, and allows one person at a time to move it.
+//! A browser page that shows a robot and lets one person at a time move it.
 //!
 //! ```text
 //!  Robot or Running ──states──> hub ──newest frame, events──> viewer ──WebSocket──> page
@@ -48,23 +48,24 @@
 //! ```
 //!
 //! `axum::serve(listener, page.into_make_service_with_connect_info::<SocketAddr>())` then serves
-//! the page. Any back end may instead nest the router under a path that ends with a slash. The back
-//! end must also provide the addresses of the peers in this way; without them, the server requires
-//! a token from all peers. [`several`] serves more than one robot.
+//! the page. Any other back end can nest the router under a path that ends with a slash. That back
+//! end must also provide the peer addresses through `connect_info`. Without these addresses, the
+//! server requires a token from every peer. [`several`] serves more than one robot.
 //!
 //! # Moving the arm
 //!
-//! Only a server with [`Options::allow_motion`] moves an arm. One viewer has the lease, the
+//! An arm moves only if the server has [`Options::allow_motion`]. One viewer has the lease, the
 //! exclusive right to move the arm. The lease becomes free when the viewer releases it, when the
-//! viewer's socket closes, and after 5 s of silence. Motions continue only while a button is held.
-//! The page then sends 20 messages per second, and the arm brakes if no message arrives for 150 ms.
-//! The driver's control thread has a separate deadman of 200 ms. Any viewer can stop the arm.
+//! viewer's socket closes, or after 5 s of silence. A motion continues only while its button is
+//! held. Meanwhile the page sends 20 messages per second, and the arm brakes if no message arrives
+//! for 150 ms. The driver's control thread has a separate deadman of 200 ms. Any viewer can stop
+//! the arm.
 //!
-//! The limits of a joint motion keep every point of the arm below the requested speed, 0.25 m/s at
-//! most. The limits of an end-effector motion bound the end effector. The control thread ends the
-//! hold in the cycle in which a joint, the flange or the end effector exceeds 0.25 m/s.
+//! In a joint motion, every point of the arm stays below the requested speed, which is 0.25 m/s at
+//! most. In an end-effector motion, this speed limits only the end effector. The control thread
+//! ends the hold in the cycle in which a joint, the flange or the end effector exceeds 0.25 m/s.
 //!
-//! A browser is neither an enabling device nor an emergency stop.
+//! A browser can replace neither an enabling device nor an emergency stop.
 //!
 //! # What it does not do
 //!
@@ -120,11 +121,11 @@ use source::{Source, Watched};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Reason why a server cannot listen.
+/// Reason why a server cannot listen at an address.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// Other computers could connect without a token.
+    /// The address is open to other computers, but the options contain no token.
     #[error(transparent)]
     NoToken(#[from] NoToken),
     /// The operating system refused the address.
@@ -137,15 +138,16 @@ pub enum BindError {
     },
 }
 
-/// Listens for viewers: on a loopback address, or on any address with a token. Connections have
-/// `TCP_NODELAY`. A back end with its own listener should also set this option; without it, a frame
-/// waits up to 40 ms behind every message that the page does not answer.
+/// Opens a listener for viewers, on a loopback address or, if the options contain a token, on any
+/// address. The listener sets `TCP_NODELAY` on its connections. A back end with its own listener
+/// should also set this option. Otherwise a frame can wait up to 40 ms if the page does not answer
+/// an earlier message.
 ///
 /// # Errors
-/// [`BindError`] if a token is missing, or if the system refuses the address.
+/// Returns [`BindError`] if a token is required but missing, or if the system refuses the address.
 ///
 /// # Cancel safety
-/// Dropping the future has no further effect.
+/// Dropping the future only cancels the call.
 pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener, BindError> {
     options.admission.check_listener(address)?;
     listen(address).map_err(|source| BindError::Io { address, source })
@@ -156,8 +158,8 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
         SocketAddr::V4(_) => TcpSocket::new_v4()?,
         SocketAddr::V6(_) => TcpSocket::new_v6()?,
     };
-    // As in `TcpListener::bind`. On other systems it would allow other programs to listen on the
-    // same address.
+    // `TcpListener::bind` does the same. On other systems, this option would allow other programs
+    // to listen at the same address.
     #[cfg(unix)]
     socket.set_reuseaddr(true)?;
     // Accepted connections inherit this option.
@@ -166,22 +168,22 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
     socket.listen(WAITING)
 }
 
-/// Returns the page and its socket (`/ws`) for a connected robot. Call this within a Tokio runtime.
-/// The router keeps a handle of the robot.
+/// Returns a router with the page and its socket (`/ws`) for a connected robot. The router keeps a
+/// handle of the robot. Call this function within a Tokio runtime.
 pub fn router(robot: Robot, options: Options) -> Router {
     let admission = options.admission.clone();
     serve(Hub::start(Source::Robot(robot), options), admission)
 }
 
-/// Returns the page for a simulated robot that another program controls. The page shows the robot,
-/// and viewers can disturb it. To move the robot from the page, connect to it and use [`router`]
+/// Returns a router with the page for a simulated robot that another program controls. Viewers can
+/// watch and disturb the robot. If the page should move the robot, connect to it and use [`router`]
 /// with [`Options::simulated`].
 ///
 /// # Errors
-/// [`Stopped`] if the simulation has ended.
+/// Returns [`Stopped`] if the simulation has ended.
 ///
 /// # Cancel safety
-/// Dropping the future has no further effect.
+/// Dropping the future only cancels the call.
 pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Router, Stopped> {
     let newest = |robot: &mut franka_sim::Robot| (robot.model().clone(), *robot.state());
     let (model, state) = running.with(newest).await?;
@@ -195,7 +197,7 @@ fn serve(hub: Arc<Hub>, admission: Admission) -> Router {
     let admissions: Arc<[Admission]> = [admission].into();
     Router::new()
         .route("/ws", get(connect))
-        // A page cannot see why its socket was refused, so it sends a request here.
+        // A page cannot find out why its socket was refused, so it sends a request here.
         .route("/access", get(async || StatusCode::NO_CONTENT))
         .layer(from_fn_with_state(admissions.clone(), admission::rest))
         .merge(page::routes().layer(from_fn_with_state(admissions, admission::files)))

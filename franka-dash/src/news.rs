@@ -1,4 +1,4 @@
-//! Events as lines for people.
+//! Events as lines of text.
 
 use franka_async::diagnosis::Diagnose;
 use franka_async::state::RobotState;
@@ -6,8 +6,8 @@ use franka_async::supervision::EventKind;
 
 use crate::reply::Level;
 
-/// Returns level, line and explanation of an event; `None` for events that the page shows in
-/// another way.
+/// Returns the level, the line and the explanation of an event; `None` for events that the page
+/// shows in a different way.
 pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String>)> {
     let level = match kind {
         EventKind::MotionBegun { .. } | EventKind::MotionEnded { .. } => return None,
@@ -33,7 +33,7 @@ pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String
     Some((level, text, why))
 }
 
-/// Returns the changes of mode and errors of a watched robot between two samples.
+/// Returns the changes of the mode and the errors of a watched robot between two samples.
 pub(crate) fn of_states(
     before: &RobotState,
     state: &RobotState,

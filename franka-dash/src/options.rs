@@ -13,7 +13,7 @@ use franka_sim::Running;
 use crate::recording::Writing;
 use crate::simulated::Simulated;
 
-/// Permissions of viewers. By default, viewers on this computer can watch, and do nothing else.
+/// Permissions of viewers. By default, viewers on this computer can only watch.
 #[derive(Clone, Default)]
 #[must_use = "options do nothing until `router` takes them"]
 pub struct Options {
@@ -25,19 +25,19 @@ pub struct Options {
     pub(crate) writing: Writing,
     pub(crate) patience: Duration,
     pub(crate) keep_out: Vec<Obstacle>,
-    /// The names of all robots of the server, if it has several.
+    /// Names of all robots of the server, if it has several robots.
     pub(crate) siblings: Arc<[String]>,
 }
 
 impl Options {
-    /// Allows the viewer with the lease to move the arm and recover the robot.
+    /// Allows the viewer that has the lease to move the arm and recover the robot.
     pub fn allow_motion(mut self) -> Self {
         self.motion = true;
         self
     }
 
-    /// Requires this token from every page, in the fragment of the page's address:
-    /// `http://HOST/#TOKEN`. The server then also accepts other computers.
+    /// Sets the token that every page must send. A page receives the token in the fragment of its
+    /// address: `http://HOST/#TOKEN`. With a token, the server also accepts other computers.
     pub fn token(mut self, token: Token) -> Self {
         self.admission = self.admission.token(token);
         self
@@ -49,29 +49,30 @@ impl Options {
         self
     }
 
-    /// Allows the viewer with the lease to disturb this simulated robot. It must be the displayed
-    /// robot.
+    /// Allows the viewer that has the lease to disturb `running`. This must be the simulated robot
+    /// that the page shows.
     pub fn simulated(mut self, running: &Arc<Running>) -> Self {
         self.simulated = Some(Simulated::new(running.clone()));
         self
     }
 
-    /// Shows this Franka Hand with the robot. If motions are allowed, the viewer with the lease can
-    /// move its fingers.
+    /// Shows a Franka Hand with the robot. If motions are allowed, the viewer that has the lease
+    /// can also move the fingers.
     pub fn gripper(mut self, gripper: Gripper) -> Self {
         self.gripper = Some(gripper);
         self
     }
 
-    /// Allows the viewer with the lease to record the robot, and its gripper, to new files in this
-    /// existing folder. The time gives the name of a file. A recording ends after an hour, or when
-    /// the connection to the robot ends. See [`Self::recordings_ended`].
+    /// Allows the viewer that has the lease to record the robot and its gripper. Each recording is
+    /// a new file in `folder`, which must exist, and the file's name contains the time. A recording
+    /// ends after an hour, or when the connection to the robot ends. See
+    /// [`Self::recordings_ended`].
     pub fn record_to(mut self, folder: impl Into<PathBuf>) -> Self {
         self.recordings = Some(folder.into());
         self
     }
 
-    /// Resolves when all recordings that viewers started under these options, or under clones of
+    /// Returns a future that resolves when all recordings under these options, or under clones of
     /// them, have been written. Before the program ends, call
     /// [`Robot::shutdown`](franka_async::Robot::shutdown) and then await this future. Otherwise a
     /// recording may lack its index and its last second. Writing takes at most 10 s.
@@ -79,16 +80,17 @@ impl Options {
         self.writing.clone().none()
     }
 
-    /// Keeps the arm out of these regions, given in the base frame, in the motions of the page. The
-    /// page shows them. See [`Engage::keep_out`](franka_async::Engage::keep_out) for the number of
-    /// regions allowed.
+    /// Keeps the arm out of these regions of the base frame in all motions of the page. The page
+    /// shows the regions. See [`Engage::keep_out`](franka_async::Engage::keep_out) for the largest
+    /// number of regions.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.keep_out = regions.into_iter().collect();
         self
     }
 
-    /// Allows messages of a held button to be late by this duration. Use it to test the page on a
-    /// busy computer. It has an effect only with [`Self::simulated`], never with a real robot.
+    /// Sets how late the messages of a held button may be. Use this option to test the page on a
+    /// busy computer. It has an effect only together with [`Self::simulated`], never with a real
+    /// robot.
     pub fn patience(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self

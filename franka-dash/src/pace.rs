@@ -1,4 +1,4 @@
-//! Speed limits for motions, with which no point of the arm exceeds a given speed.
+//! Limits for motions in which no point of the arm may exceed a given speed.
 
 use franka_async::goal::Budget;
 use franka_async::model::Model;
@@ -6,12 +6,12 @@ use franka_async::model::geometry::{FLANGE, Lengths};
 use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 
-/// Half the width of a hand, which is more than the radius of any link, `[m]`.
+/// Half the width of a hand, `[m]`. This is more than the radius of any link.
 const BODY: f64 = 0.11;
 
-/// Returns a bound on the distance of any point of an arm with these lengths from the axis of each
-/// joint, `[m]`, at any posture. The bound is the sum of the lengths between them, with a tool that
-/// extends `tool` from the flange.
+/// Returns the largest distance that any point of an arm with these lengths can have from the axis
+/// of each joint, in any posture, `[m]`. It is the sum of the lengths after the joint, with a tool
+/// that extends `tool` from the flange.
 fn reach(lengths: &Lengths, tool: f64) -> [f64; 7] {
     let origins = lengths.joint_origins();
     let mut rest = FLANGE + tool + BODY;
@@ -27,8 +27,9 @@ fn tool_length(state: &RobotState) -> f64 {
     Vector3::new(state.F_T_EE[12], state.F_T_EE[13], state.F_T_EE[14]).norm()
 }
 
-/// Returns the limits for a joint motion by `way`, `[rad]`. With these limits no point of the arm
-/// is faster than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the way.
+/// Returns the limits for a joint motion with the displacement `way`, `[rad]`, in which no point of
+/// the arm is faster than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the
+/// displacement.
 pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f64) -> Budget {
     let reach = reach(model.lengths(), tool_length(state));
     let way = way.map(|joint| joint.abs().max(SHORTEST));
@@ -41,8 +42,8 @@ pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f6
 }
 
 /// Returns the limits for an end effector that moves at `speed`, `[m/s]`. In a rotation, points at
-/// [`TURNING_RADIUS`] have this speed. The limits bound only the end effector; the session's speed
-/// cap bounds the rest of the arm.
+/// [`TURNING_RADIUS`] have this speed. These limits apply only to the end effector. The session's
+/// speed cap applies to the rest of the arm.
 pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     let mut budget = Budget::of(model.joint_limits());
     budget.translation.velocity = speed;
@@ -50,10 +51,12 @@ pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     budget
 }
 
-/// Smallest displacement of a joint that is used, `[rad]`, because velocities must be above zero.
+/// Smallest displacement of a joint in the computation, `[rad]`. It is not zero because velocities
+/// must be above zero.
 const SHORTEST: f64 = 1e-3;
 
-/// Distance from the end effector at which points have the requested speed in a rotation, `[m]`.
+/// Distance from the end effector at which points have the requested speed during a rotation,
+/// `[m]`.
 pub(crate) const TURNING_RADIUS: f64 = 0.25;
 
 #[cfg(test)]

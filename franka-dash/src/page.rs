@@ -1,4 +1,4 @@
-//! The files of the page, which are part of the program. `cargo xtask assets` generates them.
+//! The files of the page, which are compiled into the program. `cargo xtask assets` generates them.
 
 use axum::Router;
 use axum::extract::OriginalUri;
@@ -16,7 +16,7 @@ pub(crate) fn overview<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(OVERVIEW)
 }
 
-/// True if a page has a file, or a folder, with this name.
+/// Returns true if a page has a file or a folder with this name.
 pub(crate) fn is_file(name: &str) -> bool {
     let first = |path: &str| path.split('/').nth(1) == Some(name);
     let files = FILES.iter().chain(COMPRESSED).chain(MESHES);
@@ -24,7 +24,7 @@ pub(crate) fn is_file(name: &str) -> bool {
     paths.any(|path| first(path)) || ["ws", "access", "robots.json"].contains(&name)
 }
 
-/// Returns the routes for all files; `page` is the main page.
+/// Returns the routes for all files. `page` is the main page.
 fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     let first = async move |OriginalUri(asked): OriginalUri| {
         if asked.path().ends_with('/') {
@@ -44,8 +44,8 @@ fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     router
 }
 
-/// Returns the error text for a page path without a slash. From such a path, a browser would look
-/// for the files elsewhere.
+/// Returns the error text for a page path that does not end with a slash. From such a path, a
+/// browser would load the files from the wrong folder.
 fn needs_a_slash(path: &str) -> String {
     format!(
         "got the path \"{path}\", expected \"{path}/\": nest the router there, since the \
@@ -57,7 +57,8 @@ const HTML: &str = "text/html; charset=utf-8";
 static INDEX: &[u8] = include_bytes!("../page/index.html");
 static OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
 
-/// Returns headers that forbid caching. Page and server thus always have the same version.
+/// Returns headers that forbid caching, so that the page and the server always have the same
+/// version.
 fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
     [
         (header::CONTENT_TYPE, kind),
@@ -101,7 +102,7 @@ macro_rules! meshes {
     };
 }
 
-/// The shapes of the links, each in the axes of its frame, compressed. See `page/meshes/NOTICE` for
+/// The shapes of the links, compressed, each in the axes of its frame. See `page/meshes/NOTICE` for
 /// their source and changes.
 static MESHES: &[(&str, &str, &[u8])] = meshes! {
     "hand" "finger"

@@ -1,5 +1,5 @@
-//! Previews of motions with a target. The page and the hold both use them, so both refuse the same
-//! motions.
+//! Previews of motions that have a target. The page and the hold use the same preview, so they
+//! refuse the same motions.
 
 use franka_async::error::PathError;
 use franka_async::model::JointVector;
@@ -17,14 +17,14 @@ use crate::way::Way;
 /// A viewer's question about a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Question {
-    /// Number of the question. The answer repeats it.
+    /// Number of the question, which the answer repeats.
     pub(crate) number: u32,
     pub(crate) motion: Motion,
     /// Largest speed, `[m/s]`.
     pub(crate) speed: f64,
 }
 
-/// True if the viewer has chosen the end of the motion, so that the motion can be planned.
+/// Returns true if the motion has a target, so that it can be planned.
 pub(crate) fn has_end(motion: &Motion) -> bool {
     matches!(
         motion,
@@ -35,7 +35,7 @@ pub(crate) fn has_end(motion: &Motion) -> bool {
 /// The preview of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Plan {
-    /// Time until arrival if nothing delays the motion, `[s]`.
+    /// Duration of the motion if nothing delays it, `[s]`.
     duration: f64,
     /// Length of the end effector's path, `[m]`.
     length: f64,
@@ -43,14 +43,15 @@ pub(crate) struct Plan {
     fastest: f64,
     /// Joint positions at the end, `[rad]`.
     q: [f64; 7],
-    /// Poses at the end, for the frames of a state frame: position and quaternion x y z w of each.
+    /// Poses at the end of the motion, in the order of a state frame. Each is a position and a
+    /// quaternion x y z w.
     poses: Vec<f64>,
     /// Path of the end effector, `[m]`.
     line: Vec<[f64; 3]>,
 }
 
-/// Previews a motion that [has an end](has_end) and starts now, or returns the reason for a
-/// refusal. It takes milliseconds.
+/// Previews a motion that [has a target](has_end) and starts now. Returns the reason if the motion
+/// is refused. The computation takes milliseconds.
 pub(crate) fn plan(
     robot: &Robot,
     motion: &Motion,
@@ -98,7 +99,7 @@ pub(crate) fn plan(
     })
 }
 
-/// Like [`plan`], but computed in a separate task, which delays nothing else.
+/// Like [`plan`], but runs in a separate task that delays no other task.
 pub(crate) async fn in_background(
     robot: &Robot,
     motion: Motion,
@@ -111,8 +112,8 @@ pub(crate) async fn in_background(
     planned.unwrap_or_else(|error| Err(error.to_string()))
 }
 
-/// Returns the text of a refusal, without the number of a waypoint, because a viewer sets one
-/// target.
+/// Returns the text of a refusal. The text omits the number of the waypoint, because a viewer sets
+/// only one target.
 fn refusal(error: MotionError) -> String {
     match error {
         MotionError::Path(PathError::Waypoint { error, .. }) => error.to_string(),
@@ -161,7 +162,7 @@ fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
     speeds.fold(0.0, f64::max)
 }
 
-/// Returns at most [`LINE_MAX`] points of a line, its ends included.
+/// Returns at most [`LINE_MAX`] points of a line, including its ends.
 fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
     let last = line.len().saturating_sub(1);
     let count = last.min(LINE_MAX - 1);

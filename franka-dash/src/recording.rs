@@ -1,4 +1,4 @@
-//! Recordings that viewers control, in a folder of the server.
+//! Recordings that viewers start and end, in a folder of the server.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,7 +12,7 @@ use serde::Serialize;
 use tokio::sync::watch;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// The recordings of a server. Only one runs at a time.
+/// The recordings of a server. Only one recording can run at a time.
 pub(crate) struct Recordings {
     folder: PathBuf,
     writing: Writing,
@@ -50,10 +50,10 @@ impl Recordings {
         self.lock().cancel();
     }
 
-    /// Records the robot, and the gripper if there is one. Resolves when the recording has ended:
-    /// through [`Self::end`], after [`LONGEST`], when the connection ends, or with an error. The
-    /// result is a line of text about the recording. While another recording runs, this has no
-    /// effect and returns `None`.
+    /// Records the robot and its gripper, if it has one. The recording ends through [`Self::end`],
+    /// after [`LONGEST`], when the connection ends, or with an error. The future then resolves with
+    /// a line of text about the recording. If another recording is running, the future has no
+    /// effect and resolves with `None`.
     pub(crate) async fn record(
         &self,
         robot: &Robot,
@@ -137,12 +137,12 @@ impl Recordings {
     }
 }
 
-/// Number of recordings of all servers that are not completely written.
+/// Number of recordings, over all servers, that are not completely written.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Writing(Arc<watch::Sender<usize>>);
 
 impl Writing {
-    /// Counts one recording until the result is dropped.
+    /// Counts one recording as unfinished until the returned value is dropped.
     fn begin(&self) -> impl Drop + use<> {
         struct One(Writing);
         impl Drop for One {
@@ -154,14 +154,14 @@ impl Writing {
         One(self.clone())
     }
 
-    /// Waits until the count is zero.
+    /// Waits until all recordings are written.
     pub(crate) async fn none(self) {
         // The sender lives as long as `self`.
         let _ = self.0.subscribe().wait_for(|count| *count == 0).await;
     }
 }
 
-/// Runs a function that waits for the disk, without delaying other tasks.
+/// Runs a function that waits for the disk, and does not delay other tasks.
 async fn off_the_runtime<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, String> {
@@ -169,7 +169,8 @@ async fn off_the_runtime<T: Send + 'static>(
     done.map_err(|error| error.to_string())
 }
 
-/// Time after which a recording ends automatically, because closing a page does not end it.
+/// Longest duration of a recording. The limit is necessary because closing a page does not end its
+/// recording.
 const LONGEST: Duration = Duration::from_secs(3600);
 
 /// Interval between two updates of the progress.

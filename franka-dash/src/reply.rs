@@ -1,4 +1,4 @@
-//! Messages to viewers, as JSON. State frames are binary: [`frame`](crate::frame).
+//! Messages to viewers, in JSON. State frames are binary (see [`frame`](crate::frame)).
 
 use franka_async::state::WrenchTare;
 use serde::Serialize;
@@ -16,57 +16,57 @@ use crate::statistics::Statistics;
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Reply {
-    /// A request had no effect. The message contains the reason.
+    /// A request had no effect. The message states the reason.
     Refused {
         why: String,
-        /// The same number as in `Status`, at the time of the refusal.
+        /// Value of `begun` in `Status` at the time of the refusal.
         begun: u64,
     },
     /// The current commander and its hold.
     Status {
         #[serde(flatten)]
         status: Status,
-        /// Number of this viewer's requests to begin a hold that have been processed. With this
-        /// number, a page decides whether a message belongs to its newest hold.
+        /// Number of this viewer's processed requests to begin a hold. From this number, the page
+        /// recognises whether a message belongs to its newest hold.
         begun: u64,
     },
     /// The server has received this viewer's stop.
     Stopping {},
     /// An event.
     Event(News),
-    /// Number of events that this viewer missed because it was too slow.
+    /// Number of events that this viewer lost because it was too slow.
     Missed { events: u64 },
-    /// The punctuality of control.
+    /// The punctuality of the control thread.
     Statistics(Statistics),
     /// The fingers of the gripper.
     Gripper(FingerState),
     /// The current recording.
     Recording { recording: Option<Progress> },
-    /// The preview for a question, or the reason why it is refused.
+    /// The preview that answers a question, or the reason for a refusal.
     Preview {
         /// Number of the question.
         number: u32,
         way: Option<Plan>,
         refused: Option<String>,
     },
-    /// The plan of the active hold; `null` without a hold, or if its motion has no end.
+    /// The plan of the active hold; `null` if no hold is active or its motion has no target.
     Heading { way: Option<Plan> },
     /// The estimated contact on the arm; `null` without a contact.
     Contact { contact: Option<Contact> },
-    /// The tare of the wrench in frames; `null` without a tare.
+    /// The tare that is applied to the wrench in frames; `null` without a tare.
     Tare { tare: Option<TareShown> },
 }
 
 /// The tare (the zero) of the wrench, and the range in which it is valid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct TareShown {
-    /// Force, then torque about the stiffness frame, in base axes, `[N, N m]`.
+    /// Force and torque in base axes, the torque about the stiffness frame, `[N, N m]`.
     wrench: [f64; 6],
     /// Standard deviation of each of the six numbers.
     deviation: [f64; 6],
     /// Joint positions at the time of the tare, `[rad]`.
     q: [f64; 7],
-    /// Largest distance of any joint from these positions at which the tare is valid, `[rad]`.
+    /// Largest distance of any joint from `q` at which the tare is valid, `[rad]`.
     near: f64,
 }
 
@@ -95,7 +95,7 @@ impl Reply {
         }
     }
 
-    /// Returns the message about the plan of a hold, without the number of the hold.
+    /// Returns the message with the plan of a hold. The message does not contain the hold's number.
     pub(crate) fn heading(heading: Option<(u64, Plan)>) -> Self {
         let way = heading.map(|(_, plan)| plan);
         Self::Heading { way }
@@ -109,7 +109,7 @@ pub(crate) struct Status {
     pub(crate) authority: authority::Status,
     /// The stiffness of the arm during a hold.
     pub(crate) tuning: Tuning,
-    /// Settings of the simulation; `None` for a robot that viewers cannot disturb.
+    /// Settings of the simulation; `None` if viewers cannot disturb the robot.
     pub(crate) simulation: Option<Setting>,
 }
 

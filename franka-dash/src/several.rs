@@ -1,4 +1,4 @@
-//! Several robots on one server. Each robot has a page, and one page shows all robots side by side.
+//! Several robots on one server, with one page per robot and one page for all robots.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ use crate::options::Options;
 use crate::source::Source;
 use crate::{admission, page, serve};
 
-/// Reason why names of robots are not valid. The names are parts of addresses.
+/// Reason why a robot's name is invalid. The names are parts of page addresses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NameError {
-    /// A name is empty, has more than 40 characters, or contains characters other than letters,
+    /// The name is empty, has more than 40 characters, or contains characters other than letters,
     /// digits and `-_.:~`.
     #[error(
         "got the name {name:?}, expected 1 to 40 characters of a-z, A-Z, 0-9 and -_.:~, since \
@@ -29,7 +29,7 @@ pub enum NameError {
         /// The name.
         name: String,
     },
-    /// Two robots have the same name, or a file of the page has the name of a robot.
+    /// Two robots have the same name, or the page has a file with this name.
     #[error("the name {name:?} is already in use, expected a different one")]
     Taken {
         /// The name.
@@ -37,13 +37,13 @@ pub enum NameError {
     },
 }
 
-/// Returns the pages of several robots. Each robot's page is at `/NAME/`, as served by
-/// [`router`](crate::router). The page at `/` shows all robots side by side; there, viewers can
-/// watch and stop them. Call this within a Tokio runtime. Each robot has a separate commander. Use
-/// the same token for all robots.
+/// Returns a router with the pages of several robots. The page of each robot is at `/NAME/`, as
+/// served by [`router`](crate::router). The page at `/` shows all robots side by side, and its
+/// viewers can only watch and stop them. Each robot has a separate commander. Use the same token
+/// for all robots. Call this function within a Tokio runtime.
 ///
 /// # Errors
-/// [`NameError`] if a name is not valid. Nothing has been started in this case.
+/// Returns [`NameError`] if a name is invalid. No robot has been started in this case.
 pub fn several<N: Into<String>>(
     robots: impl IntoIterator<Item = (N, Robot, Options)>,
 ) -> Result<Router, NameError> {
@@ -89,7 +89,7 @@ pub fn several<N: Into<String>>(
 
 fn is_part_of_an_address(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_alphanumeric() || "-_.:~".contains(c);
-    // Names that consist of dots are relative folders, for example `..`.
+    // A name that consists of dots, such as `..`, is a relative folder.
     (1..=40).contains(&name.len()) && name.chars().all(fits) && name.contains(|c| c != '.')
 }
 

@@ -1,4 +1,4 @@
-//! The simulated robot that viewers can disturb.
+//! A simulated robot that viewers can disturb.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -20,11 +20,11 @@ pub(crate) struct Simulated {
     setting: Arc<Mutex<Setting>>,
 }
 
-/// The current conditions of the simulation; `None` for values that have not changed since the
+/// The current conditions of the simulation. A value is `None` if it has not changed since the
 /// simulator started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Setting {
-    /// Seed of all randomness of the simulator; `None` while unknown.
+    /// Seed of the simulator's random numbers; `None` if unknown.
     seed: Option<u64>,
     arm: Option<ArmKind>,
     network: Option<Conditions>,
@@ -32,7 +32,8 @@ pub(crate) struct Setting {
     object: Option<f64>,
     /// Mass attached to the flange, `[kg]`.
     load: f64,
-    /// Speed of robot time in virtual time; 0 is a pause, `None` is as fast as possible.
+    /// Ratio of robot time to wall-clock time in virtual time. 0 is a pause, and `None` is as fast
+    /// as possible.
     speed: Option<f64>,
 }
 
@@ -45,12 +46,12 @@ impl Simulated {
         }
     }
 
-    /// True if the robot has a Hand, which can hold an object.
+    /// Returns true if the robot has a Hand, which can hold an object.
     pub(crate) fn has_hand(&self) -> bool {
         self.running.hand().is_some()
     }
 
-    /// True if the speed of robot time can be set.
+    /// Returns true if the speed of robot time can be set.
     pub(crate) fn is_in_virtual_time(&self) -> bool {
         self.running.is_in_virtual_time()
     }
@@ -91,7 +92,7 @@ impl Simulated {
     /// Performs a [checked](crate::request::Request::check) disturbance.
     ///
     /// # Errors
-    /// The reason why the disturbance was not performed.
+    /// Returns the reason if the disturbance could not be performed.
     pub(crate) async fn disturb(&self, disturbance: Disturbance) -> Result<(), String> {
         self.apply(disturbance).await?;
         let mut setting = self.lock();
@@ -135,7 +136,7 @@ impl Simulated {
                     match width {
                         Some(width) => fingers.place_object(width),
                         None => {
-                            // There may be no object to remove.
+                            // The error is ignored, because there may be no object to remove.
                             let _ = fingers.take_object();
                             true
                         }
@@ -162,8 +163,8 @@ impl Simulated {
         }
     }
 
-    /// Copies the newest state to `watched`, at the rate of the page. Returns when the simulation
-    /// has ended.
+    /// Passes the newest state to `watched` at the frame rate of the page. Returns when the
+    /// simulation has ended.
     pub(crate) async fn copy_to(&self, watched: impl Fn(RobotState) -> bool) {
         let mut clock = tokio::time::interval(Duration::from_millis(10));
         clock.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Skip);
@@ -181,7 +182,7 @@ impl Simulated {
     }
 }
 
-/// Applies a disturbance of the robot itself. `pushing` is the push that may still be active.
+/// Applies a disturbance to the robot itself. `pushing` is the push that may still be active.
 fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<TouchId>) {
     match disturbance {
         Disturbance::Push {
@@ -227,7 +228,7 @@ fn simulate(arm: ArmKind, kind: RobotKind) -> Arm {
     }
 }
 
-/// Returns the network with these conditions; `None` for the host's own conditions.
+/// Returns the network with these conditions; `None` if the conditions are those of the host.
 fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
     let Conditions {
         loss,

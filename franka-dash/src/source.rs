@@ -11,7 +11,8 @@ use franka_async::state::RobotState;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) state: RobotState,
-    /// Joint reference of this driver, `[rad]`; `None` while this driver does not move the arm.
+    /// This driver's reference joint positions, `[rad]`; `None` while this driver does not move the
+    /// arm.
     pub(crate) reference: Option<[f64; 7]>,
     /// Guards (safety checks of the driver) that were active recently.
     pub(crate) guards: Bindings,
@@ -19,15 +20,15 @@ pub(crate) struct Sample {
 
 /// The source of states.
 pub(crate) enum Source {
-    /// A robot to which this process is connected, simulated or not.
+    /// A robot (real or simulated) to which this process is connected.
     Robot(Robot),
-    /// A simulated robot whose client is another program.
+    /// A simulated robot that another program controls.
     Watched(Box<Watched>),
 }
 
-/// A simulated robot whose client is another program.
+/// A simulated robot that another program controls.
 pub(crate) struct Watched {
-    /// Model that the simulated robot describes.
+    /// Model from the simulated robot's description.
     model: Model,
     newest: Mutex<RobotState>,
 }

@@ -1,4 +1,4 @@
-//! The punctuality of control, for the page.
+//! The punctuality of the control thread, for the page.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -7,20 +7,20 @@ use franka_async::Robot;
 use franka_async::realtime::{Histogram, Stats};
 use serde::Serialize;
 
-/// Counters and quantiles of the control thread since it was started, `[us]`.
+/// Counters and quantiles since the control thread was started, `[us]`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Statistics {
     /// Round trip to this page, `[ms]`; `None` before the first measurement.
     round_trip_ms: Option<f64>,
     /// Values of the control thread; `None` if another program controls the robot.
     thread: Option<Thread>,
-    /// Values since the last statistics for this viewer; `None` in the first statistics.
+    /// Values since the previous statistics for this viewer; `None` in the first statistics.
     recent: Option<Recent>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct Thread {
-    /// Priority of the thread under `SCHED_FIFO`; `None` if it was not granted.
+    /// Priority of the thread under `SCHED_FIFO`; `None` if the system did not grant it.
     priority: Option<i32>,
     states: u64,
     lost: u64,
@@ -30,14 +30,14 @@ struct Thread {
     slack: Option<Spread>,
 }
 
-/// Minimum, median and maximum of the last cycles, with a resolution of 1/16, `[us]`.
+/// Minimum, median and maximum of the newest cycles, with a resolution of 1/16, `[us]`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Recent {
     turnaround: [f64; 3],
     slack: [f64; 3],
 }
 
-/// Contents of the histograms at the last statistics for a viewer.
+/// Contents of the histograms at the previous statistics for a viewer.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
     turnaround: Buckets,
@@ -48,8 +48,8 @@ pub(crate) struct Counts {
 type Buckets = BTreeMap<Duration, u64>;
 
 impl Counts {
-    /// Returns the values since the last call; `None` if there are no new values, and for the first
-    /// call.
+    /// Returns the values since the last call; `None` in the first call, and if there are no new
+    /// values.
     fn take(&mut self, stats: &Stats) -> Option<Recent> {
         let turnaround = since(&mut self.turnaround, &stats.turnaround);
         let slack = since(&mut self.slack, &stats.slack);
@@ -60,8 +60,8 @@ impl Counts {
     }
 }
 
-/// Returns minimum, median and maximum of the values that a histogram gained since `before`, and
-/// updates `before`.
+/// Returns the minimum, median and maximum of the values that were added to a histogram since
+/// `before`, and updates `before`.
 fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
     spread(before, histogram.buckets().collect())
 }
@@ -69,7 +69,7 @@ fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
 fn spread(before: &mut Buckets, now: Buckets) -> Option<[f64; 3]> {
     let before = std::mem::replace(before, now.clone());
     let more = now.into_iter().filter_map(|(duration, count)| {
-        // For another connection, the counts begin at zero.
+        // After a reconnect, the counts begin at zero.
         let count = count.saturating_sub(before.get(&duration).copied().unwrap_or(0));
         (count > 0).then_some((duration, count))
     });
@@ -97,7 +97,8 @@ struct Spread {
 }
 
 impl Statistics {
-    /// Creates the statistics. `before` is the state at the last statistics for this viewer.
+    /// Creates the statistics. `before` contains the counts of the previous statistics for this
+    /// viewer.
     pub(crate) fn of(
         robot: Option<&Robot>,
         round_trip: Option<Duration>,
@@ -148,7 +149,7 @@ mod tests {
         let now = buckets(&[(5, 10), (7, 3), (20, 1), (900, 1)]);
         assert_eq!(spread(&mut before, now.clone()), Some([5.0, 7.0, 20.0]));
         assert_eq!(spread(&mut before, now), None, "nothing has come");
-        // For another connection, the counts begin at zero.
+        // After a reconnect, the counts begin at zero.
         assert_eq!(spread(&mut before, buckets(&[(6, 2)])), Some([6.0; 3]));
     }
 }

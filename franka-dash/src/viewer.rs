@@ -1,9 +1,9 @@
-//! One viewer's socket: receives requests, and sends frames, events and statistics.
+//! The socket of one viewer. It receives requests, and sends frames, events and statistics.
 //!
-//! The server sends a frame only after the viewer has acknowledged the previous frame, and then it
-//! sends the newest state. So it never creates frames that a slow viewer would not read. It
-//! continues to read while a send waits, so it receives a stop. The server disconnects a viewer
-//! that does not accept a message within [`SEND`], or that is silent for [`SILENCE`].
+//! The server sends the newest state after the viewer has acknowledged the previous frame.
+//! Therefore it never creates frames that a slow viewer would not read. The server continues to
+//! read while a send waits, so it receives a stop. It disconnects a viewer that does not accept a
+//! message within [`SEND`], or that is silent for [`SILENCE`].
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -50,13 +50,13 @@ struct Link {
     sent: AtomicU64,
     /// True until the viewer has acknowledged the newest frame.
     in_flight: AtomicBool,
-    /// Number of this viewer's requests to begin a hold that have been processed.
+    /// Number of this viewer's processed requests to begin a hold.
     begun: AtomicU64,
     round_trip: Mutex<Option<(Instant, Duration)>>,
 }
 
 impl Link {
-    /// Processes an acknowledgement. Acknowledgements of older frames are ignored.
+    /// Processes an acknowledgement. Ignores acknowledgements of older frames.
     fn seen(&self, server_ms: u64, now_ms: u64) {
         if server_ms != self.sent.load(Ordering::Relaxed)
             || !self.in_flight.swap(false, Ordering::Relaxed)
@@ -67,8 +67,8 @@ impl Link {
         *self.lock() = Some((Instant::now(), took));
     }
 
-    /// Returns the newest round trip, if it is recent. If a frame has been waiting for its
-    /// acknowledgement for longer, returns this time instead.
+    /// Returns the newest round trip if it is recent. If a frame has waited for its acknowledgement
+    /// for longer than this round trip, returns the waiting time instead.
     fn round_trip(&self, now_ms: u64) -> Option<Duration> {
         let (at, took) = (*self.lock())?;
         let waiting = match self.in_flight.load(Ordering::Relaxed) {
@@ -94,7 +94,7 @@ impl Link {
     }
 }
 
-/// Processes requests until the socket ends, or until the viewer does not read the replies.
+/// Processes requests until the socket ends, or until the viewer stops reading the replies.
 async fn read(
     hub: &Arc<Hub>,
     viewer: ViewerId,
@@ -109,7 +109,7 @@ async fn read(
         if window.0.elapsed() > Duration::from_secs(1) {
             window = (Instant::now(), 0);
         } else if window.1 > MESSAGES_PER_SECOND {
-            // Meanwhile, further messages wait in the viewer's own connection.
+            // Meanwhile, more messages wait in the viewer's own connection.
             sleep(Duration::from_secs(1).saturating_sub(window.0.elapsed())).await;
         }
         let why = match message {
@@ -123,7 +123,7 @@ async fn read(
                     let begins = matches!(request, Request::Begin { .. });
                     let is_stop = matches!(request, Request::Stop {});
                     let handled = hub.handle(viewer, round_trip, request);
-                    // This task also writes, so no message is sent in between.
+                    // This task also sends messages, so no message is sent between these lines.
                     link.begun.fetch_add(u64::from(begins), Ordering::Relaxed);
                     if is_stop && replies.try_send(Reply::Stopping {}).is_err() {
                         return;
@@ -152,7 +152,7 @@ async fn read(
     }
 }
 
-/// Answers questions until the viewer disconnects. It answers one at a time, the newest first.
+/// Answers questions until the viewer disconnects, one at a time and the newest first.
 async fn answer(
     hub: &Hub,
     mut questions: watch::Receiver<Option<Question>>,
@@ -254,7 +254,8 @@ async fn write(
     }
 }
 
-/// Returns the values that change continuously. The server sends them a few times per second.
+/// Returns the values that change continuously. The server sends these values a few times per
+/// second.
 fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = Reply> + use<> {
     let round_trip = link.round_trip(hub.now_ms());
     let statistics = Statistics::of(hub.source.robot(), round_trip, before);
@@ -269,7 +270,7 @@ fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = 
         .flatten()
 }
 
-/// Sends a message within the time limit; `None` if sending fails.
+/// Sends a message within the time limit. Returns `None` if this fails.
 async fn send(sink: &mut SplitSink<WebSocket, Message>, message: Message) -> Option<()> {
     timeout(SEND, sink.send(message)).await.ok()?.ok()
 }
@@ -282,11 +283,11 @@ fn text(message: &impl Serialize) -> Message {
 const FRAME: Duration = Duration::from_nanos(16_666_667);
 const STATISTICS: Duration = Duration::from_millis(200);
 
-/// Time limit for a viewer to accept a message.
+/// Time within which a viewer must accept a message.
 const SEND: Duration = Duration::from_secs(2);
 
-/// Silence after which a viewer counts as disconnected. A connected viewer acknowledges frames
-/// continuously.
+/// Silence after which a viewer counts as disconnected. A connected viewer acknowledges frames all
+/// the time.
 const SILENCE: Duration = Duration::from_secs(10);
 
 /// Age above which a round trip is no longer used.
@@ -295,6 +296,6 @@ const FRESH: Duration = Duration::from_secs(1);
 /// Largest number of replies that may wait for a viewer.
 const REPLIES: usize = 32;
 
-/// Largest number of messages of a viewer per second. The page itself sends fewer: 60
-/// acknowledgements, 20 holds, 20 pushes.
+/// Largest number of messages per second from one viewer. The page sends fewer: 60
+/// acknowledgements, 20 holds and 20 pushes.
 const MESSAGES_PER_SECOND: u32 = 250;

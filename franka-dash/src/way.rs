@@ -1,4 +1,4 @@
-//! Path, speed and stiffness of a motion.
+//! Path, speed limits and stiffness of a motion.
 
 use franka_async::goal::{Budget, Gains, Target, target_range};
 use franka_async::{Pose, READY, Robot, pose};
@@ -9,9 +9,9 @@ use crate::request::{Motion, SPEED_MAX, Tuning};
 /// The path of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Way {
-    /// The joints move to a target. `way` is the displacement from their start, `[rad]`.
+    /// The joints move to `target`, `[rad]`. `way` is the displacement from the start, `[rad]`.
     Joints { target: [f64; 7], way: [f64; 7] },
-    /// The end effector moves to a pose, on a straight line.
+    /// The end effector moves to a pose on a straight line.
     Pose(Pose),
     /// The end effector moves in a direction.
     EndEffector,
@@ -23,7 +23,7 @@ impl Way {
         let state = robot.state();
         let target = match motion {
             Motion::Joint { joint, up } => {
-                // The other joints stay at their positions, even outside their ranges.
+                // The other joints keep their positions, even outside their ranges.
                 let mut q = state.q_d;
                 let index = joint - 1;
                 let (lower, upper) = range[index];
@@ -47,7 +47,8 @@ impl Way {
         Self::Joints { target, way }
     }
 
-    /// Returns the target of the motion; `None` if the motion continues while its button is held.
+    /// Returns the target of the motion; `None` if the motion has no target and continues while its
+    /// button is held.
     pub(crate) fn target(&self) -> Option<Target> {
         match self {
             Self::Joints { target, .. } => Some(Target::Joints(*target)),
@@ -56,19 +57,19 @@ impl Way {
         }
     }
 
-    /// Returns the speed limits of the motion. In joint motions, no point of the arm is faster than
-    /// `speed`, `[m/s]`. In other motions, the end effector is not faster.
+    /// Returns the speed limits of the motion. In a joint motion, `speed` limits every point of the
+    /// arm, `[m/s]`. In other motions, `speed` limits the end effector.
     pub(crate) fn budget(&self, robot: &Robot, speed: f64) -> Budget {
         match self {
             Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
             Self::Pose(_) => pace::end_effector_at(robot.model(), speed),
-            // A moving target needs a reserve of a tenth, so that the arm can catch up.
+            // A moving target needs a reserve of one tenth, so that the arm can catch up.
             Self::EndEffector => pace::end_effector_at(robot.model(), (speed / 0.9).min(SPEED_MAX)),
         }
     }
 
-    /// Returns the driver's gains for this kind of motion, with the viewer's stiffness setting
-    /// applied.
+    /// Returns the driver's gains for this kind of motion, changed by the viewer's stiffness
+    /// setting.
     pub(crate) fn gains(&self, tuning: &Tuning) -> Gains {
         let preset = match self {
             Self::Joints { .. } => Gains::joint(),

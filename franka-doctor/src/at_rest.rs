@@ -1,13 +1,13 @@
-//! Checks of the state of a robot at rest.
+//! Checks of the state of a robot that is at rest.
 
 use franka_proto::{RobotMode, RobotState};
 
 use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
 /// Returns the findings about a state of the robot: `robot.mode`, `robot.errors` and `robot.load`.
-/// `has_hand` is true if a Hand also answers. This is a pure function.
+/// `has_hand` is true if a Hand also answers. This function performs no I/O.
 ///
-/// The findings do not cover the collision thresholds, because a state does not contain them.
+/// The collision thresholds are not checked, because a state does not contain them.
 pub fn at_rest(state: &RobotState, has_hand: bool, purpose: Purpose) -> Vec<Finding> {
     let mode_wanted = About::robot(
         "robot.mode",

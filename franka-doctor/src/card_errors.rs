@@ -4,7 +4,7 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
-/// The count of each of the statistics in [`NAMES`].
+/// The count for each of the statistics in [`NAMES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CardErrors([u64; NAMES.len()]);
 
@@ -19,7 +19,7 @@ impl CardErrors {
         Ok(Self(counts))
     }
 
-    /// Returns the increase of the counts since `before`.
+    /// Returns how much the counts have increased since `before`.
     fn since(self, before: Self) -> Self {
         let mut counts = self.0;
         for (count, before) in counts.iter_mut().zip(before.0) {
@@ -33,7 +33,7 @@ impl CardErrors {
         let texts: Vec<String> = seen()
             .map(|(name, count)| format!("{name} {count}"))
             .collect();
-        // Packets of protocols without a listener count as dropped.
+        // Packets of protocols without a listener also count as dropped.
         let bad = seen().any(|(name, _)| *name != "rx_dropped");
         match (texts.is_empty(), bad) {
             (true, _) => Judged::good("none"),
@@ -43,7 +43,8 @@ impl CardErrors {
     }
 }
 
-/// Returns the finding about the counts before and after the measurements. This is a pure function.
+/// Returns the finding about the counts before and after the measurements. This function performs
+/// no I/O.
 pub(crate) fn meanwhile(
     before: Result<CardErrors, Unread>,
     after: Result<CardErrors, Unread>,
@@ -86,7 +87,7 @@ mod tests {
                 Verdict::Warning,
                 "rx_errors 1, rx_crc_errors 1",
             ),
-            // The card was set up again between the two readings.
+            // The card was set up again between the two readings, so its counts start from zero.
             (CardErrors([0; 5]), Verdict::Good, "none"),
         ] {
             let finding = meanwhile(Ok(old), Ok(after), Purpose::Move);

@@ -4,12 +4,12 @@ use crate::checks::{Check, all};
 use crate::finding::{Finding, Purpose, Verdict};
 use crate::readings::Readings;
 
-/// Observation when a motion ended because of missing packets.
+/// What was observed when a motion ended because of missing packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// States stopped arriving.
     LinkLost,
-    /// States or commands were lost, or the robot's success rate is low.
+    /// States or commands were lost, or the robot's success rate was low.
     Lost,
     /// This computer answered too late.
     Late,
@@ -65,9 +65,9 @@ impl Evidence {
     }
 }
 
-/// Returns the two most likely causes on this host: failures before warnings, then in the order of
-/// likelihood. Returns fewer if the checks find fewer. This only reads files and queries the driver
-/// of the network card.
+/// Returns the two most likely causes on this host, or fewer if the checks find fewer. Failures
+/// come before warnings, and causes of the same verdict are sorted by likelihood. This function
+/// only reads files and queries the driver of the network card.
 pub fn likely_causes(readings: &Readings<'_>, evidence: Evidence) -> Vec<Finding> {
     let named = |id: &&str| all().find(|check| check.id == *id && check.reads_only);
     let suspects = evidence.suspects().iter().filter_map(named);

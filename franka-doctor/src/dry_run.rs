@@ -1,4 +1,4 @@
-//! Result of a dry run: the control loop against a simulated robot on this computer.
+//! Result of a dry run, in which a control loop runs with a simulated robot on this computer.
 
 use core::time::Duration;
 
@@ -6,27 +6,28 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::report::counted;
 use crate::timing::quantile;
 
-/// Times in which a control loop answered the states of a simulated robot.
+/// The times that a control loop took to answer the states of a simulated robot.
 ///
-/// Each time starts when the robot's thread sent a state. So the times contain only delays of the
-/// loop. If the robot's thread is delayed, it sends the state later, and this delay does not count.
+/// Each time starts when the robot's thread has sent the state. Therefore the times contain only
+/// the delays of the loop. A delay of the robot's thread makes it send a state later, and does not
+/// count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DryRun {
-    /// The `SCHED_FIFO` priority of the loop; `None` under the normal scheduler.
+    /// The `SCHED_FIFO` priority of the loop; `None` if the loop ran under the normal scheduler.
     pub priority: Option<i32>,
-    /// Time from each state to the command that answers it, or that answers a newer state. Sorted.
+    /// Time from each state to the command that answers this state or a newer state. Sorted.
     pub answers: Vec<Duration>,
     /// Number of states that the simulated robot sent more than 2 ms after the previous state.
     pub pauses: usize,
-    /// Reason why the run ended early, if it did.
+    /// Reason why the run ended early; `None` if it did not.
     pub ended: Option<String>,
 }
 
 impl DryRun {
-    /// Compares the times of states in `sent` with the times of their commands in `left`. Each
-    /// entry is the `message_id` of the state and a time. Both lists are ordered by `message_id`
-    /// and use the same clock. States before the first command and after the last command are
-    /// ignored.
+    /// Computes the answer times from `sent`, the times of the states, and `left`, the times of the
+    /// commands. Each entry is the `message_id` of a state and a time. Both lists must be sorted by
+    /// `message_id` and use the same clock. States before the first command and after the last
+    /// command are ignored.
     pub fn new(sent: &[(u64, Duration)], left: &[(u64, Duration)]) -> Self {
         let mut run = Self::default();
         let mut commands = left.iter().peekable();
@@ -46,13 +47,13 @@ impl DryRun {
         run
     }
 
-    /// Number of answers that took longer than one cycle.
+    /// Returns the number of answers that took longer than one cycle.
     fn late(&self) -> usize {
         self.answers.len() - self.answers.partition_point(|answer| *answer <= CYCLE)
     }
 }
 
-/// Returns the finding about a dry run: `timing.dry_run`. This is a pure function.
+/// Returns the finding about a dry run (`timing.dry_run`). This function performs no I/O.
 pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.dry_run",
@@ -112,12 +113,11 @@ const CYCLE: Duration = Duration::from_millis(1);
 
 const ANSWER_GOOD: Duration = Duration::from_micros(800);
 
-/// Interval between two states above which the robot counts as paused. The nominal interval is one
-/// millisecond.
+/// Interval between two states above which the robot was paused. The nominal interval is 1 ms.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Number of answers below which the result is not conclusive: the answers of ten seconds, minus a
-/// few at the beginning and the end.
+/// Smallest number of answers for a conclusive result: ten seconds of answers, minus a few at the
+/// beginning and the end.
 const ANSWERS_MIN: usize = 9_900;
 
 #[cfg(test)]

@@ -1,50 +1,50 @@
-//! Result of a check, and its meaning for a purpose.
+//! The result of a check, and what it means for a purpose.
 
 use core::fmt;
 
 use crate::host::Unread;
 
-/// Purpose of the host. It determines which findings are failures.
+/// Purpose for which the host is used. It determines which findings are failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Purpose {
-    /// Run simulated robots.
+    /// The host runs simulated robots.
     Sim,
-    /// Read states of a robot.
+    /// The host reads the states of a robot.
     Read,
-    /// Move a robot.
+    /// The host moves a robot.
     Move,
 }
 
-/// Meaning of a value for the purpose. [`Verdict::Unknown`] is neither good nor bad.
+/// What a value means for the purpose. [`Verdict::Unknown`] is neither good nor bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Verdict {
     /// The value is as expected.
     Good,
-    /// The value is useful to know, and not an obstacle.
+    /// The value is useful to know, but is not an obstacle.
     Info,
-    /// The value may cost cycles.
+    /// With this value, some cycles may be lost.
     Warning,
-    /// The purpose cannot be achieved with this value.
+    /// The host is unsuitable for the purpose with this value.
     Failure,
-    /// The value could not be read. The finding names the missing part.
+    /// The value could not be read. The finding states what is missing.
     Unknown,
 }
 
-/// Part of the host or its surroundings to which a finding belongs. A report has one line for each
-/// group.
+/// Part of the host or its environment that a finding describes. A report contains one line for
+/// each group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Group {
-    /// Kernel, memory, power, virtual machines.
+    /// Kernel, memory, power and virtual machines.
     Host,
     /// The control thread's rights in the kernel.
     Scheduling,
-    /// Frequency, sleep states, load, interrupts.
+    /// Frequency, sleep states, load and interrupts.
     Processor,
     /// The route to the robot.
     NetworkCard,
@@ -79,7 +79,7 @@ impl fmt::Display for Group {
     }
 }
 
-/// Step after which a fix takes effect.
+/// Step that is necessary before a fix takes effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -98,7 +98,7 @@ pub enum Needs {
 pub struct Fix {
     /// The command, on one line.
     pub command: String,
-    /// Step after the command.
+    /// Step that must follow the command.
     pub needs: Needs,
 }
 
@@ -109,23 +109,23 @@ pub struct Fix {
 pub struct Finding {
     /// Stable name, such as `cpu.governor`.
     pub id: &'static str,
-    /// Group to which the finding belongs.
+    /// The group that contains the finding.
     pub group: Group,
-    /// Meaning of the value for the purpose.
+    /// What the value means for the purpose.
     pub verdict: Verdict,
-    /// The value; for [`Verdict::Unknown`], the missing part.
+    /// The value. For [`Verdict::Unknown`], a description of what is missing.
     pub read: String,
-    /// Expected value, with thresholds.
+    /// The expected value, with its thresholds.
     pub wanted: &'static str,
-    /// Consequence of a different value.
+    /// What happens if the value is not as expected.
     pub why: &'static str,
     /// Source of the threshold.
     pub source: &'static str,
-    /// Command that fixes the value, if one exists.
+    /// Command that corrects the value, if such a command exists.
     pub fix: Option<Fix>,
 }
 
-/// Result of a check's function. Its verdict is for a host that moves a robot.
+/// Result of a check's function. The verdict applies to a host that moves a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Judged {
     pub(crate) verdict: Verdict,
@@ -162,7 +162,7 @@ impl Judged {
         Self::new(Verdict::Unknown, read)
     }
 
-    /// Adds a fix, unless the finding is good or unknown.
+    /// Adds a fix unless the finding is good or unknown.
     pub(crate) fn fix(mut self, needs: Needs, command: impl Into<String>) -> Self {
         if !matches!(self.verdict, Verdict::Good | Verdict::Unknown) {
             let command = command.into();
@@ -172,7 +172,7 @@ impl Judged {
     }
 }
 
-/// Parts of a finding that do not depend on the value.
+/// The parts of a finding that do not depend on the value.
 pub(crate) struct About {
     pub(crate) id: &'static str,
     pub(crate) group: Group,
@@ -183,8 +183,8 @@ pub(crate) struct About {
 }
 
 impl About {
-    /// Returns the parts of a finding about the robot. Such findings also matter for reading
-    /// states.
+    /// Returns the constant parts of a finding about the robot. Such a finding also matters for
+    /// reading states.
     pub(crate) fn robot(
         id: &'static str,
         wanted: &'static str,
@@ -201,7 +201,7 @@ impl About {
         }
     }
 
-    /// Returns the finding for this purpose. A value that cannot be read gives
+    /// Returns the finding for `purpose`. If the value could not be read, the verdict is
     /// [`Verdict::Unknown`].
     pub(crate) fn finding(self, judged: Result<Judged, Unread>, purpose: Purpose) -> Finding {
         let judged = judged.unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
@@ -218,16 +218,16 @@ impl About {
     }
 }
 
-/// The least demanding purpose for which a check matters.
+/// The purposes for which a check matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Matters {
-    /// The check warns and fails for moving. For reading, its verdicts are one level lower.
+    /// The check matters for moving. For reading, its verdicts are one level lower.
     Moving,
-    /// The check warns and fails for moving and for reading.
+    /// The check matters equally for moving and for reading.
     Reading,
 }
 
-/// Converts `verdict`, which applies to a host that moves a robot, to `purpose`.
+/// Converts a verdict for a host that moves a robot to a verdict for `purpose`.
 fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
     match (purpose, matters, verdict) {
         (Purpose::Sim, _, Verdict::Warning | Verdict::Failure) => Verdict::Info,

@@ -1,4 +1,4 @@
-//! A robot's answer to the handshake: its version, and whether it is available.
+//! A robot's answer to the handshake, which shows its version and its availability.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
@@ -15,22 +15,23 @@ use crate::finding::{About, Finding, Judged, Purpose};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Answer {
-    /// The robot opened a session of this version.
+    /// The robot opened a session with this version.
     Accepted(Version),
-    /// The robot speaks another version than the announced version.
+    /// The robot supports a version other than the announced version.
     Incompatible(IncompatibleVersion),
     /// The robot closed the connection without an answer.
     Closed,
-    /// No connection was possible, or no valid answer came in time. The text describes the case.
+    /// No connection was possible, or no valid answer came in time. The text describes what
+    /// happened.
     Missing(String),
 }
 
-/// Opens a session with the robot at `address` and closes it immediately, within 1 s. If the robot
-/// names an older version that is supported, this opens another session with that version. It sends
-/// no other commands.
+/// Opens a session with the robot at `address`, and closes the session immediately. If the robot
+/// reports an older version that is supported, this function opens another session with that
+/// version. It sends no other commands. Each connection and each answer may take 1 s.
 ///
-/// The robot sends states until the session is closed, and accepts one client at a time. Use this
-/// only if the user asked to connect to the robot.
+/// The robot sends states until the session is closed, and accepts only one client at a time. Call
+/// this function only if the user asked for a connection to the robot.
 pub fn answers(address: SocketAddr) -> Vec<Answer> {
     let first = ask(address, NEWEST, TIMEOUT);
     let older = match &first {
@@ -42,8 +43,8 @@ pub fn answers(address: SocketAddr) -> Vec<Answer> {
     [Some(first), second].into_iter().flatten().collect()
 }
 
-/// Returns the findings about the answers of a robot, in their order: `robot.version` and
-/// `robot.busy`. This is a pure function.
+/// Returns the findings about the answers of a robot (`robot.version` and `robot.busy`). `answers`
+/// must be in the order of the sessions. This function performs no I/O.
 pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     let speaks = About::robot(
         "robot.version",
@@ -63,7 +64,7 @@ pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// Judges the version that the robot named.
+/// Judges the version that the robot reported.
 fn version(answers: &[Answer]) -> Judged {
     let named = answers.iter().find_map(|answer| match answer {
         Answer::Accepted(version) => Some(version.number()),
@@ -104,7 +105,7 @@ fn busy(answers: &[Answer]) -> Judged {
     }
 }
 
-/// Returns the reason why nothing is known about the robot.
+/// Returns the reason why the version and the availability are unknown.
 fn unanswered(answers: &[Answer]) -> Judged {
     Judged::unknown(match answers.last() {
         Some(Answer::Missing(why)) => format!("unknown: {why}"),
@@ -113,7 +114,7 @@ fn unanswered(answers: &[Answer]) -> Judged {
     })
 }
 
-/// Announces `version` on a new connection. Connection and answer may take `timeout` each.
+/// Announces `version` on a new connection. The connection and the answer may take `timeout` each.
 fn ask(address: SocketAddr, version: Version, timeout: Duration) -> Answer {
     let stream = match TcpStream::connect_timeout(&address, timeout) {
         Ok(stream) => stream,
@@ -138,7 +139,7 @@ fn session(
     version: Version,
     timeout: Duration,
 ) -> io::Result<Answer> {
-    // The robot sends its states to this socket. Nothing reads them.
+    // The robot sends its states to this socket, which is never read.
     let states = match address {
         SocketAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
         SocketAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),
@@ -158,7 +159,8 @@ fn session(
                     Err(violation) => return Ok(Answer::Missing(violation.to_string())),
                     Ok(Event::Connected { version }) => return Ok(Answer::Accepted(version)),
                     Ok(Event::Incompatible(refusal)) => return Ok(Answer::Incompatible(refusal)),
-                    // The message answers another request. The expected answer may still come.
+                    // This message answers another request, and the expected answer may still
+                    // arrive.
                     Ok(_) => {}
                 }
                 received.drain(..size);
@@ -183,13 +185,13 @@ fn no_answer(timeout: Duration) -> Answer {
     Answer::Missing(format!("no answer to the handshake within {seconds} s"))
 }
 
-/// Version that is announced first, as the driver does.
+/// The version that is announced first, as in the driver.
 const NEWEST: Version = Version::V10;
 
-/// Time limit of the connection and of the answer, as for the ports of other services.
+/// Time limit for the connection and for the answer, as in the check of the ports.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Longest accepted message, in bytes. An answer to a handshake has 15.
+/// Longest accepted message in bytes. An answer to a handshake has 15 bytes.
 const ANSWER_MAX: usize = 1024;
 
 #[cfg(test)]

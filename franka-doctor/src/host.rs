@@ -1,4 +1,4 @@
-//! The interface to a host: its files, and the few values that are not in files.
+//! The interface to a host: its files, and the few values that are not stored in files.
 
 use core::fmt;
 use core::time::Duration;
@@ -14,52 +14,54 @@ use franka_rt::sched::Kernel;
 use crate::latencies::Latencies;
 use crate::round_trip::RoundTrips;
 
-/// A host to examine. [`System`](crate::System) is the running one, [`Tree`] one in a text.
+/// A host that the checks examine. [`System`](crate::System) is the running host, and [`Tree`] is a
+/// host described by a text.
 ///
 /// No method changes anything on the host.
 pub trait Host {
-    /// Returns at most the first MiB of the file at this absolute path.
+    /// Returns the file at this absolute path, up to the first MiB.
     fn read(&self, path: &str) -> Result<String, Unread>;
-    /// Returns the names in a directory, sorted.
+    /// Returns the sorted names in a directory.
     fn list(&self, path: &str) -> Result<Vec<String>, Unread>;
     /// Returns the target of a symbolic link.
     fn link(&self, path: &str) -> Result<String, Unread>;
-    /// Returns the kernel's description of itself.
+    /// Returns the kernel's description.
     fn kernel(&self) -> Kernel;
     /// Starts a thread that requests the highest `SCHED_FIFO` priority. Returns the priority that
-    /// the thread gets, or the reason for a refusal.
+    /// the thread received, or the reason why the system refused it.
     fn fifo(&self) -> Result<i32, String>;
-    /// Returns the host's own address on the route to `robot`. This sends no packets.
+    /// Returns the host's own address on the route to `robot`. This method sends no packets.
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
-    /// Returns the answer of the driver of `interface`to `question`: the bytes of a structure of
+    /// Returns the answer of the driver of `interface` to `question`: the bytes of a structure from
     /// `linux/ethtool.h`.
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
-    /// True if `interface` has the address `own` permanently; false for a leased address, for
-    /// example from DHCP.
+    /// Returns true if `interface` has the address `own` permanently, and false if the address is
+    /// leased, for example from DHCP.
     fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread>;
-    /// Returns the number of free bytes for files in the current directory.
+    /// Returns the number of free bytes on the disk of the current directory.
     fn free_disk(&self) -> Result<u64, Unread>;
-    /// Returns the frequency of a processor, in kHz, after one second of computation by a thread
-    /// under the normal scheduler.
+    /// Returns the frequency of a processor, in kHz, after a thread under the normal scheduler has
+    /// computed for one second.
     fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread>;
-    /// Measures for this duration how late a thread wakes up in each millisecond, under
-    /// `SCHED_FIFO` if allowed. Calls `progress` with the completed share, about ten times a
-    /// second.
+    /// Measures how late a thread wakes up in each millisecond of this duration. The thread runs
+    /// under `SCHED_FIFO` if the system allows it. Calls `progress` with the completed share about
+    /// ten times a second.
     fn wake_ups(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Measures round-trip times of datagrams to another thread on this host, one per millisecond
-    /// for this duration. Both threads run under `SCHED_FIFO` if allowed. Calls `progress` as
-    /// [`Self::wake_ups`] does.
+    /// Measures the round-trip times of datagrams to another thread on this host, one per
+    /// millisecond for this duration. Both threads run under `SCHED_FIFO` if the system allows it.
+    /// Calls `progress` as [`Self::wake_ups`] does.
     fn loopback(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Measures the times of `robot`'s answers to `count` echo requests (ICMP) of 1200 bytes, at
-    /// most one per millisecond. Calls `progress` as [`Self::wake_ups`] does.
+    /// Measures how long `robot` takes to answer each of `count` echo requests (ICMP) of 1200
+    /// bytes. Sends at most one request per millisecond. Calls `progress` as [`Self::wake_ups`]
+    /// does.
     fn round_trips(
         &self,
         robot: Ipv4Addr,
@@ -88,7 +90,7 @@ pub enum Ethtool {
 }
 
 impl Ethtool {
-    /// Returns the number of the command.
+    /// Returns the number of the ethtool command.
     pub fn command(self) -> u32 {
         match self {
             Self::Driver => 0x03,
@@ -101,7 +103,7 @@ impl Ethtool {
         }
     }
 
-    /// Returns the size of the structure, in bytes.
+    /// Returns the size of the structure in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Driver => 196,
@@ -121,12 +123,12 @@ pub enum Unread {
     Absent(String),
     /// Reading the value needs privileges.
     Denied(String),
-    /// Another error, with the thing that was read and the reason.
+    /// Another error. The values are the thing that was read, and the reason.
     Failed(String, String),
 }
 
 impl Unread {
-    /// Creates the error for `what` from an error of the system.
+    /// Creates the error for `what` from a system error.
     pub fn new(what: impl Into<String>, error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => Self::Absent(what.into()),
@@ -171,9 +173,9 @@ impl fmt::Display for Unread {
 /// | `/calls/round_trips` | a line with the numbers of sent and answered requests, then lines as above |
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
-    /// Contents by path, without the first slash.
+    /// Contents by path. The paths have no leading slash.
     files: BTreeMap<String, String>,
-    /// Targets of symbolic links, likewise.
+    /// Targets of symbolic links by path, also without leading slashes.
     links: BTreeMap<String, String>,
 }
 
@@ -201,7 +203,7 @@ impl Tree {
         tree
     }
 
-    /// The path with all links replaced by their targets, without the first slash.
+    /// Returns the path with all links replaced by their targets, without a leading slash.
     fn resolved(&self, path: &str) -> String {
         let mut parts: Vec<&str> = Vec::new();
         let mut rest: Vec<&str> = path.rsplit('/').collect();
@@ -223,7 +225,7 @@ impl Tree {
         self.read(&format!("calls/{name}"))
     }
 
-    /// Returns the value in a file that contains a single value.
+    /// Returns the value of a file that contains a single value.
     fn value<T: FromStr>(&self, name: &str, what: &str) -> Result<T, Unread> {
         let text = self.call(name)?;
         let text = text.trim();
@@ -235,7 +237,7 @@ impl Tree {
         })
     }
 
-    /// Returns the latencies of a thread with the priority that the host grants.
+    /// Returns the latencies of a thread that runs with the priority that the host grants.
     fn latencies(&self, name: &str, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
         progress(1.0);
         let mut latencies = Latencies::new(self.fifo().ok());
@@ -247,7 +249,7 @@ impl Tree {
         Ok(latencies)
     }
 
-    /// Returns the lines of a file with two numbers each.
+    /// Returns the lines of a file in which each line contains two numbers.
     fn pairs(&self, name: &str) -> Result<Vec<(u64, u64)>, Unread> {
         let text = self.call(name)?;
         let pair = |line: &str| {
@@ -352,7 +354,7 @@ impl Host for Tree {
     }
 }
 
-/// Replaces `\xNN` by the byte, and removes line breaks after `\`.
+/// Replaces each `\xNN` by the byte, and removes each line break after `\`.
 fn unescaped(content: &str) -> String {
     let content = content.replace("\\\n", "");
     let mut parts = content.split("\\x");
@@ -369,7 +371,7 @@ fn unescaped(content: &str) -> String {
     text
 }
 
-/// Returns the names in a directory, sorted.
+/// Returns the sorted names in a directory.
 pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {

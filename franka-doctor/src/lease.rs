@@ -1,4 +1,4 @@
-//! Detects a leased address of the host in the kernel's list of addresses.
+//! Detects whether an address of the host is leased, from the kernel's list of addresses.
 
 use std::io::{self, Read as _};
 use std::net::Ipv4Addr;
@@ -7,8 +7,8 @@ use std::time::Duration;
 use socket2::{Domain, Protocol, Socket, Type};
 
 /// Returns true if the host has `address` permanently, false if the address is leased, and `None`
-/// if the host does not have it. This queries all IPv4 addresses from the kernel (`RTM_GETADDR`),
-/// which changes nothing and needs no privileges.
+/// if the host does not have it. The function requests all IPv4 addresses from the kernel
+/// (`RTM_GETADDR`). The request changes nothing and needs no privileges.
 pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     let protocol = Protocol::from(libc::NETLINK_ROUTE);
     let socket = Socket::new(Domain::from(libc::AF_NETLINK), Type::RAW, Some(protocol))?;
@@ -28,19 +28,19 @@ pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     Err(io::ErrorKind::InvalidData.into())
 }
 
-/// Result of the search in one part of the kernel's answer.
+/// Result of the search in a part of the kernel's answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// The part contains the address. The value is true if the address is permanent.
     Found(bool),
-    /// This was the last part, and it does not contain the address.
+    /// This part is the last, and does not contain the address.
     Done,
-    /// The address is not in this part, and more parts follow.
+    /// This part does not contain the address, and more parts follow.
     More,
     Refused,
 }
 
-/// Returns `struct nlmsghdr` for a dump of all addresses, and an empty `struct ifaddrmsg`.
+/// Returns a `struct nlmsghdr` that requests all addresses, and an empty `struct ifaddrmsg`.
 fn request() -> [u8; HEADER + MESSAGE] {
     let mut request = [0; HEADER + MESSAGE];
     request[0..4].copy_from_slice(&((HEADER + MESSAGE) as u32).to_ne_bytes());
@@ -74,10 +74,10 @@ fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
     Answer::More
 }
 
-/// Returns true if the address is permanent; `None` if this message is about another address. A
-/// message is a `struct ifaddrmsg` and attributes.
+/// Returns true if the address is permanent, and `None` if this message describes another address.
+/// A message is a `struct ifaddrmsg` followed by attributes.
 fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
-    // The header contains eight bits of the flags. An attribute contains all bits.
+    // The header contains only eight bits of the flags. An attribute contains all bits.
     let mut flags = u32::from(*message.get(2)?);
     let mut own = None;
     let mut rest = message.get(MESSAGE..)?;
@@ -103,7 +103,7 @@ fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
     (own == Some(address)).then_some(flags & libc::IFA_F_PERMANENT != 0)
 }
 
-/// Rounds up to a multiple of four bytes. Messages and attributes begin at such multiples.
+/// Rounds up to a multiple of four bytes, at which messages and attributes begin.
 fn aligned(length: usize) -> usize {
     length.next_multiple_of(4)
 }
@@ -118,7 +118,7 @@ const ATTRIBUTE: usize = 4;
 const IFA_FLAGS: u16 = 8;
 /// Largest part that the kernel sends, in bytes.
 const PART_MAX: usize = 1 << 15;
-/// Largest number of parts that are read, enough for some thousand addresses.
+/// Largest number of parts that are read. It is enough for some thousand addresses.
 const PARTS_MAX: usize = 256;
 
 #[cfg(test)]

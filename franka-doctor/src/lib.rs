@@ -1,17 +1,19 @@
-//! Checks a host, its network card and the route to a robot before an arm moves. The checks change
-//! nothing on the host.
+//! Checks a host, its network card and its route to the robot, before an arm moves. The checks
+//! change nothing on the host.
 //!
 //! ```text
 //! Host (files, a few calls) --> Readings --> checks, one function each --> Finding --> Report (text, JSON, script)
 //! ```
 //!
 //! * [`Doctor`]: runs all checks for a [`Purpose`].
-//! * [`Host`]: the interface to a host. [`System`] is the running host, [`Tree`] has the
-//!   files of any host in one text, for tests.
-//! * [`Finding`]: a value, the expected value with reason and source, and a command that fixes the
-//!   value. A value that cannot be read gives [`Verdict::Unknown`], which is neither good nor bad.
-//! * [`likely_causes`]: the causes on this host if a motion ended because of missing packets.
-//! * [`firewall`], [`arrivals`] and [`at_rest`]: findings from states of a connected robot.
+//! * [`Host`]: the interface to a host. [`System`] is the running host. [`Tree`] contains the files
+//!   of any host as one text, for tests.
+//! * [`Finding`]: a value, the expected value with its reason and source, and a command that
+//!   corrects the value. For a value that cannot be read, the verdict is [`Verdict::Unknown`],
+//!   which is neither good nor bad.
+//! * [`likely_causes`]: the most likely causes on this host, after a motion ended because of
+//!   missing packets.
+//! * [`firewall`], [`arrivals`] and [`at_rest`]: findings from the states of a connected robot.
 //!   [`ports`]: the services at the robot's address. [`answers`] and [`handshake`]: the robot's
 //!   version and availability.
 //! * [`dry_run`]: findings about a control loop with a simulated robot.
@@ -26,7 +28,7 @@
 //! ```
 //!
 //! With the feature `desk`, [`ask_desk`] and [`web`] read the robot's web interface without a
-//! login. The feature requires an HTTPS client, so the diagnosis of a motion does not use it.
+//! login. This feature requires an HTTPS client, so the diagnosis of a motion does not use it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -82,7 +84,7 @@ pub use timing::{Received, arrivals, firewall};
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Runs the checks for a purpose.
+/// The checks for one purpose.
 #[derive(Clone, Debug)]
 pub struct Doctor {
     purpose: Purpose,
@@ -96,9 +98,9 @@ pub struct Doctor {
 }
 
 impl Doctor {
-    /// Creates the checks for this purpose. By default there is no robot address, and personal and
-    /// device names are replaced. Wake-ups and loopback are measured for 10 s each, except if the
-    /// purpose is only simulation.
+    /// Creates the checks for `purpose`. By default, the robot's address is not set, and the report
+    /// contains no personal names and no device names. Wake-ups and loopback are measured for 10 s
+    /// each, unless the purpose is only simulation.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
@@ -112,56 +114,58 @@ impl Doctor {
         }
     }
 
-    /// Sets the address of the robot, for the checks of the network card on the route to it. These
-    /// checks do not contact the robot; for that, see [`Self::ping`], [`ports`] and [`answers`].
+    /// Sets the address of the robot. The checks use it to find the network card on the route to
+    /// the robot, but do not contact the robot. To contact the robot, use [`Self::ping`], [`ports`]
+    /// and [`answers`].
     pub fn robot(mut self, address: Ipv4Addr) -> Self {
         self.robot = Some(address);
         self
     }
 
-    /// Sets the processor for the control thread.
+    /// Sets the processor on which the control thread will run.
     pub fn cpu(mut self, cpu: usize) -> Self {
         self.cpu = Some(cpu);
         self
     }
 
-    /// Sets long measurements: 60 s instead of 10 s each for wake-ups and loopback, and 10 000
+    /// Selects long measurements: wake-ups and loopback for 60 s each instead of 10 s, and 10 000
     /// round trips instead of 1000.
     pub fn long(mut self, long: bool) -> Self {
         self.long = long;
         self
     }
 
-    /// Enables the measurements: wake-ups, loopback, one second of load on a processor, and round
-    /// trips if [`Self::ping`] is set. No other check takes noticeable time.
+    /// Enables the measurements: wake-ups, loopback, one second of load on a processor, and (with
+    /// [`Self::ping`]) round trips. All other checks take no noticeable time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
         self
     }
 
-    /// Enables the measurement of the round trip to the robot, with an echo request of 1200 bytes
-    /// per millisecond. The requests may delay packets of a client that controls the robot.
+    /// Enables the measurement of round trips to the robot, which sends an echo request of 1200
+    /// bytes per millisecond. The requests may delay the packets of a client that controls the
+    /// robot.
     pub fn ping(mut self, ping: bool) -> Self {
         self.ping = ping;
         self
     }
 
-    /// Enables or disables the replacement of personal names, hardware addresses, UUIDs and serial
+    /// Sets whether the report replaces personal names, hardware addresses, UUIDs and serial
     /// numbers.
     pub fn redact(mut self, redact: bool) -> Self {
         self.redact = redact;
         self
     }
 
-    /// Selects the checks to run; the default is all. Other checks are skipped, and so are
-    /// measurements that only they need.
+    /// Selects the checks to run. By default, all checks run. Measurements that only skipped checks
+    /// need are skipped, too.
     pub fn select(mut self, selection: Selection) -> Self {
         self.selection = selection;
         self
     }
 
-    /// Runs the checks on `host`. Calls `progress` with the name of the current measurement and its
-    /// completed share in `[0, 1]`.
+    /// Runs the checks on `host`. During a measurement, the function calls `progress` with the name
+    /// of the measurement and the completed share, in `[0, 1]`.
     pub fn run(&self, host: &dyn Host, progress: &mut dyn FnMut(&str, f64)) -> Report {
         let readings = Readings::new(host, self.robot)
             .pinned(self.cpu)
@@ -214,7 +218,7 @@ impl Doctor {
             let measured = host.round_trips(robot, count, &mut shown);
             findings.push(ping::ping(measured, self.purpose));
         }
-        // Packets from this computer to itself use no card.
+        // No card transmits packets from this computer to itself.
         let has_card = readings.interface().is_ok_and(|name| name != "lo");
         if has_card && self.selection.takes("nic.errors_now") {
             let after = CardErrors::read(readings);
@@ -223,7 +227,7 @@ impl Doctor {
         findings
     }
 
-    /// Returns `report` without names that identify people or devices of `host`.
+    /// Returns `report` without the names that identify people or devices of `host`.
     fn redacted(&self, host: &dyn Host, mut report: Report) -> Report {
         let passwd = host.read("/etc/passwd").unwrap_or_default();
         let redaction = redaction::Redaction::new(&passwd);

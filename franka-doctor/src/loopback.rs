@@ -1,5 +1,5 @@
-//! Round-trip time of datagrams to another thread of this host. It covers the sockets of a control
-//! cycle, but no network card.
+//! Round-trip time of datagrams to another thread of this host. The measurement includes the
+//! sockets of a control cycle, but no network card.
 
 use core::time::Duration;
 use std::io;
@@ -11,9 +11,9 @@ use std::time::Instant;
 use crate::latencies::Latencies;
 use crate::round_trip::{PAYLOAD, PERIOD};
 
-/// Sends `count` datagrams, at most one per millisecond, to a thread that returns each of them.
-/// This thread has the same scheduling as the calling thread; `priority` is recorded. `done` counts
-/// the returned datagrams.
+/// Sends `count` datagrams, at most one per millisecond, to a thread that returns each datagram.
+/// That thread has the same scheduling as the calling thread. `priority` is stored in the result.
+/// `done` counts the returned datagrams.
 pub(crate) fn measure(
     priority: Option<i32>,
     count: u64,
@@ -38,7 +38,7 @@ fn sockets() -> io::Result<[UdpSocket; 2]> {
     here.connect(there.local_addr()?)?;
     there.connect(here.local_addr()?)?;
     here.set_read_timeout(Some(PATIENCE))?;
-    // The thread checks for the end at this interval.
+    // At this interval, the thread checks whether it must end.
     there.set_read_timeout(Some(Duration::from_millis(100)))?;
     Ok([here, there])
 }

@@ -7,7 +7,7 @@ use crate::host::Unread;
 use crate::round_trip::{PAYLOAD, RoundTrips};
 use crate::timing::quantile;
 
-/// Returns the finding about a measurement of round trips. This is a pure function.
+/// Returns the finding about a measurement of round trips. This function performs no I/O.
 pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.ping",
@@ -50,7 +50,7 @@ fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
     }
 }
 
-/// Number of requests below which the result is not conclusive.
+/// Smallest number of requests for a conclusive result.
 const SENT_MIN: u64 = 1000;
 
 #[cfg(test)]

@@ -6,9 +6,9 @@ use std::net::{IpAddr, SocketAddr, TcpStream};
 
 use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
-/// Connects to the ports of robot and end effectors, for at most a second each, and closes the
-/// connections immediately. This sends no request. The caller must ensure that no program controls
-/// the robot.
+/// Connects to the ports of the robot and its end effectors, and closes the connections
+/// immediately. Each connection has a time limit of a second. The function sends no request. The
+/// caller must ensure that no program controls the robot.
 pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
     PORTS
         .map(|port| {
@@ -52,7 +52,7 @@ const PORTS: [Port; 3] = [
 ];
 
 impl Port {
-    /// Returns the finding about an attempt to connect.
+    /// Returns the finding about a connection attempt.
     fn finding(&self, connected: io::Result<()>, purpose: Purpose) -> Finding {
         let (what, number) = (self.what, self.number);
         let judged = match connected {

@@ -1,4 +1,4 @@
-//! The values read from a host, recorded for the report.
+//! The values that were read from a host, recorded for the report.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use std::net::Ipv4Addr;
 use crate::host::{Ethtool, Host, Unread};
 use crate::route::Route;
 
-/// Reads values of a host, and records each value by its path.
+/// Reader for a host's values. It records each value by its path.
 pub struct Readings<'a> {
     pub(crate) host: &'a dyn Host,
     pub(crate) robot: Option<Ipv4Addr>,
@@ -19,7 +19,7 @@ pub struct Readings<'a> {
 }
 
 impl<'a> Readings<'a> {
-    /// Creates the readings of `host`, a host that will control the robot at this address.
+    /// Creates a reader for `host`. `robot` is the address of the robot that the host will control.
     pub fn new(host: &'a dyn Host, robot: Option<Ipv4Addr>) -> Self {
         Self {
             host,
@@ -30,7 +30,7 @@ impl<'a> Readings<'a> {
         }
     }
 
-    /// Sets the processor to which the control thread is pinned.
+    /// Sets the processor to which the control thread will be pinned.
     pub fn pinned(mut self, cpu: Option<usize>) -> Self {
         self.cpu = cpu;
         self
@@ -79,7 +79,7 @@ impl<'a> Readings<'a> {
             .ok_or_else(|| Unread::Absent(format!("`{name}` in {path}")))
     }
 
-    /// Returns the soft and the hard limit of the process, in the kernel's words: `99`,
+    /// Returns the soft and the hard limit of the process in the kernel's words, such as `99` or
     /// `unlimited`.
     pub(crate) fn limit(&self, name: &str) -> Result<(String, String), Unread> {
         let path = "/proc/self/limits";
@@ -107,14 +107,14 @@ impl<'a> Readings<'a> {
             .collect())
     }
 
-    /// Returns the different values that a file has for the processors, each with the number of
-    /// processors.
+    /// Returns the different values that a file has for the processors. Each value comes with its
+    /// number of processors.
     pub(crate) fn per_processor(&self, file: &str) -> Result<BTreeMap<String, usize>, Unread> {
         let mut values = BTreeMap::new();
         for cpu in self.processors()? {
             match self.text(&format!("{cpu}/{file}")) {
                 Ok(value) => *values.entry(value).or_default() += 1,
-                // A processor that is offline has no such file.
+                // An offline processor has no such file.
                 Err(Unread::Absent(_)) => {}
                 Err(unread) => return Err(unread),
             }
@@ -125,7 +125,7 @@ impl<'a> Readings<'a> {
         Ok(values)
     }
 
-    /// Returns the entries of `names` that are names of running programs, as in `/proc`.
+    /// Returns the names in `names` that belong to running programs, as in `/proc`.
     pub(crate) fn running(&self, names: &[&'static str]) -> Result<Vec<&'static str>, Unread> {
         let mut found = Vec::new();
         let entries = self.host.list("/proc")?;
@@ -137,7 +137,7 @@ impl<'a> Readings<'a> {
             let Ok(comm) = self.host.read(&format!("/proc/{pid}/comm")) else {
                 continue;
             };
-            // The kernel cuts names after 15 characters.
+            // The kernel cuts each name after 15 characters.
             let comm = comm.trim();
             found.extend(
                 names
@@ -157,7 +157,7 @@ impl<'a> Readings<'a> {
     /// Returns the route to the robot.
     ///
     /// # Errors
-    /// An error if no address was given, or if the host does not report the route.
+    /// Returns an error if no address was given, or if the host does not report the route.
     pub(crate) fn route(&self) -> Result<Route, Unread> {
         let robot = self
             .robot
@@ -176,12 +176,12 @@ impl<'a> Readings<'a> {
         Ok(self.route()?.interface)
     }
 
-    /// Returns the contents of a file of the network card on the route to the robot.
+    /// Returns the contents of a file for the network card on the route to the robot.
     pub(crate) fn card(&self, file: &str) -> Result<String, Unread> {
         self.text(&format!("{NET}/{}/{file}", self.interface()?))
     }
 
-    /// Returns the answer of the network card's driver, for the card on the route to the robot.
+    /// Returns the answer of the driver of the network card on the route to the robot.
     pub(crate) fn ethtool(&self, question: Ethtool) -> Result<Answer, Unread> {
         let interface = self.interface()?;
         let what = format!("ethtool {interface} {:#04x}", question.command());
@@ -203,7 +203,7 @@ impl<'a> Readings<'a> {
     }
 }
 
-/// Bytes of a structure of `linux/ethtool.h`.
+/// The bytes of a structure from `linux/ethtool.h`.
 pub(crate) struct Answer(Vec<u8>);
 
 impl Answer {
@@ -223,7 +223,7 @@ impl Answer {
     }
 }
 
-/// Largest recorded part of a file, in characters.
+/// Largest number of characters of a file that are recorded.
 const NOTED_MAX: usize = 2000;
 
 const CPUS: &str = "/sys/devices/system/cpu";

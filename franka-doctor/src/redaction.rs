@@ -7,8 +7,8 @@ pub(crate) struct Redaction {
 }
 
 impl Redaction {
-    /// Creates the replacements for a host. `passwd` is the text of `/etc/passwd`, which lists the
-    /// personal accounts.
+    /// Creates the replacements for a host. `passwd` is the text of `/etc/passwd`, which contains
+    /// the personal accounts.
     pub(crate) fn new(passwd: &str) -> Self {
         let person = |line: &str| {
             let fields: Vec<&str> = line.split(':').collect();
@@ -26,7 +26,7 @@ impl Redaction {
         let mut rest = text;
         while !rest.is_empty() {
             let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
-            // Punctuation at the end of a word belongs to the sentence or list.
+            // Punctuation at the end of a word belongs to the sentence or the list.
             let end = rest[..end].trim_end_matches([':', '.']).len();
             if end > 0 {
                 let serial = result.to_lowercase().ends_with("serial=");
@@ -46,7 +46,7 @@ impl Redaction {
     }
 }
 
-/// Range of the user ids of personal accounts, the default of all distributions.
+/// Range of the user ids of personal accounts. All distributions use it by default.
 const PEOPLE: core::ops::Range<u32> = 1000..60_000;
 
 fn is_of_word(c: char) -> bool {

@@ -1,4 +1,4 @@
-//! Findings as text, as JSON, and as a script.
+//! Findings as text, as JSON, and as a shell script.
 
 use core::fmt::Write as _;
 use std::collections::BTreeMap;
@@ -10,46 +10,47 @@ use crate::finding::{Finding, Group, Needs, Purpose, Verdict};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Report {
-    /// Version of the format of this report as JSON: [`SCHEMA`].
+    /// Version of the report's JSON format ([`SCHEMA`]).
     pub schema: u32,
     /// The purpose of the host.
     pub purpose: Purpose,
-    /// The findings, in the order of groups.
+    /// The findings, sorted by group.
     pub findings: Vec<Finding>,
-    /// All values that were read, by path or query.
+    /// All values that were read, by path or by query.
     pub readings: BTreeMap<String, String>,
 }
 
-/// Version of the format of reports as JSON.
+/// Version of the JSON format of reports.
 pub const SCHEMA: u32 = 1;
 
 impl Report {
-    /// Adds other findings, for example [`arrivals`](crate::arrivals) of a connected robot.
+    /// Adds more findings, for example the [`arrivals`](crate::arrivals) of a connected robot.
     pub fn add(&mut self, findings: impl IntoIterator<Item = Finding>) {
         self.findings.extend(findings);
         self.findings.sort_by_key(|finding| finding.group);
     }
 
-    /// Number of findings with this verdict.
+    /// Returns the number of findings with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         let has = |finding: &&Finding| finding.verdict == verdict;
         self.findings.iter().filter(has).count()
     }
 
-    /// Returns the report as text: a line for each group with its worst verdict, below it the
-    /// findings that are not good, and a count at the end.
+    /// Returns the report as text. Each group has a line with its worst verdict, followed by the
+    /// findings that are not good. The last line is a count.
     pub fn to_text(&self, color: bool) -> String {
         self.text(color, false)
     }
 
-    /// Like [`Self::to_text`], but with good findings, and with reason and source of every finding.
+    /// Like [`Self::to_text`], but includes the good findings, and the reason and the source of
+    /// every finding.
     pub fn to_detailed_text(&self, color: bool) -> String {
         self.text(color, true)
     }
 
     fn text(&self, color: bool, detailed: bool) -> String {
         let mut text = String::new();
-        // Commands already shown, and their checks.
+        // The commands that were already shown, with their checks.
         let mut named: Vec<(&str, &str)> = Vec::new();
         for group in Group::ALL {
             let of_group = || {
@@ -93,7 +94,7 @@ impl Report {
                         Some((_, id)) => {
                             let _ = writeln!(text, "        fix{then}: as for {id}");
                         }
-                        // The command stays on one line, so that the user can copy it.
+                        // The command must stay on one line, so that the user can copy it.
                         None => {
                             named.push((&fix.command, finding.id));
                             let _ = writeln!(text, "        fix{then}: {}", fix.command);
@@ -119,14 +120,14 @@ impl Report {
         text
     }
 
-    /// Returns the report as JSON, with all values read.
+    /// Returns the report, including all values read, as JSON.
     #[cfg(feature = "serde")]
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("texts and numbers, with texts as keys")
     }
 
-    /// Returns a shell script with the fixes of warnings and failures. Read it before you run it.
-    /// This function itself runs nothing.
+    /// Returns a shell script that contains the fixes for warnings and failures. Read the script
+    /// before you run it. This method runs nothing.
     pub fn fix_script(&self) -> String {
         let mut script = "#!/bin/sh\n# Fixes of `franka doctor`. Read before running.\n".to_owned();
         let mut done: Vec<&str> = Vec::new();
@@ -157,15 +158,15 @@ impl Report {
         script
     }
 
-    /// Returns the exit code: 1 if the report contains a failure, 0 otherwise. Programs return 2 if
-    /// they could not run the checks.
+    /// Returns the exit code for a program: 1 if the report contains a failure, and 0 otherwise. A
+    /// program should return 2 if it could not run the checks.
     pub fn exit_code(&self) -> u8 {
         u8::from(self.count(Verdict::Failure) > 0)
     }
 }
 
-/// Appends `words` after `lead`, in lines of at most [`COLUMNS`] columns. Later lines are indented.
-/// A word is never split.
+/// Appends `lead` and then `words`, in lines of at most [`COLUMNS`] columns. All lines after the
+/// first are indented. A word is never split.
 fn wrapped(text: &mut String, lead: &str, words: &str) {
     *text += lead;
     let mut column = columns_of(lead);
@@ -184,7 +185,7 @@ fn wrapped(text: &mut String, lead: &str, words: &str) {
     *text += "\n";
 }
 
-/// Number of columns of `lead`, without its colour codes.
+/// Returns the number of columns of `lead`, without its colour codes.
 fn columns_of(lead: &str) -> usize {
     let mut is_colour = false;
     let shown = lead.chars().filter(|&c| {
@@ -196,10 +197,10 @@ fn columns_of(lead: &str) -> usize {
     shown.count()
 }
 
-/// Usual width of terminals.
+/// Usual number of columns of a terminal.
 const COLUMNS: usize = 80;
 
-/// Indentation of continued lines.
+/// Indentation of all lines after the first.
 const INDENT: usize = 12;
 
 /// Formats a count of `what` in words.
@@ -207,12 +208,12 @@ pub(crate) fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// Returns `text` without line breaks, for a comment in a script.
+/// Returns `text` without line breaks, for use as a comment in a script.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the weight of a verdict. A group has the verdict with the greatest weight.
+/// Returns the weight of a verdict. The verdict of a group is the verdict with the greatest weight.
 fn weight(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Info => 0,
@@ -223,7 +224,7 @@ fn weight(verdict: Verdict) -> u8 {
     }
 }
 
-/// Returns a mark of four characters, as in `flutter doctor`.
+/// Returns a mark of four characters, like `flutter doctor`.
 fn mark(verdict: Verdict, color: bool) -> String {
     let (mark, code) = match verdict {
         Verdict::Good => ("[OK]", 32),

@@ -1,4 +1,5 @@
-//! Round-trip time of packets to the robot, measured by echo requests (ICMP) as `ping` sends them.
+//! Round-trip time of packets to the robot, measured with echo requests (ICMP) like those of
+//! `ping`.
 
 use core::time::Duration;
 use std::io;
@@ -9,21 +10,22 @@ use std::time::Instant;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// Echo requests to the robot, and the times of their answers.
+/// The result of echo requests to the robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoundTrips {
     /// Number of requests sent.
     pub sent: u64,
-    /// Answer time of each request that was answered within 100 ms, in any order.
+    /// Time of each answer that arrived within 100 ms, in any order.
     pub times: Vec<Duration>,
 }
 
 /// Sends `count` echo requests to `robot`, at most one per millisecond, and waits for each answer.
-/// Ends early if no answers arrive. `done` counts the sent requests.
+/// Ends early if no answers arrive. `done` counts the requests sent.
 pub(crate) fn measure(robot: Ipv4Addr, count: u64, done: &AtomicU64) -> io::Result<RoundTrips> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::ICMPV4))?;
     socket.connect(&SocketAddrV4::new(robot, 0).into())?;
-    // The kernel fills in identifier and checksum, and delivers answers only to this socket.
+    // The kernel fills in the identifier and the checksum, and delivers answers only to this
+    // socket.
     let socket = UdpSocket::from(socket);
     let mut measured = RoundTrips::default();
     let mut lost_in_a_row = 0;
@@ -50,8 +52,7 @@ pub(crate) fn measure(robot: Ipv4Addr, count: u64, done: &AtomicU64) -> io::Resu
     Ok(measured)
 }
 
-/// Returns an echo request: type, code, checksum, identifier, sequence number, then the number and
-/// zeros.
+/// Returns an echo request: type, code, checksum, identifier, sequence number, `number`, and zeros.
 fn request(number: u64) -> [u8; PACKET] {
     let mut packet = [0; PACKET];
     packet[0] = ECHO_REQUEST;
@@ -60,7 +61,7 @@ fn request(number: u64) -> [u8; PACKET] {
     packet
 }
 
-/// Returns the time until the answer to this request; `None` if it does not arrive within
+/// Returns the time from the request to its answer; `None` if the answer does not arrive within
 /// [`PATIENCE`].
 fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     let mut packet = [0; PACKET];
@@ -72,7 +73,7 @@ fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
         let length = match socket.recv(&mut packet) {
             Ok(length) => length,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            // The time has expired, or a router on the path reports that the robot is unreachable.
+            // The timeout expired, or a router on the path reported that the robot is unreachable.
             Err(_) => return None,
         };
         let time = sent.elapsed();
@@ -82,12 +83,13 @@ fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     }
 }
 
-/// Number of bytes of an echo request after its header of eight bytes, as in the vendor's test.
+/// Number of bytes of an echo request after its header of eight bytes. The vendor's test uses the
+/// same number.
 pub(crate) const PAYLOAD: usize = 1200;
 
 const PACKET: usize = 8 + PAYLOAD;
 
-/// Type of an ICMP echo request, RFC 792.
+/// Type of an ICMP echo request (RFC 792).
 const ECHO_REQUEST: u8 = 8;
 const ECHO_REPLY: u8 = 0;
 

@@ -7,7 +7,7 @@ use std::net::Ipv4Addr;
 pub(crate) struct Route {
     /// Name of the network interface.
     pub(crate) interface: String,
-    /// Router on the way, if any.
+    /// Router on the route; `None` for a direct route.
     pub(crate) gateway: Option<Ipv4Addr>,
     /// The host's own address on this route.
     pub(crate) own: Ipv4Addr,
@@ -26,8 +26,8 @@ impl Route {
         }
     }
 
-    /// Returns the route to `robot` from the text of `/proc/net/route`. The longest mask decides,
-    /// then the lowest metric.
+    /// Returns the route to `robot` from the text of `/proc/net/route`. The row with the longest
+    /// mask has priority. Among equal masks, the row with the lowest metric has priority.
     pub(crate) fn find(table: &str, robot: Ipv4Addr, own: Ipv4Addr) -> Option<Self> {
         let mut rows: Vec<Row> = table
             .lines()

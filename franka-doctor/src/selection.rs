@@ -1,7 +1,7 @@
-//! The selection of checks.
+//! Selection of checks.
 
-/// A selection of checks by id, or by the part of ids before the dot. For example, `nic` selects
-/// `nic.route` and all other checks of the card. The default selects all checks.
+/// A selection of checks by id, or by the part of the id before the dot. For example, `nic` selects
+/// `nic.route` and all other checks of the network card. The default selects all checks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     only: Vec<String>,
@@ -9,12 +9,13 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Selects the checks in `only`, or all checks if `only` is empty, except the checks in `skip`.
+    /// Selects the checks in `only` (or all checks if `only` is empty), except the checks in
+    /// `skip`.
     pub fn new(only: Vec<String>, skip: Vec<String>) -> Self {
         Self { only, skip }
     }
 
-    /// True if the check with this id is selected.
+    /// Returns true if the check with this id is selected.
     pub fn takes(&self, id: &str) -> bool {
         let names = |names: &[String]| {
             names.iter().any(|name| {

@@ -1,5 +1,5 @@
-//! The running host. The Linux-specific part is in `linux`; elsewhere, and with `--cfg
-//! franka_portable`, `portable` replaces it.
+//! The running host. The module `linux` contains the Linux-specific part. On other systems, and
+//! with `--cfg franka_portable`, the module `portable` replaces it.
 
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod linux;
@@ -33,13 +33,13 @@ use portable as host;
 /// The host that runs this program.
 #[derive(Clone, Debug, Default)]
 pub struct System {
-    /// Processor for the control thread, which the measurement of wake-ups uses.
+    /// Processor on which the control thread will run. The measurement of wake-ups uses it.
     pub cpu: Option<usize>,
 }
 
 impl System {
-    /// Returns the scheduling that the driver's control thread would request. A refusal is not an
-    /// error.
+    /// Returns the scheduling that the driver's control thread would request. If the system refuses
+    /// it, this is not an error.
     fn scheduling(&self) -> Scheduling {
         Scheduling {
             realtime: Realtime::Ignore,
@@ -87,7 +87,8 @@ impl Host for System {
 
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread> {
         let what = || format!("the route to {robot}");
-        // Connecting a UDP socket determines the route and sends nothing. The port does not matter.
+        // `connect` on a UDP socket determines the route and sends nothing. The port does not
+        // matter.
         let local = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
             .and_then(|socket| socket.connect((robot, 1337)).map(|()| socket))
             .and_then(|socket| socket.local_addr())
@@ -186,8 +187,8 @@ impl Host for System {
 }
 
 impl System {
-    /// Runs `measure` on a thread with the scheduling of the control thread. `measure` receives the
-    /// priority of this thread, and counts the completed part of `total`.
+    /// Runs `measure` on a thread that has the scheduling of the control thread. `measure` receives
+    /// the thread's priority, and counts the completed part of `total`.
     fn measured<T: Send>(
         &self,
         total: u64,
@@ -213,14 +214,14 @@ impl System {
     }
 }
 
-/// Returns `duration` in milliseconds, at least one.
+/// Returns `duration` in milliseconds, but at least 1.
 fn milliseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_millis())
         .unwrap_or(u64::MAX)
         .max(1)
 }
 
-/// Computation time of a thread before the frequency of its processor is read.
+/// Time for which a thread computes before the frequency of its processor is read.
 const BUSY: Duration = Duration::from_secs(1);
 
 /// Largest number of bytes of a file that are read.

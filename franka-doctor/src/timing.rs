@@ -1,4 +1,4 @@
-//! The punctuality of the host, and of the states of a robot.
+//! The punctuality of the host and of a robot's states.
 
 use core::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Needs, Purpose};
 use crate::host::Unread;
 use crate::latencies::Latencies;
 
-/// Returns the finding about a measurement of wake-ups: `timing.wake_up`.
+/// Returns the finding about a measurement of wake-ups (`timing.wake_up`).
 pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.wake_up",
@@ -22,8 +22,8 @@ pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> 
     about.finding(measured.map(judge), purpose)
 }
 
-/// Returns the finding about round trips of datagrams to another thread of this host:
-/// `timing.loopback`.
+/// Returns the finding about round trips of datagrams to another thread of this host
+/// (`timing.loopback`).
 pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.loopback",
@@ -39,8 +39,8 @@ pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) ->
     about.finding(measured.map(judge), purpose)
 }
 
-/// Judges `what` by the largest latency. It is good below the first of `limits_us`, usable below
-/// the second, and a failure above the last.
+/// Judges `what` by the largest latency. The latency is good below the first of `limits_us`, usable
+/// below the second, and a failure above the last.
 fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     let quantile = |part| latencies.quantile(part).unwrap_or_default();
     let (Some(min), Some(max)) = (latencies.min(), latencies.max()) else {
@@ -81,11 +81,11 @@ fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     }
 }
 
-/// A state of a robot at rest: its `message_id`, and its time of arrival since any fixed moment.
+/// A state of a robot at rest: its `message_id`, and its time of arrival since a fixed moment.
 pub type Received = (u64, Duration);
 
-/// Returns the findings about consecutive states in their order of arrival: the number of missing
-/// states, and the regularity. This is a pure function.
+/// Returns the findings about the number of missing states and the regularity of arrivals. `states`
+/// must be consecutive and in the order of arrival. This function performs no I/O.
 pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     let mut lost = 0;
     let mut longest = 0;
@@ -144,8 +144,9 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// Returns the finding `net.firewall`: whether the states of a robot arrive after it has opened a
-/// session. `states_arrive` is `None` without a session. This is a pure function.
+/// Returns the finding `net.firewall`, which reports whether the states of a robot arrive after it
+/// has opened a session. `states_arrive` is `None` without a session. This function performs no
+/// I/O.
 pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     let about = About {
         id: "net.firewall",
@@ -167,21 +168,21 @@ pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     about.finding(Ok(judged), purpose)
 }
 
-/// Returns the quantile `part`, in `[0, 1]`, of `sorted`: the smallest element that at least this
-/// share of the elements does not exceed.
+/// Returns the quantile `part`, in `[0, 1]`, of a sorted list. The quantile is the smallest element
+/// that at least this share of the elements does not exceed.
 ///
 /// # Panics
-/// If the list is empty.
+/// Panics if the list is empty.
 pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
     let wanted = (part * sorted.len() as f64).ceil().max(1.0) as usize;
     sorted[wanted - 1]
 }
 
-/// Number of latencies below which the result is not conclusive: the latencies of ten seconds.
+/// Smallest number of latencies for a conclusive result: ten seconds of latencies.
 const LATENCIES_MIN: u64 = 10_000;
 
-/// Number of consecutive states below which the result is not conclusive: the states of ten
-/// seconds, minus a few lost states.
+/// Smallest number of consecutive states for a conclusive result: ten seconds of states, minus a
+/// few lost states.
 const STATES_MIN: usize = 9_900;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! The authority to move the arm, and its time limits: a state machine without clock and sockets.
+//! The authority to move the arm, with its time limits, as a state machine without clock and
+//! sockets.
 //!
 //! ```text
 //!             take                begin                 hold 1, 2, 3 .. in time
@@ -7,11 +8,13 @@
 //!    └─ socket closed       └── end, gap, silence, stop, arrival, socket closed
 //! ```
 //!
-//! Requests and the time are inputs ([`Authority::handle`], [`Authority::tick`]); effects and
-//! refusals are outputs. Time may count from any moment; a time that decreases counts as unchanged.
-//! The lease (the exclusive right to move the arm) belongs to the robot, so other services may also
-//! have it. In a hold, the arm moves while a viewer holds a button. A hold that has ended stays
-//! ended: only another `Begin` moves the arm.
+//! The inputs are requests and the time ([`Authority::handle`], [`Authority::tick`]). The outputs
+//! are effects and refusals. Time may count from any moment. If the time decreases, it counts as
+//! unchanged.
+//!
+//! The lease (the exclusive right to move the arm) belongs to the robot, so other services can have
+//! it too. During a hold, the arm moves while a viewer holds a button. When a hold has ended, only
+//! another `Begin` moves the arm.
 
 mod refusal;
 #[cfg(test)]
@@ -30,31 +33,31 @@ use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 /// Number of a viewer.
 pub(crate) type ViewerId = u64;
 
-/// Kinds of requests that viewers may make to this server.
+/// The kinds of requests that the server accepts from viewers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Permissions {
     /// True if viewers may move and recover the robot.
     pub(crate) motion: bool,
     /// True if viewers may disturb a simulated robot.
     pub(crate) disturbances: bool,
-    /// True if viewers may move the fingers, provided that motions are allowed.
+    /// True if viewers may move the fingers. This also requires `motion`.
     pub(crate) gripper: bool,
     /// True if viewers may record.
     pub(crate) recording: bool,
-    /// Additional time for late messages. It is zero except for a simulated robot.
+    /// Additional time for late messages. It is zero unless the robot is simulated.
     pub(crate) patience: Duration,
 }
 
-/// The current commander (the viewer that may move the arm) and its hold.
+/// The current commander (the viewer that may move the arm) and the commander's hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
-    /// Number of the viewer that has the lease; `None` if the holder of the lease is not a viewer.
+    /// Number of the viewer that has the lease; `None` if no viewer has it.
     pub(crate) commander: Option<u64>,
     /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
     /// True if a hold is active.
     pub(crate) holding: bool,
-    /// True if the commander's last hold ended because no message came in time.
+    /// True if the commander's last hold ended because a message was late.
     pub(crate) expired: bool,
 }
 
@@ -65,7 +68,7 @@ impl Permissions {
     }
 }
 
-/// An action for the server to perform.
+/// An action that the server must perform.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
     /// Begin the motion of this hold.
@@ -82,10 +85,10 @@ pub(crate) enum Effect {
     },
     /// Keep the deadman of the hold alive.
     KeepAlive,
-    /// Brake any motion, including motions of other programs.
+    /// Brake any motion, including the motions of other programs.
     Stop,
     Recover,
-    /// Set the stiffness of the arm, for this hold and later holds.
+    /// Set the stiffness of the arm for this hold and all later holds.
     Tune(Tuning),
     /// Take a tare (the zero) of the wrench, or clear it.
     Tare(bool),
@@ -119,7 +122,7 @@ pub(crate) enum Lost {
 /// Result of a request.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Step {
-    /// Set if the hold has ended. The server must then brake first.
+    /// Reason why the hold ended, if it did. The server must brake before it performs the effect.
     pub(crate) ended: Option<Lost>,
     pub(crate) effect: Option<Effect>,
     pub(crate) refusal: Option<Refusal>,
@@ -130,14 +133,14 @@ pub(crate) struct Step {
 pub(crate) struct Authority {
     permissions: Permissions,
     lease: Lease,
-    /// Moment at which the time `now` is zero.
+    /// Instant that corresponds to the time zero.
     start: Instant,
     now: Duration,
     commander: Option<Commander>,
     holds: u64,
 }
 
-/// The viewer that has the lease, and its hold.
+/// The viewer that has the lease, and this viewer's hold.
 #[derive(Debug)]
 struct Commander {
     viewer: ViewerId,
@@ -154,7 +157,7 @@ struct Hold {
 }
 
 impl Authority {
-    /// Creates an authority that uses the robot's `lease`. Time counts from `start`.
+    /// Creates an authority that uses the robot's `lease`. Times are relative to `start`.
     pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,
@@ -180,8 +183,8 @@ impl Authority {
         self.start + self.now
     }
 
-    /// Processes a request of a viewer. `round_trip` is the newest round trip measured with this
-    /// viewer; `None` without a recent measurement.
+    /// Processes a request of a viewer. `round_trip` is the newest measured round trip to this
+    /// viewer; `None` if it was not measured recently.
     pub(crate) fn handle(
         &mut self,
         now: Duration,
@@ -189,7 +192,7 @@ impl Authority {
         round_trip: Option<Duration>,
         request: Request,
     ) -> Step {
-        // A late request must not revive a hold that has expired.
+        // A late request must not continue a hold that has expired.
         let mut silent = self.tick(now);
         let now = self.instant();
         if let Some(commander) = self.commander_mut(viewer)
@@ -222,7 +225,8 @@ impl Authority {
         }
     }
 
-    /// Ends holds and leases that have been silent for too long. Call it every few milliseconds.
+    /// Ends holds and leases that have been silent for too long. Call this function every few
+    /// milliseconds.
     pub(crate) fn tick(&mut self, now: Duration) -> Option<Lost> {
         self.now = self.now.max(now);
         let (deadman, now) = (DEADMAN + self.permissions.patience, self.instant());
@@ -236,8 +240,7 @@ impl Authority {
         }
     }
 
-    /// Removes the command from a viewer that has lost the lease. Returns the reason if a hold
-    /// ended.
+    /// Ends the command of a viewer that has lost the lease. Returns the reason if a hold ended.
     fn lose(&mut self) -> Option<Lost> {
         let commander = self.commander.take()?;
         commander.hold.map(|_| Lost::Silent)
@@ -340,7 +343,7 @@ impl Authority {
                 hold.heard = now;
                 effect(Effect::KeepAlive)
             }
-            // This has no effect if the motion has already ended.
+            // The request has no effect if the motion has already ended.
             Request::End {} => ended(commander.hold.take(), Lost::LetGo),
             Request::Speed { .. } if commander.hold.is_none() => return Err(Refusal::NoHold),
             Request::Speed { speed } => effect(Effect::Speed(speed)),
@@ -387,7 +390,7 @@ fn effect(effect: Effect) -> Step {
     }
 }
 
-/// Returns the step that reports the end of a hold, if a hold was active.
+/// Returns the step that reports the end of a hold. If no hold was active, the step is empty.
 fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     Step {
         ended: hold.map(|_| lost),
@@ -396,13 +399,13 @@ fn ended(hold: Option<Hold>, lost: Lost) -> Step {
 }
 
 /// Silence after which a hold ends. The page sends a message every 50 ms, so two messages may be
-/// late.
+/// lost or late.
 pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
 
 /// Silence after which another viewer may take the lease.
 pub(crate) const LEASE: Duration = Duration::from_secs(5);
 
-/// Longest round trip with which a motion may begin.
+/// Longest round trip to a viewer at which a motion may begin.
 pub(crate) const ROUND_TRIP_MAX: Duration = Duration::from_millis(100);
 
 const _: () = assert!(DEADMAN.as_millis() <= 200);

@@ -15,8 +15,8 @@ use crate::request::{Disturbance, GripperAction, Motion};
 use crate::source::Source;
 
 impl Hub {
-    /// Performs an effect. If the effect is a question, returns it for the viewer's socket to
-    /// answer.
+    /// Performs an effect. If the effect is a question, returns the question, which the viewer's
+    /// socket then answers.
     pub(super) fn perform(
         self: &Arc<Self>,
         command: &mut Command,
@@ -83,7 +83,7 @@ impl Hub {
         tokio::spawn(async move {
             let show = |plan| drop(hub.heading.send_replace(Some((number, plan))));
             let ended = hold::run(&robot, task, show).await;
-            // A newer hold may have begun during the release.
+            // A newer hold may have begun while the arm was released.
             hub.heading.send_if_modified(|heading| {
                 let own = |(of, _): &mut (u64, Plan)| *of == number;
                 heading.take_if(own).is_some()
@@ -127,8 +127,8 @@ impl Hub {
         });
     }
 
-    /// Brakes any motion, and ends the action of the fingers. If another program controls the
-    /// simulated robot, this presses the robot's user stop.
+    /// Brakes any motion and ends the action of the fingers. If another program controls the
+    /// simulated robot, this function presses the robot's user stop.
     fn stop(self: &Arc<Self>) {
         if let Some(fingers) = &self.fingers {
             fingers.end();

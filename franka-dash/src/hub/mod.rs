@@ -30,7 +30,7 @@ pub(crate) struct Hub {
     pub(crate) permissions: Permissions,
     pub(crate) news: broadcast::Sender<News>,
     pub(crate) status: watch::Sender<Status>,
-    /// The number of the active hold, and the plan of its motion if it has one.
+    /// Number of the active hold and the plan of its motion; `None` without a plan.
     pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
     /// The current contact on the arm, if any.
     pub(crate) contact: watch::Sender<Option<Contact>>,
@@ -38,9 +38,9 @@ pub(crate) struct Hub {
     pub(crate) tare: watch::Sender<Tared>,
     /// Regions that the arm must avoid.
     pub(crate) keep_out: Vec<Obstacle>,
-    /// The names of all robots of the server, if it has several.
+    /// Names of all robots of the server, if it has several robots.
     pub(crate) siblings: Arc<[String]>,
-    /// Permits for viewers, one for each.
+    /// Permits for viewers. Each viewer takes one.
     pub(crate) seats: Arc<Semaphore>,
     pub(crate) simulated: Option<Simulated>,
     pub(crate) fingers: Option<Fingers>,
@@ -60,7 +60,8 @@ struct Command {
 }
 
 impl Hub {
-    /// Starts the background tasks. They end with the last handle. This needs a Tokio runtime.
+    /// Starts the background tasks, which end when the last handle is dropped. Call this function
+    /// within a Tokio runtime.
     pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
         let Options {
             admission: _,
@@ -119,7 +120,7 @@ impl Hub {
         hub
     }
 
-    /// Time since the start of the server.
+    /// Returns the time since the server started.
     pub(crate) fn now(&self) -> Duration {
         self.start.elapsed()
     }
@@ -140,7 +141,7 @@ impl Hub {
             text,
             detail,
         };
-        // An error means that no viewer is connected.
+        // The send fails if no viewer is connected. This is not an error.
         let _ = self.news.send(news);
     }
 
@@ -179,7 +180,7 @@ impl Hub {
         self.publish(&command);
     }
 
-    /// Processes the end of this hold's motion.
+    /// Processes the end of the motion of hold `number`.
     fn motion_ended(&self, number: u64) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
         let holding = command.authority.status().holding;
@@ -190,7 +191,7 @@ impl Hub {
         self.publish(&command);
     }
 
-    /// Brakes if a hold has ended.
+    /// Brakes the arm if a hold has ended.
     fn end(&self, command: &mut Command, ended: Option<Lost>) {
         let Some(lost) = ended else { return };
         command.hold = None;
@@ -199,8 +200,8 @@ impl Hub {
         }
     }
 
-    /// Publishes changes to all viewers. The settings of a commander end with the commander's
-    /// lease.
+    /// Publishes changes to all viewers. When the lease of a commander ends, the commander's
+    /// settings are reset.
     fn publish(&self, command: &Command) {
         let authority = command.authority.status();
         if authority.commander != self.status.borrow().authority.commander {
@@ -223,7 +224,7 @@ impl Hub {
     }
 }
 
-/// Number of events by which a viewer may lag behind before it misses some.
+/// Number of events by which a viewer may lag behind before it loses events.
 const NEWS: usize = 64;
 
 /// Largest number of simultaneous viewers.

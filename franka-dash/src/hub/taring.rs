@@ -11,13 +11,13 @@ use crate::reply::Level;
 /// The tare of the wrench, and the number of the request for it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tared {
-    /// Number of requests to take or to clear the tare so far.
+    /// Number of requests so far that took or cleared the tare.
     number: u64,
     pub(crate) tare: Option<WrenchTare>,
 }
 
 impl Hub {
-    /// Takes a tare of the wrench, or clears it. Only the newest request has an effect.
+    /// Takes or clears the tare of the wrench. Only the newest request has an effect.
     pub(super) fn tare(self: &Arc<Self>, on: bool) {
         let Some(robot) = self.source.robot() else {
             return;
@@ -49,8 +49,8 @@ impl Hub {
         });
     }
 
-    /// Clears the tare, and cancels a tare in progress, if this event changed how the robot
-    /// computes the wrench.
+    /// Clears the tare, and cancels a tare in progress, if the event changed how the robot computes
+    /// the wrench.
     pub(super) fn check_tare(&self, event: &EventKind) {
         let why = match event {
             EventKind::LoadChanged { .. } => "the load has changed",

@@ -1,5 +1,5 @@
-//! Background tasks of the server that do not depend on viewers. They end with the last handle of
-//! the hub.
+//! Background tasks of the server, which run with or without viewers. They end when the last handle
+//! of the hub is dropped.
 
 use std::sync::{Arc, Weak};
 use std::time::Duration;
@@ -35,7 +35,7 @@ pub(super) fn begin(hub: &Arc<Hub>) {
     }
 }
 
-/// Ends holds and leases whose viewers are silent for too long.
+/// Ends holds and leases whose viewers have been silent for too long.
 async fn watch_silence(hub: Weak<Hub>) {
     let mut clock = interval(Duration::from_millis(10));
     clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
@@ -77,7 +77,7 @@ async fn tell_events(mut events: franka_async::supervision::Events, hub: Weak<Hu
     }
 }
 
-/// Copies the states of a simulated robot that another program controls, and reports changes.
+/// Copies the states of a simulated robot that another program controls, and reports their changes.
 async fn follow_simulation(simulated: Simulated, hub: Weak<Hub>) {
     let copy = |state| {
         let Some(hub) = hub.upgrade() else {

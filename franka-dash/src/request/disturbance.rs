@@ -8,8 +8,8 @@ use super::within;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Disturbance {
-    /// Pushes link 1 to 7 for [`PUSH_MS`], or until the next push. The point is an offset from the
-    /// link's frame, in the axes of the link, `[m]`. The force is in base axes, `[N]`.
+    /// Pushes one of links 1 to 7 for [`PUSH_MS`], or until the next push. The point is an offset
+    /// from the link's frame, in the axes of this frame, `[m]`. The force is in base axes, `[N]`.
     Push {
         link: usize,
         offset: [f64; 3],
@@ -23,24 +23,24 @@ pub(crate) enum Disturbance {
     Brakes { closed: bool },
     /// Causes a reflex, as a collision would.
     Reflex {},
-    /// Sets the conditions of the network in both directions.
+    /// Sets the network conditions in both directions.
     Network { conditions: Conditions },
-    /// Loses every state and command for this duration, `[ms]`.
+    /// Drops every state and every command for this duration, `[ms]`.
     Cut { milliseconds: u32 },
-    /// Puts an object of this width between the fingers, `[m]`, in place of any other object.
+    /// Puts an object of this width between the fingers, `[m]`. It replaces any other object.
     /// `null` removes the object.
     Object { width: Option<f64> },
-    /// Attaches this mass to the flange, `[kg]`, 5 cm from it, in place of any other load. The
-    /// robot is not told about it.
+    /// Attaches this mass to the flange, 5 cm from it, `[kg]`. It replaces any other attached mass.
+    /// The robot's load setting does not change.
     Load { mass: f64 },
-    /// Replaces the arm with another arm, at rest in the current position.
+    /// Replaces the arm with another arm, which is at rest in the current position.
     Arm { arm: ArmKind },
-    /// Sets the speed of robot time relative to the wall clock. 0 pauses, `null` is as fast as
-    /// possible. This is possible only in virtual time.
+    /// Sets the ratio of robot time to wall-clock time. 0 is a pause, and `null` is as fast as
+    /// possible. Only a simulation in virtual time supports this request.
     Speed { speed: Option<f64> },
 }
 
-/// Families of simulated arms, by how much they deviate from the model.
+/// Kinds of simulated arms, which deviate from the model by different amounts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ArmKind {
@@ -54,15 +54,15 @@ pub(crate) enum ArmKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Conditions {
-    /// Share of datagrams that are lost.
+    /// Share of datagrams that are lost, in `[0, 1]`.
     pub(crate) loss: f64,
-    /// Mean number of consecutive datagrams that are lost.
+    /// Mean number of consecutive lost datagrams.
     pub(crate) burst: f64,
-    /// Delay of each direction, `[ms]`.
+    /// Delay in each direction, `[ms]`.
     pub(crate) delay_ms: f64,
     /// Largest additional delay, `[ms]`.
     pub(crate) jitter_ms: f64,
-    /// Number of pauses of the robot's network interface per second, `[1/s]`.
+    /// Rate of pauses of the robot's network interface, `[1/s]`.
     pub(crate) stalls_per_second: f64,
     /// Duration of a pause, `[ms]`.
     pub(crate) stall_ms: f64,
@@ -81,7 +81,7 @@ impl Conditions {
 }
 
 impl Disturbance {
-    /// Checks that all numbers are in range. Otherwise returns the valid range.
+    /// Checks that all numbers are in range. The error states the valid range.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Push {

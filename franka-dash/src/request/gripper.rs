@@ -8,12 +8,12 @@ use super::within;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum GripperAction {
-    /// Determine the largest opening.
+    /// Home the fingers, which measures the largest opening.
     Home {},
     /// Move to a width, `[m]`, at a speed, `[m/s]`.
     Move { width: f64, speed: f64 },
-    /// Close at a speed, `[m/s]`, on an object of a width, `[m]`, and hold it with a force, `[N]`.
-    /// The object may be wider or narrower by `tolerance`.
+    /// Close at a speed, `[m/s]`, on an object of a width, `[m]`, and hold the object with a force,
+    /// `[N]`. The object's width may differ by `tolerance`.
     Grasp {
         width: f64,
         tolerance: f64,

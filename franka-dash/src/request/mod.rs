@@ -1,4 +1,4 @@
-//! Requests of viewers, as JSON. They are plain data, with checks of the ranges.
+//! Requests of viewers, in JSON, and checks of their ranges.
 
 mod disturbance;
 mod gripper;
@@ -22,27 +22,27 @@ pub(crate) enum Request {
     /// Acknowledges the state frame with this server time, `[ms]`. The server may then send the
     /// next frame.
     Seen { server_ms: u64 },
-    /// Requests the lease, under a name that the other viewers see.
+    /// Requests the lease. The other viewers see `name`.
     Take { name: String },
-    /// Keeps the lease.
+    /// Renews the lease.
     Alive {},
     /// Releases the lease.
     Release {},
-    /// Begins a hold: the arm moves as long as `Hold` messages follow.
+    /// Begins a hold. The arm moves as long as `Hold` messages follow.
     Begin {
         motion: Motion,
         /// Largest speed of any point of the arm, `[m/s]`.
         speed: f64,
     },
-    /// Requests the preview of a motion with a target. The arm does not move.
+    /// Requests a preview of a motion that has a target. The arm does not move.
     Preview {
-        /// Number of the question. The answer repeats it.
+        /// Number of the question, which the answer repeats.
         number: u32,
         motion: Motion,
         /// Largest speed, as for `Begin`.
         speed: f64,
     },
-    /// Continues the hold. `seq` counts from 1 without a gap.
+    /// Continues the hold. `seq` counts the messages from 1, without a gap.
     Hold { seq: u32 },
     /// Ends the hold, because the pointer or key was released.
     End {},
@@ -50,9 +50,10 @@ pub(crate) enum Request {
     Stop {},
     /// Recovers the robot from a reflex. The robot does not move.
     Recover {},
-    /// Sets the stiffness of the arm, for the active hold and later holds.
+    /// Sets the stiffness of the arm for the active hold and all later holds.
     Tune { tuning: Tuning },
-    /// Takes or clears a tare (the zero) of the displayed wrench at rest. The robot does not move.
+    /// Takes or clears the tare (the zero) of the displayed wrench. The robot must be at rest, and
+    /// does not move.
     Tare { on: bool },
     /// Sets the largest speed of any point of the arm in the active hold, `[m/s]`.
     Speed { speed: f64 },
@@ -65,7 +66,7 @@ pub(crate) enum Request {
 }
 
 impl Request {
-    /// Checks that all numbers are in range. Otherwise returns the received value and the valid
+    /// Checks that all numbers are in range. The error states the received value and the valid
     /// range.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
@@ -100,7 +101,7 @@ fn check_speed(speed: f64) -> Result<(), String> {
 }
 
 /// Checks that `got` is in a range. Otherwise returns an error text. `what` is the name of the
-/// number. `unit` follows the number; it is empty or begins with a space.
+/// number. `unit` is empty or begins with a space.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::within;
 
-/// The axes in which a direction is given.
+/// Axes of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Axes {
@@ -12,7 +12,7 @@ pub(crate) enum Axes {
     Tool,
 }
 
-/// The motion during a hold.
+/// The motion while a button is held.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Motion {
@@ -20,25 +20,25 @@ pub(crate) enum Motion {
     Translate { direction: [f64; 3], axes: Axes },
     /// Turns the end effector about an axis through its origin.
     Rotate { direction: [f64; 3], axes: Axes },
-    /// Moves one joint, 1 to 7, up or down, to the end of its range.
+    /// Moves one of joints 1 to 7 towards the upper or lower end of its range.
     Joint { joint: usize, up: bool },
     /// Moves all joints to these positions, `[rad]`.
     Joints { q: [f64; 7] },
     /// Moves all joints to the ready pose.
     Ready {},
-    /// Holds the arm in place, with its current stiffness.
+    /// Holds the arm in place with its current stiffness.
     Stay {},
-    /// Moves the end effector on a straight line to a pose in the base frame.
+    /// Moves the end effector to a pose in the base frame on a straight line.
     Pose {
         /// Position x y z, `[m]`.
         position: [f64; 3],
-        /// Orientation as a quaternion x y z w, of any non-zero length.
+        /// Orientation as a quaternion x y z w. Its length must not be zero.
         orientation: [f64; 4],
     },
 }
 
 impl Motion {
-    /// Checks that the numbers form a valid motion. Otherwise returns the error.
+    /// Checks that the numbers form a valid motion. Otherwise returns the error text.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Translate { direction, .. } | Self::Rotate { direction, .. } => {
@@ -70,11 +70,11 @@ impl Motion {
     }
 }
 
-/// Largest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
+/// Largest speed of any point of the arm, `[m/s]`. It is the reduced speed of ISO 10218-1.
 pub(crate) const SPEED_MAX: f64 = 0.25;
 
 /// Smallest speed, `[m/s]`.
 pub(crate) const SPEED_MIN: f64 = 0.001;
 
-/// Bound of coordinates, `[m]`. It is beyond the reach of any arm.
+/// Largest magnitude of a coordinate, `[m]`. No arm reaches this far.
 const FAR: f64 = 2.0;

@@ -4,22 +4,22 @@ use serde::{Deserialize, Serialize};
 
 use super::within;
 
-/// The stiffness of the arm while a button is held. It consists of factors on the driver's gains
-/// for the kind of motion, and of the force limit.
+/// The stiffness of the arm while a button is held: the force limit, and factors on the driver's
+/// gains for this kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Tuning {
-    /// Factor on the stiffness at the end effector. The damping grows with the square root of this
-    /// factor.
+    /// Factor on the stiffness at the end effector. The damping is scaled by the square root of
+    /// this factor.
     pub(crate) end_effector: f64,
-    /// Factor on the stiffness at the joints. The damping grows with the square root of this
+    /// Factor on the stiffness at the joints. The damping is scaled by the square root of this
     /// factor.
     pub(crate) joints: f64,
     /// Additional factor on all damping.
     pub(crate) damping: f64,
     /// Largest force of springs and dampers, `[N]`.
     pub(crate) force_cap: f64,
-    /// True if friction and undeclared loads are compensated.
+    /// True if the driver compensates friction and undeclared loads.
     pub(crate) compensation: bool,
 }
 
@@ -37,8 +37,8 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// Returns the named stiffness settings of the page. Stiffer settings were not stable on all
-    /// simulated arms: see the table in the book's chapter on arms that stick.
+    /// Returns the page's stiffness settings and their names. Stiffer settings were not stable on
+    /// all simulated arms. See the table in the book's chapter on arms that stick.
     pub(crate) fn presets() -> [(&'static str, Self); 4] {
         let default = Self::default();
         let soft = Self {

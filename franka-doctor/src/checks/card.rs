@@ -1,4 +1,5 @@
-//! Checks of the network card on the route to the robot, from the card's driver and error counts.
+//! Checks of the network card on the route to the robot. They use the card's driver and its error
+//! counts.
 
 use super::network::NETWORK;
 use super::{Check, VENDOR};
@@ -104,7 +105,7 @@ fn link(readings: &Readings<'_>) -> Result<Judged, Unread> {
         return Ok(Judged::failure(format!("{card} is {state}"))
             .fix(Needs::Nothing, format!("sudo ip link set {card} up")));
     }
-    // Reading these files fails with EINVAL if the driver does not know the value.
+    // A read fails with EINVAL if the driver does not know the value.
     let (speed, duplex) = (readings.card("speed"), readings.card("duplex"));
     let (Ok(speed), Ok(duplex)) = (speed, duplex) else {
         return Ok(Judged::unknown(format!(

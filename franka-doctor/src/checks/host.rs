@@ -1,4 +1,5 @@
-//! Checks of memory, clock, power and virtual machines; the kernel's checks are in [`kernel`].
+//! Checks of memory, clock, power and virtual machines. The module [`kernel`] contains the kernel's
+//! checks.
 
 use super::{Check, VENDOR, kernel};
 use crate::finding::{Group, Judged, Matters, Needs};
@@ -143,13 +144,13 @@ pub(super) const CHECKS: &[Check] = &[
     },
 ];
 
-/// True on the Windows Subsystem for Linux, according to the version text of the kernel.
+/// Returns true on the Windows Subsystem for Linux, according to the kernel's version text.
 pub(super) fn is_wsl(readings: &Readings<'_>) -> Result<bool, Unread> {
     let version = readings.text("/proc/version")?;
     Ok(version.to_lowercase().contains("microsoft"))
 }
 
-/// Returns the file that shows that this host is a container, if any.
+/// Returns the file that shows that this host is a container, if such a file exists.
 pub(super) fn container(readings: &Readings<'_>) -> Option<&'static str> {
     [
         "/.dockerenv",
@@ -179,7 +180,7 @@ fn virt(readings: &Readings<'_>) -> Result<Judged, Unread> {
         (false, None) if cpuinfo.lines().any(|line| line.starts_with("flags")) => {
             Judged::good("neither virtual machine nor container seen")
         }
-        // Only x86 has the flag.
+        // Only x86 processors have the flag.
         (false, None) => Judged::unknown(
             "unknown: no container, and this processor has no flag that shows virtual machines",
         ),

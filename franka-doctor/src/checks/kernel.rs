@@ -1,4 +1,4 @@
-//! Check for a real-time kernel, and how to install one on this computer.
+//! The check for a real-time kernel, and the way to install such a kernel on this computer.
 
 use super::host::{container, is_wsl};
 use crate::finding::{Judged, Needs};
@@ -30,18 +30,18 @@ pub(super) fn version(readings: &Readings<'_>) -> Result<Judged, Unread> {
     Ok(Judged::info(release))
 }
 
-/// Way to install a real-time kernel on a computer.
+/// How to install a real-time kernel on a computer.
 enum Remedy {
     /// One command installs the kernel.
     Command(&'static str),
-    /// No command exists. The text has instructions instead.
+    /// No single command exists. The text contains instructions.
     Words(String),
-    /// The way is unknown for this system.
+    /// The way is not known for this system.
     Unknown,
 }
 
 impl Remedy {
-    /// Returns the remedy for a computer with this kernel release.
+    /// Returns the remedy for a computer that runs this kernel release.
     fn of(readings: &Readings<'_>, release: &str) -> Self {
         if is_wsl(readings).unwrap_or(false) {
             return Self::words("WSL uses a kernel of Windows: run Linux directly on the computer");

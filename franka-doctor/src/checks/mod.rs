@@ -1,4 +1,4 @@
-//! The checks, one table for each group. Each check is a function of the readings.
+//! The checks, in one table per group. Each check is a function of the readings.
 
 mod card;
 mod host;
@@ -21,13 +21,14 @@ pub(crate) struct Check {
     pub(crate) source: &'static str,
     /// True if the check only reads files and queries drivers, and starts no thread.
     pub(crate) reads_only: bool,
-    /// True if the check is about the network card on the route to the robot.
+    /// True if the check examines the network card on the route to the robot.
     pub(crate) of_card: bool,
     pub(crate) judge: fn(&Readings<'_>) -> Result<Judged, Unread>,
 }
 
 impl Check {
-    /// Returns the finding of this check. A value that cannot be read gives [`Verdict::Unknown`].
+    /// Returns the finding of this check. If a value cannot be read, the verdict is
+    /// [`Verdict::Unknown`].
     pub(crate) fn run(&self, readings: &Readings<'_>, purpose: Purpose) -> Finding {
         let about = About {
             id: self.id,

@@ -1,4 +1,4 @@
-//! Checks of frequency, sleep states, load and interrupts of the processors.
+//! Checks of the processors' frequencies, sleep states, load and interrupts.
 
 use super::Check;
 use crate::finding::{Group, Judged, Matters, Needs};
@@ -233,7 +233,7 @@ fn members(list: &str) -> Option<Vec<usize>> {
     Some(members)
 }
 
-/// Upper bound of processor numbers. No kernel has larger numbers.
+/// Upper bound for processor numbers. No kernel uses larger numbers.
 const CPU_MAX: usize = 1 << 16;
 
 fn isolated(readings: &Readings<'_>) -> Result<Judged, Unread> {
@@ -308,8 +308,8 @@ fn load(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// Checks the frequency of the control thread's processor, or else of the first processor. If load
-/// is allowed, the check loads the processor for a second first.
+/// Checks the frequency of the control thread's processor. If no such processor is set, checks the
+/// first processor. If load is allowed, the check first loads the processor for a second.
 fn frequency(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let cpu = readings.cpu.unwrap_or(0);
     let file = |name: &str| format!("{CPUS}/cpu{cpu}/cpufreq/{name}");

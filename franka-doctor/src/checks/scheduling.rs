@@ -81,7 +81,7 @@ pub(super) const CHECKS: &[Check] = &[
     },
 ];
 
-/// Command that creates a group `realtime` whose members may have real-time priorities.
+/// Command that creates a group `realtime`, whose members may use real-time priorities.
 const FIX: &str = "sudo groupadd -f realtime && sudo usermod -aG realtime \"$USER\" && printf '@realtime soft rtprio 99\\n@realtime hard rtprio 99\\n@realtime soft memlock unlimited\\n@realtime hard memlock unlimited\\n' | sudo tee /etc/security/limits.d/franka.conf";
 
 fn priority(readings: &Readings<'_>) -> Result<Judged, Unread> {

@@ -1,4 +1,4 @@
-//! Requests to Desk, over HTTPS.
+//! Requests to Desk over HTTPS.
 
 use core::time::Duration;
 use std::net::SocketAddr;
@@ -9,13 +9,13 @@ use ureq::tls::{TlsConfig, TlsProvider};
 
 use super::{DeskState, Page, read};
 
-/// Returns the state that Desk at this address (usually port 443 of the robot) provides without a
-/// login; otherwise the reason for the failure.
+/// Returns the state that Desk reports without a login, or the reason why no state could be read.
+/// `desk` is usually port 443 of the robot.
 ///
-/// This sends a few `GET` requests, of at most 2 s each. It changes nothing and sends no password.
-/// Desk signs its own certificate, so the certificate is not checked: an attacker on the network
-/// path could answer instead. If the other end has no TLS, this tries plain HTTP, at port 80
-/// instead of 443.
+/// This function sends a few `GET` requests, each with a time limit of 2 s. It changes nothing and
+/// sends no password. Desk signs its own certificate, so this function does not check the
+/// certificate. Therefore an attacker on the network path could answer instead. If the other end
+/// does not support TLS, the function tries plain HTTP, with port 80 instead of 443.
 pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
     let agent = agent();
     ask(&agent, "https", desk).or_else(|why| {
@@ -23,7 +23,7 @@ pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
         if plain.port() == 443 {
             plain.set_port(80);
         }
-        // Reports the first error, because HTTPS is the usual way to reach Desk.
+        // The first error is returned, because HTTPS is the usual way to reach Desk.
         ask(&agent, "http", plain).map_err(|_| why)
     })
 }
@@ -45,7 +45,7 @@ fn ask(agent: &Agent, scheme: &str, address: SocketAddr) -> Result<DeskState, St
     })
 }
 
-/// Returns an agent that connects directly to the robot, without proxy and without redirects.
+/// Returns an agent that connects directly to the robot, without a proxy and without redirects.
 fn agent() -> Agent {
     let provider = Arc::new(rustls::crypto::ring::default_provider());
     let tls = TlsConfig::builder()

@@ -1,5 +1,5 @@
-//! The state of Desk, the robot's web interface, as read without a login. It can explain why the
-//! robot refuses a session.
+//! The state of Desk, the robot's web interface. It is read without a login, and can explain why
+//! the robot refuses a session.
 //!
 //! ```text
 //! Desk --GET--> pages (v1 of its interface, or an older one) --> DeskState --> robot.web
@@ -14,37 +14,38 @@ pub use client::ask_desk;
 pub(crate) use pages::{Page, read};
 
 /// State of the robot, as Desk reports it without a login. A field is `None` if Desk does not
-/// report it.
+/// report its value.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DeskState {
-    /// State of the system: `Started`, or another word of Desk.
+    /// State of the system: `Started`, or another word that Desk uses.
     pub system: Option<String>,
-    /// Operating mode: `Execution`, `Programming`, or another word of Desk.
+    /// Operating mode: `Execution`, `Programming`, or another word that Desk uses.
     pub mode: Option<String>,
-    /// The joints whose brakes are closed, counted from one.
+    /// The joints whose brakes are closed, counted from 1.
     pub braked: Option<Vec<usize>>,
-    /// True if FCI is active.
+    /// True if FCI (the interface for clients) is active.
     pub fci: Option<bool>,
     /// State of the daily self-test.
     pub self_test: Option<SelfTest>,
 }
 
-/// State of the self-test.
+/// State of the daily self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SelfTest {
-    /// The self-test is not due yet. The value is the remaining time in seconds, if reported.
+    /// The self-test is not due yet. The value is the remaining time in seconds, if Desk reports
+    /// it.
     Done(Option<u64>),
-    /// The self-test is due soon. The value is the remaining time in seconds, if reported.
+    /// The self-test is due soon. The value is the remaining time in seconds, if Desk reports it.
     Soon(Option<u64>),
-    /// The self-test is due. The robot does not move before it.
+    /// The self-test is due. The robot does not move until the self-test has run.
     Due,
     /// The self-test is running.
     Running,
 }
 
-/// Returns the finding about the state of Desk: `robot.web`. This is a pure function.
+/// Returns the finding about the state of Desk (`robot.web`). This function performs no I/O.
 pub fn web(asked: &Result<DeskState, String>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.web",
@@ -95,8 +96,8 @@ fn judge(state: &DeskState) -> Judged {
     }
 }
 
-/// Returns the reasons why the robot refuses a session or a motion. Each text names the action in
-/// Desk.
+/// Returns the reasons why the robot refuses a session or a motion. Each text names the necessary
+/// action in Desk.
 fn reasons(state: &DeskState) -> Vec<String> {
     let mut reasons = Vec::new();
     match state.system.as_deref() {
@@ -139,7 +140,7 @@ fn reasons(state: &DeskState) -> Vec<String> {
     reasons
 }
 
-/// Formats a time in hours, or in minutes if it is less than one hour.
+/// Formats a time in hours. A time of less than one hour is in minutes.
 fn hours(seconds: u64) -> String {
     match seconds {
         3600.. => format!("{} h", seconds / 3600),

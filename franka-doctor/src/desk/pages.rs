@@ -1,24 +1,24 @@
 //! The pages of Desk that require no login, in all generations of its interface.
 //!
-//! The paths and fields come from existing clients of Desk; the vendor does not document the older
-//! generations.
+//! The paths and fields come from existing clients of Desk, because the vendor does not document
+//! the older generations.
 
 use serde_json::Value;
 
 use super::{DeskState, SelfTest};
 
-/// An answer of Desk: the HTTP status, and the JSON if the body is JSON.
+/// An answer of Desk: the HTTP status, and the body if it is JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Page {
     pub(crate) status: u16,
     pub(crate) json: Option<Value>,
 }
 
-/// Reads the state of Desk; `get` returns the answer for a path.
+/// Reads the state of Desk. `get` returns the answer for a path.
 ///
 /// # Errors
-/// An error if the first path has no answer, or an unknown answer. If a later path has no answer,
-/// its fields stay `None`.
+/// Returns an error if the first path has no answer or an unknown answer. If a later path has no
+/// answer, its fields stay `None`.
 pub(crate) fn read(get: &mut dyn FnMut(&str) -> Result<Page, String>) -> Result<DeskState, String> {
     let first = get("/api/system")?;
     let mut statuses = vec![("/api/system", first.status)];
@@ -91,8 +91,8 @@ fn word(value: &Value) -> Option<String> {
     Some(shown)
 }
 
-/// Returns the joints whose brakes are not open, from a list of words, or of objects with a field
-/// that contains such a word.
+/// Returns the joints whose brakes are not open. `joints` is a list of words, or of objects whose
+/// `field` contains such a word.
 fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     let joints = joints.as_array().filter(|joints| joints.len() == 7)?;
     let mut braked = Vec::new();
@@ -109,7 +109,7 @@ fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     Some(braked)
 }
 
-/// Converts Desk's word for the self-test, and the seconds until it is due.
+/// Converts Desk's word for the self-test and the number of seconds until the self-test is due.
 fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     let left = left.map(|left| left.max(0.0) as u64);
     match word {
@@ -121,7 +121,7 @@ fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     }
 }
 
-/// Longest word of Desk that is shown, in characters.
+/// Largest number of characters shown from a word of Desk.
 const WORD_MAX: usize = 40;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Linux-specific values. This is the only file of the crate with `unsafe`.
+//! Linux-specific values. No other file of the crate contains `unsafe`.
 
 use core::time::Duration;
 use std::io;
@@ -15,7 +15,7 @@ use crate::host::{Ethtool, Unread};
 use crate::latencies::Latencies;
 pub(super) use crate::lease::is_lasting;
 
-/// Queries the driver of a network card by `ioctl`, and returns its answer.
+/// Queries the driver of a network card with `ioctl`, and returns its answer.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
@@ -60,7 +60,7 @@ pub(super) fn pin_to(cpu: usize) -> io::Result<()> {
     Ok(())
 }
 
-/// Sleeps until the end of each of `cycles` milliseconds, and records each delay.
+/// Sleeps until the end of each of `cycles` milliseconds, and records how late each wake-up is.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,

@@ -1,4 +1,4 @@
-//! The replacement on systems other than Linux.
+//! The replacement for `linux` on other systems.
 
 use core::time::Duration;
 use std::io;
@@ -26,7 +26,7 @@ pub(super) fn pin_to(_: usize) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Sleeps until the end of each of `cycles` milliseconds, and records each delay.
+/// Sleeps until the end of each of `cycles` milliseconds, and records how late each wake-up is.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
