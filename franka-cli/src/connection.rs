@@ -1,4 +1,4 @@
-//! Selection of the robot, connection, and permission to move it.
+//! Selects the robot, connects to it, and checks that it may be moved.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -16,7 +16,7 @@ use crate::ending::{Ending, Failure};
 use crate::output::say;
 use crate::robots_file::{Realtime, RobotsFile, check_name};
 
-/// Classifies a `ConnectError` of any device by what was seen of the robot.
+/// Classifies a `ConnectError` of any device by how the robot responded.
 macro_rules! seen {
     ($error:expr) => {
         match &$error {
@@ -53,7 +53,7 @@ pub(crate) struct Which {
 pub(crate) struct Place {
     /// Name or address of the robot, as the user wrote it.
     name: String,
-    /// Address from the file of robots, if the robot has a name there.
+    /// Address from the robots file, if the file contains the robot's name.
     listed: Option<String>,
     pub(crate) address: Endpoint,
     pub(crate) hand: Endpoint,
@@ -84,7 +84,7 @@ impl Which {
             let parsed = text.parse::<Endpoint>();
             parsed.map_err(|error| Failure::usage(error.to_string()))
         };
-        // A port in the address belongs to the requested device.
+        // A port in the address belongs to the device that the command uses.
         let unlisted = |name: String| {
             let address = endpoint(&name)?;
             Ok(Place {
@@ -95,7 +95,7 @@ impl Which {
                 realtime: None,
             })
         };
-        // A container or a service may have no directory for the file.
+        // In a container or a service, the directory for the file may not exist.
         if let Some(address) = named.clone().filter(|name| check_name(name).is_err()) {
             return unlisted(address);
         }
@@ -131,8 +131,8 @@ impl Which {
         })
     }
 
-    /// Connects for commands that do not move the arm. They need no real-time scheduling and accept
-    /// any geometry.
+    /// Connects to the robot for commands that do not move the arm. Such commands need no real-time
+    /// scheduling and accept any geometry.
     pub(crate) async fn connect(&self) -> anyhow::Result<(Robot, Place)> {
         let place = self.place()?;
         let robot = place
@@ -145,8 +145,8 @@ impl Which {
 }
 
 impl Place {
-    /// Returns the name of a device of this robot. This is the robot's name, if the robots file has
-    /// this address for it.
+    /// Returns the name of a device of this robot. If the robots file contains `address` for the
+    /// device, this is the robot's name.
     fn with(&self, address: Option<impl fmt::Display>) -> String {
         match address {
             Some(address) => format!("{} ({address})", self.name),
@@ -159,13 +159,13 @@ impl Place {
         &self.name
     }
 
-    /// True if the robot has a name in the robots file.
+    /// Returns true if the robots file contains the robot's name.
     pub(crate) fn is_listed(&self) -> bool {
         self.listed.is_some()
     }
 
-    /// Connects to the robot. `realtime` is the user's option; without it, the setting in the
-    /// robots file counts.
+    /// Connects to the robot. `realtime` is the user's option. Without this option, the setting in
+    /// the robots file applies.
     pub(crate) async fn connect(
         &self,
         realtime: Option<Realtime>,
@@ -257,7 +257,7 @@ impl Place {
     }
 }
 
-/// Reason why a connection failed, for any device.
+/// Reason why a connection to any device failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seen {
     Refused,
@@ -269,8 +269,8 @@ pub(crate) enum Seen {
     Other,
 }
 
-/// Checks that the robot would accept a motion: it is at rest and ready, and no other program moves
-/// the arm.
+/// Checks that the robot would accept a motion. It must be at rest and ready, and no other program
+/// may be moving the arm.
 pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failure> {
     let refused =
         |ending, message: String, advice: &str| Err(Failure::new(ending, message).advice(advice));
@@ -326,8 +326,8 @@ pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
 /// Port of a Hand at the robot's address.
 const HAND: u16 = 1338;
 
-/// Returns the first address of an endpoint. `port` is the device's usual port, for an endpoint
-/// without a port.
+/// Returns the first address of an endpoint. If the endpoint has no port, uses `port`, the usual
+/// port of the device.
 pub(crate) async fn resolve(endpoint: &Endpoint, port: u16) -> anyhow::Result<SocketAddr> {
     let text = endpoint.to_string();
     let has_port = match text.rsplit_once(':') {

@@ -1,4 +1,4 @@
-//! The end of the program: exit codes, and errors that name the next step.
+//! The ways in which the program ends: exit codes, and errors that state the next step.
 
 use std::fmt;
 use std::io;
@@ -23,9 +23,9 @@ pub(crate) enum Ending {
     Taken = 4,
     /// The user did not confirm the motion.
     NotConfirmed = 5,
-    /// The computer has a local problem: rights, files, ports.
+    /// This computer has a local problem with rights, files or ports.
     Host = 6,
-    /// The robot needs a person, at the user stop or in Desk.
+    /// A person must act, at the user stop or in Desk.
     Person = 7,
     /// Ctrl-C ended the program. Shells use the same code.
     Interrupted = 130,
@@ -52,7 +52,7 @@ impl Ending {
         ExitCode::from(self as u8)
     }
 
-    /// Returns the name of the ending in JSON.
+    /// Returns the name of the ending for JSON output.
     pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -68,7 +68,7 @@ impl Ending {
         }
     }
 
-    /// Returns the ending for an error.
+    /// Returns the ending that belongs to an error.
     pub(crate) fn of(error: &anyhow::Error) -> Self {
         if let Some(failure) = error.downcast_ref::<Failure>() {
             return failure.ending;
@@ -88,7 +88,7 @@ impl Ending {
 }
 
 /// Returns who can act on an error of the driver, and the name of the error's row in the book's
-/// chapter of errors.
+/// chapter on errors.
 fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     macro_rules! first_of {
         ($($kind:ty),*) => {
@@ -109,13 +109,13 @@ pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> 
     }
 }
 
-/// A failure: its text, the ending, and the next step for the user.
+/// A failure: the text, the ending, and the next step for the user.
 #[derive(Debug)]
 pub(crate) struct Failure {
     ending: Ending,
     message: String,
     pub(crate) advice: Option<String>,
-    /// Who can act on an error of the driver, and the error's row in the book's chapter of errors.
+    /// Who can act on an error of the driver, and the error's row in the book's chapter on errors.
     origin: Option<(Party, &'static str)>,
 }
 
@@ -133,8 +133,7 @@ impl Failure {
         Self::new(Ending::Usage, message)
     }
 
-    /// Creates the failure for an option that needs a feature with which this program was not
-    /// built.
+    /// Creates the failure for an option whose feature is missing from this build of the program.
     #[cfg(not(feature = "full"))]
     pub(crate) fn without(option: &str, feature: &str) -> Self {
         let message = format!("{option}: this `franka` was built without the feature `{feature}`");

@@ -1,4 +1,4 @@
-//! Converts a state to a map by the vendor's names of the fields.
+//! Converts a state to a map whose keys are the vendor's field names.
 
 use franka_async::state::RobotState;
 use serde_json::{Map, Value};

@@ -11,12 +11,12 @@ use crate::ending::{Ending, Failure};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interruption {
     CtrlC,
-    /// SIGTERM, as sent by `kill` and by service managers.
+    /// SIGTERM, which `kill` and service managers send.
     Terminated,
 }
 
 impl Interruption {
-    /// Returns the failure of a program that was interrupted before it was finished.
+    /// Returns the failure for a program that was interrupted before it had finished.
     pub(crate) fn failure(self, message: &str) -> Failure {
         let ending = match self {
             Self::CtrlC => Ending::Interrupted,
@@ -35,7 +35,7 @@ impl fmt::Display for Interruption {
     }
 }
 
-/// Returns a future that resolves at the first signal to end the program after this call.
+/// Returns a future that resolves at the first ending signal after this call.
 pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = Interruption>> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

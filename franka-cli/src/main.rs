@@ -1,4 +1,4 @@
-//! `franka`: one command line for the robot, the simulator and their recordings.
+//! `franka`: one command line for the robot, the simulator and recordings.
 //!
 //! ```text
 //! arguments --> command --> [robot: robots file, connection] --> [question] --> facts or a motion --> exit code
@@ -77,8 +77,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// True if this stream shows colours. As for all other output, NO_COLOR, CLICOLOR_FORCE and similar
-/// variables decide this.
+/// Returns true if this stream shows colours. As for all other output, this depends on NO_COLOR,
+/// CLICOLOR_FORCE and similar variables.
 fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
@@ -178,14 +178,14 @@ mod tests {
         "trial",
     ];
 
-    /// Places that recommend such a command because it is necessary there.
+    /// Texts that recommend such a command because it is necessary there.
     const ADVISED: [(&str, &str); 8] = [
-        // The robot has stopped itself; the text first recommends to remove the cause.
+        // The robot has stopped itself. The text first recommends to remove the cause.
         ("franka-cli/src/connection.rs", "recover"),
         ("franka-cli/src/motion.rs", "recover"),
         ("franka-doctor/src/at_rest.rs", "recover"),
         ("franka-doctor/src/at_rest.rs", "recover"),
-        // Fingers that have not been homed do not know their width.
+        // Fingers do not know their width until they have been homed.
         ("franka-cli/src/command/gripper.rs", "gripper"),
         // Examples in the command's own help.
         ("franka-cli/src/command/trial.rs", "trial"),
@@ -193,8 +193,8 @@ mod tests {
         ("franka-cli/src/command/trial.rs", "trial"),
     ];
 
-    /// Texts of the programs, without comments and tests. It is dangerous if a text advises a
-    /// command that acts on a robot to a reader with a damaged file or a busy host.
+    /// Searches the texts of the programs, without comments and tests. A text must not advise a
+    /// reader with a damaged file or a busy host to run a command that acts on a robot.
     #[test]
     fn texts_advise_no_command_that_acts_on_a_robot_unless_listed() {
         use clap::CommandFactory;
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(advised(unsafe_advice), ["recover"]);
     }
 
-    /// Returns the commands that act on a robot and that the texts of a source file name.
+    /// Returns the commands that act on a robot and that a source file's texts name.
     fn advised(source: &str) -> Vec<&'static str> {
         let mut found = Vec::new();
         for line in source.lines() {

@@ -1,4 +1,4 @@
-//! A running motion: connection, recording, progress, Ctrl-C.
+//! A motion in progress: connection, recording, progress display, and Ctrl-C.
 
 use std::future::Future;
 use std::path::PathBuf;
@@ -67,19 +67,19 @@ impl Mover {
 }
 
 impl MoverOptions {
-    /// Connects to this robot, and checks that it would accept a motion.
+    /// Connects to the robot, and checks that it would accept a motion.
     pub(crate) async fn begin(&self, which: &Which) -> anyhow::Result<Moving> {
         self.begin_with(which, RecordOptions::default()).await
     }
 
-    /// Like [`Self::begin`], with these options for the recording.
+    /// Like [`Self::begin`], but with these options for the recording.
     pub(crate) async fn begin_with(
         &self,
         which: &Which,
         options: RecordOptions,
     ) -> anyhow::Result<Moving> {
         let place = which.place()?;
-        // An error then contains the last second.
+        // With this option, an error contains the last second.
         let accepts = self.accept_geometry_error;
         let robot = place.connect(self.realtime, |builder| {
             builder.log_size(1000).accept_geometry_error(accepts)
@@ -106,7 +106,7 @@ impl MoverOptions {
 }
 
 impl Moving {
-    /// Asks for permission to move the arm. Afterwards checks that the arm has not moved since the
+    /// Asks for permission to move the arm. Then checks that the arm has not moved since the
     /// question.
     pub(crate) async fn ask(&self, title: &str, what: &str) -> anyhow::Result<()> {
         let before = self.robot.state();
@@ -115,7 +115,7 @@ impl Moving {
         let now = self.state_from_now().await?;
         check_ready(&now, &self.place)?;
         for (i, (from, to)) in before.q.iter().zip(now.q).enumerate() {
-            // A non-finite position counts as moved.
+            // A position that is not finite counts as moved.
             let stayed = (to - from).abs() < MOVED;
             if !stayed {
                 let message = format!(
@@ -129,11 +129,11 @@ impl Moving {
         Ok(())
     }
 
-    /// Waits for a state that the robot sent after this call, and returns it.
+    /// Returns the first state that the robot sends after this call.
     async fn state_from_now(&self) -> Result<RobotState, Error> {
         let mut newest = self.robot.state();
         let mut states = self.robot.states();
-        // The first state may have been in transit.
+        // The robot may have sent the first state before this call.
         for _ in 0..2 {
             let before = newest.message_id;
             newest = states.wait_for(|state| state.message_id > before).await?;
@@ -141,7 +141,7 @@ impl Moving {
         Ok(newest)
     }
 
-    /// Awaits a motion of the robot. If its length is given, shows the progress on the terminal.
+    /// Waits for the end of a motion. If its length is known, shows the progress on the terminal.
     /// Ctrl-C and SIGTERM brake the arm.
     pub(crate) async fn drive<T, E: Into<Cause>>(
         &self,
@@ -173,8 +173,8 @@ impl Moving {
         outcome
     }
 
-    /// Brakes, and returns the result. `by` is the interruption; `None` if there was no
-    /// interruption, and the arm continued to move.
+    /// Brakes the arm, and returns the failure. `by` is the interruption; `None` if the arm
+    /// continued to move without one.
     pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
         say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
@@ -195,7 +195,7 @@ impl Moving {
         }
     }
 
-    /// Returns the failure that explains why a motion failed, with the next step.
+    /// Returns the failure that explains why a motion failed and states the next step.
     pub(crate) async fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
         let error = match error.into() {
             Cause::Motion(error) => error,
@@ -206,8 +206,8 @@ impl Moving {
             _ => Ending::Failed,
         };
         let failure = Failure::new(ending, error.to_string()).of(error.party(), error.entry());
-        // After missing packets, names the causes on this computer; otherwise explains why the
-        // robot stopped.
+        // After missing packets, the text names the causes on this computer. Otherwise it explains
+        // why the robot stopped.
         let advice = match doctor::diagnose(&error, self.robot.address().ip()).await {
             Some(diagnosis) => Some(diagnosis.to_string()),
             None => error.diagnose().map(|diagnosis| diagnosis.to_string()),
@@ -224,7 +224,7 @@ impl Moving {
         }
     }
 
-    /// Closes the connection and ends the recording, after both success and failure.
+    /// Closes the connection and ends the recording, after a success or a failure.
     pub(crate) async fn end<T>(self, outcome: anyhow::Result<T>) -> anyhow::Result<T> {
         self.robot.shutdown().await;
         let Some(recorder) = self.recorder else {
@@ -240,7 +240,7 @@ impl Moving {
     }
 }
 
-/// Source of the duration of a motion.
+/// Source of a motion's duration.
 pub(crate) enum Length {
     /// The motion itself, which reports its progress.
     Of(MotionHandle),
@@ -249,8 +249,8 @@ pub(crate) enum Length {
 }
 
 impl Length {
-    /// Returns the completed share of a motion in `[0, 1]` and the remaining time; `None` if
-    /// unknown.
+    /// Returns the completed share of a motion, in `[0, 1]`, and the remaining time; `None` if they
+    /// are unknown.
     fn gone(&self, begin: Instant) -> Option<(f64, Duration)> {
         match self {
             Self::Of(handle) => {
@@ -307,13 +307,13 @@ impl From<ReplayFailure> for Cause {
     }
 }
 
-/// Returns a progress bar of a thousand steps. It is hidden if standard error is not a terminal.
+/// Returns a progress bar with 1000 steps. The bar is hidden if standard error is not a terminal.
 pub(crate) fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}");
     ProgressBar::new(1000).with_style(style.expect("a template"))
 }
 
-/// Awaits a future that takes about `length`, and shows its progress on the terminal.
+/// Waits for a future that takes about `length`, and shows its progress on the terminal.
 pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Output = T>) -> T {
     let (bar, length, begin) = (progress_bar(), Length::About(length), Instant::now());
     bar.set_message(what.to_owned());
@@ -334,7 +334,8 @@ pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Out
     result
 }
 
-/// Runs a function of unknown duration, and shows on the terminal that the program is working.
+/// Runs a function whose duration is unknown, and shows on the terminal that the program is
+/// working.
 pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let bar = ProgressBar::new_spinner().with_message(what.to_owned());
     bar.enable_steady_tick(Duration::from_millis(100));

@@ -1,4 +1,4 @@
-//! Results on standard output: text for people, JSON for programs.
+//! Results on standard output, as text for people or as JSON for programs.
 
 use std::io::Write;
 
@@ -16,7 +16,7 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Prints a value: as JSON, or as the text from `text`.
+    /// Prints a value as JSON, or as the text that `text` returns.
     pub(crate) fn print(
         self,
         value: &impl Serialize,
@@ -36,7 +36,7 @@ pub(crate) fn json_line(value: &impl Serialize) -> anyhow::Result<()> {
     line(&serde_json::to_string(&Versioned::new(value))?)
 }
 
-/// A result (a JSON object) with the version of its format.
+/// A result (a JSON object) and the version of its format.
 #[derive(Serialize)]
 struct Versioned<'a, T> {
     schema: u32,
@@ -53,11 +53,11 @@ impl<'a, T> Versioned<'a, T> {
     }
 }
 
-/// Version of the commands' JSON output. It increases when a field is removed or changes its
-/// meaning, but not for new fields. `franka doctor` has a separate version.
+/// Version of the JSON output of the commands. It increases when a field is removed or changes its
+/// meaning, but not when a field is added. `franka doctor` has a separate version.
 const SCHEMA: u32 = 1;
 
-/// Prints a line on standard output. Colours are removed if they are disabled.
+/// Prints a line on standard output. Removes colours if they are disabled.
 pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     let mut out = anstream::stdout().lock();
     writeln!(out, "{text}")?;
@@ -81,7 +81,7 @@ pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 /// Style of less important text.
 pub(crate) const DIM: Style = Style::new().dimmed();
 
-/// Formats numbers in aligned columns, with space for signs.
+/// Formats numbers in aligned columns that have space for signs.
 pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     let width = decimals + 6;
     let cells = values.iter().map(|value| {
@@ -91,7 +91,7 @@ pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     cells.collect()
 }
 
-/// Returns the value, without a minus sign if it is shown as zero.
+/// Returns the value. Removes its minus sign if the value is shown as zero.
 pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
     let is_zero = value.abs() < 0.5 * 0.1_f64.powi(decimals);
     if is_zero { 0.0 } else { value }

@@ -1,4 +1,4 @@
-//! The description of a motion before it begins, and its confirmation.
+//! Describes a motion before it begins, and asks for consent.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 
@@ -12,7 +12,8 @@ use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{BOLD, numbers, say};
 
-/// Shows what will happen, and asks for consent. If `yes` is true, the user has already agreed.
+/// Shows what will happen, and asks for consent. If `yes` is true, the user has already given
+/// consent.
 pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     say(what);
     if yes {
@@ -34,12 +35,12 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
         "Clear the path of the arm, and keep the user stop within reach. {BOLD}Continue? [y/N]{BOLD:#} "
     )?;
     terminal.flush()?;
-    // Reads on a separate thread, which is abandoned after Ctrl-C.
+    // A separate thread reads the answer. It is abandoned after Ctrl-C.
     let (answer, answered) = oneshot::channel();
     std::thread::spawn(move || {
         let mut line = String::new();
         let read = io::stdin().lock().read_line(&mut line);
-        // After Ctrl-C the receiver is gone.
+        // The send fails after Ctrl-C, which is not an error.
         let _ = answer.send(read.map(|_| line));
     });
     tokio::select! {
@@ -63,7 +64,7 @@ pub(crate) enum Target {
 
 impl Target {
     /// Describes the motion to this target: the displacement of each joint and of the hand, and the
-    /// top speed.
+    /// largest speed.
     pub(crate) fn describe(&self, robot: &Robot, speed: f64) -> anyhow::Result<String> {
         let (state, start) = (robot.state(), robot.pose());
         let model = robot.model();

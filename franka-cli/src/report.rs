@@ -1,4 +1,4 @@
-//! Error messages of failed commands: for people, and as JSON for programs.
+//! Error messages of failed commands, as text for people and as JSON for programs.
 
 use std::io;
 
@@ -9,15 +9,17 @@ use serde_json::json;
 use crate::ending::{Ending, Failure, origin_of};
 use crate::output::json_line;
 
-/// Prints why a command failed, if `json` is true also as JSON. Returns how the program ends.
+/// Prints why a command failed, and also prints it as JSON if `json` is true. Returns the ending of
+/// the program.
 pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     let ending = Ending::of(error);
-    // The reader has closed the pipe, so an error text would not be seen.
+    // The reader has closed the pipe and would not see an error text.
     if is_broken_pipe(error) {
         return Ending::Done;
     }
     if json {
-        // The reader may have closed the pipe; the exit code is still set.
+        // The error is ignored, because the reader may have closed the pipe. The exit code is still
+        // set.
         let _ = json_line(&json!({ "error": Reported::of(error) }));
     }
     let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
@@ -32,7 +34,7 @@ pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     ending
 }
 
-/// The failure of a command in JSON, for programs.
+/// The failure of a command, in JSON.
 #[derive(Debug, Serialize)]
 struct Reported {
     /// The name of the exit code.
@@ -40,7 +42,7 @@ struct Reported {
     exit_code: u8,
     /// Who can act on an error of the driver.
     party: Option<String>,
-    /// The error's row in the book's chapter of errors.
+    /// Row of the error in the book's chapter on errors.
     entry: Option<&'static str>,
     text: String,
     advice: Option<String>,
@@ -75,7 +77,7 @@ impl Reported {
 
 /// Prints the error of invalid arguments as JSON.
 pub(crate) fn report_usage(text: &str) {
-    // As in `report`.
+    // The error is ignored, as in `report`.
     let _ = json_line(&json!({ "error": Reported::usage(text) }));
 }
 

@@ -47,12 +47,12 @@ pub(crate) struct Entry {
 pub(crate) struct RobotsFile {
     pub(crate) path: PathBuf,
     pub(crate) robots: BTreeMap<String, Entry>,
-    /// Text of the file, with the user's comments.
+    /// Text of the file, including the user's comments.
     document: DocumentMut,
 }
 
 impl RobotsFile {
-    /// Reads the file. A missing file has no robots.
+    /// Reads the file. If the file does not exist, there are no robots.
     pub(crate) fn read() -> anyhow::Result<Self> {
         let path = path()?;
         let text = match fs::read_to_string(&path) {
@@ -71,7 +71,7 @@ impl RobotsFile {
         })
     }
 
-    /// Adds a robot, or replaces the robot with this name.
+    /// Adds a robot. Replaces the robot that has this name, if any.
     pub(crate) fn insert(&mut self, name: &str, entry: &Entry) {
         let robot = self.document.entry(name);
         let robot = robot.or_insert_with(|| Item::Table(Table::new()));
@@ -90,7 +90,7 @@ impl RobotsFile {
             let mut new = Value::from(new);
             match fields.get_mut(key).and_then(Item::as_value_mut) {
                 Some(old) => {
-                    // Keeps the comment behind the old value.
+                    // The comment after the old value must be kept.
                     *new.decor_mut() = old.decor().clone();
                     *old = new;
                 }
@@ -140,7 +140,7 @@ fn parse(text: &str) -> Result<(BTreeMap<String, Entry>, DocumentMut), String> {
     Ok((robots, document))
 }
 
-/// Checks that a name is valid. It must not be an address or a field of a state.
+/// Checks that a name is valid. A name must be neither an address nor a field of a state.
 pub(crate) fn check_name(name: &str) -> Result<(), String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || !name.chars().all(is_word) {
@@ -156,7 +156,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the path of `robots.toml` in `franka` of the XDG configuration directory.
+/// Returns the path of `robots.toml` in the folder `franka` of the XDG configuration directory.
 fn path() -> anyhow::Result<PathBuf> {
     let absolute = |variable: &str| {
         let path = env::var_os(variable).map(PathBuf::from);
@@ -218,11 +218,11 @@ mod tests {
         assert_eq!(file.document.to_string(), format!("{changed}{third}"));
         assert!(file.remove("third") && !file.remove("third"));
         assert_eq!(file.document.to_string(), changed);
-        // An entry that no longer has a real-time option.
+        // This entry no longer has a real-time option.
         file.insert("right", &entry("172.16.0.3"));
         let changed = changed.replace("realtime = \"ignore\"\n", "");
         assert_eq!(file.document.to_string(), changed);
-        // A file with another style of TOML.
+        // This file uses a different style of TOML.
         let (robots, document) = parse("left = { address = 'a' } # short\n").unwrap();
         let mut file = RobotsFile {
             path: PathBuf::new(),

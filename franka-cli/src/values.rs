@@ -1,4 +1,4 @@
-//! Checked values of arguments.
+//! Arguments whose values are checked.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use franka_async::nalgebra::{Translation3, UnitQuaternion};
 use franka_async::{Pose, pose};
 use franka_sim::command_line::numbers;
 
-/// A pose from `x,y,z` (the orientation stays), `x,y,z,roll,pitch,yaw` (degrees), or
+/// A pose from `x,y,z` (with the present orientation), `x,y,z,roll,pitch,yaw` (degrees), or
 /// `x,y,z,qx,qy,qz,qw`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PartialPose {
@@ -15,7 +15,8 @@ pub(crate) struct PartialPose {
 }
 
 impl PartialPose {
-    /// Returns the complete pose, with the rotation of `now` if the text contained no rotation.
+    /// Returns the complete pose. If the text contained no rotation, the rotation is the rotation
+    /// of `now`.
     pub(crate) fn complete(self, now: &Pose) -> Pose {
         let translation = Translation3::from(self.position);
         Pose::from_parts(translation, self.rotation.unwrap_or(now.rotation))
@@ -62,7 +63,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     Ok(value)
 }
 
-/// Parses seconds, up to a day.
+/// Parses a duration in seconds, of at most one day.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = positive(text)?;
     match Duration::try_from_secs_f64(seconds) {

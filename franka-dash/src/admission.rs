@@ -1,4 +1,5 @@
-//! Admission of HTTP requests: one check for the files of a page, and one for all other requests.
+//! Admission of HTTP requests, with one check for the files of a page and one check for all other
+//! requests.
 
 use std::net::SocketAddr;
 use std::sync::Arc;

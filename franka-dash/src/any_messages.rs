@@ -1,5 +1,6 @@
-//! Passes arbitrary viewer messages to an authority. Every message is accepted or refused, and no
-//! message has a forbidden effect. A test and the fuzz target `dashboard` use this.
+//! Passes arbitrary viewer messages to an authority. The authority must accept or refuse every
+//! message, and no message may have a forbidden effect. A test and the fuzz target `dashboard` use
+//! this module.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -11,8 +12,9 @@ use crate::request::Request;
 
 /// Passes messages to an authority, and panics if a message has a forbidden effect.
 ///
-/// Each line of `bytes` is a message: a byte for the viewer, a byte for the milliseconds since the
-/// last message, and the text. The very first byte contains the server's permissions.
+/// Each line of `bytes` is a message. Its first byte is the viewer, its second byte is the time
+/// since the last message in milliseconds, and the rest is the text. The first byte of `bytes`
+/// contains the server's permissions.
 pub(crate) fn check(bytes: &[u8]) {
     let Some((permitted, bytes)) = bytes.split_first() else {
         return;

@@ -1,4 +1,4 @@
-//! The binary state frame, which the page draws 60 times per second.
+//! The binary state frame. The page draws it 60 times per second.
 //!
 //! Little-endian, unpadded, [`LENGTH`] bytes, version [`VERSION`]:
 //!
@@ -49,7 +49,7 @@ const FRAMES: [Frame; 9] = [
     Frame::EndEffector,
 ];
 
-/// Data of the server that a frame contains in addition to the robot's state.
+/// Data of the server that a frame contains, besides the robot's state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Server {
     /// Time of the server, `[ms]`.
@@ -115,9 +115,9 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
     frame
 }
 
-/// Returns the number of the law that computes the torques: 0 none, 1 target control of this
-/// driver, 2 torques of another client or motion, 3 the robot's joint impedance, 4 the robot's
-/// Cartesian impedance.
+/// Returns the number of the law that computes the torques: 0 for none, 1 for this driver's target
+/// control, 2 for torques of another client or motion, 3 for the robot's joint impedance, and 4 for
+/// the robot's Cartesian impedance.
 fn law(state: &RobotState, ours: bool) -> u32 {
     if !state.motion_running() {
         return 0;
@@ -145,7 +145,8 @@ pub(crate) fn poses(
     })
 }
 
-/// Returns the end effector of a state; the default if its pose is not a rigid transformation.
+/// Returns the end effector of a state. If its pose is not a rigid transformation, returns the
+/// default.
 pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
     let on_flange = pose::from_array(&state.F_T_EE).unwrap_or_default();
     EndEffector {
@@ -217,7 +218,7 @@ mod tests {
         at(448 + 7 * 28, wanted[(0, 3)]);
         assert_eq!(frame[700..704], [1, 2, 0, 0]);
         at(704, 0.03);
-        // Far from the ends of the range, the envelope is the nominal velocity.
+        // Far from the ends of the range, the envelope equals the nominal velocity limit.
         at(708, 0.2 / model.joint_limits().velocity[0]);
     }
 

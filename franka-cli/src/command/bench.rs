@@ -1,4 +1,4 @@
-//! `franka bench`: measurements of this computer, without a robot.
+//! `franka bench`: measures this computer, without a robot.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -86,7 +86,7 @@ impl Wake {
 
 impl Loop {
     async fn run(self) -> anyhow::Result<Ending> {
-        // The simulated robot waits for late commands of a busy computer, instead of stopping.
+        // The simulated robot waits for the late commands of a busy computer instead of stopping.
         let sim = Sim::fr3().wait_for_commands(PATIENCE);
         let DryRun {
             outcome,
@@ -114,7 +114,7 @@ impl Loop {
     }
 }
 
-/// Returns the text for the scheduling of a thread with this `SCHED_FIFO` priority.
+/// Returns a text for the scheduling of a thread that has this `SCHED_FIFO` priority.
 fn scheduling(priority: Option<i32>) -> String {
     match priority {
         Some(priority) => format!("SCHED_FIFO {priority}"),
@@ -122,18 +122,18 @@ fn scheduling(priority: Option<i32>) -> String {
     }
 }
 
-/// Result of a control loop against a simulated robot.
+/// Result of a control loop with a simulated robot.
 pub(super) struct DryRun {
     pub(super) outcome: Result<MotionReport, MotionError>,
     /// Statistics of the control loop.
     pub(super) stats: Arc<Stats>,
-    /// Rights that the operating system granted.
+    /// Rights that the operating system granted to the control thread.
     pub(super) granted: Arc<Granted>,
     /// Time at which each command left, with the `message_id` of the state that it answers.
     pub(super) left: Vec<(u64, Instant)>,
 }
 
-/// Runs the control loop for `length` against `sim` in this process.
+/// Runs the control loop in this process for `length`, with the simulated robot `sim`.
 pub(super) async fn dry_run(sim: Sim, length: Duration) -> anyhow::Result<DryRun> {
     let failed = |error: std::io::Error| Failure::new(Ending::Host, error.to_string());
     let sim = sim.start().await.map_err(failed)?;
@@ -158,7 +158,7 @@ pub(super) async fn dry_run(sim: Sim, length: Duration) -> anyhow::Result<DryRun
     })
 }
 
-/// Returns the times at which commands left, until the connection ends.
+/// Returns the times at which commands left. Blocks until the connection ends.
 fn departures(mut cycles: CycleReader) -> Vec<(u64, Instant)> {
     let mut left = Vec::new();
     while !cycles.has_ended() {

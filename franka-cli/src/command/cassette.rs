@@ -1,4 +1,4 @@
-//! `franka cassette`: recordings of a tap.
+//! `franka cassette`: summarises, plays and converts recordings of a tap.
 
 use std::fs::File;
 use std::io::Write as _;

@@ -1,4 +1,4 @@
-//! `franka collision`: the thresholds at which the robot detects a contact, and at which it stops.
+//! `franka collision`: sets the thresholds at which the robot detects a contact and stops.
 
 use clap::{Args, ValueEnum};
 use franka_async::settings::CollisionBehavior;

@@ -1,4 +1,4 @@
-//! `franka completions`: shell completion scripts.
+//! `franka completions`: prints shell completion scripts.
 
 use std::fmt::Write as _;
 
@@ -30,8 +30,8 @@ impl Completions {
     }
 }
 
-/// Returns the lines for fish that `clap_complete` omits: the values of positional arguments, and
-/// no file names where arguments are not files.
+/// Returns two kinds of fish lines that `clap_complete` omits: the values of positional arguments,
+/// and lines that suppress file names for arguments that are not files.
 fn positionals(program: &Command) -> Result<String, std::fmt::Error> {
     let mut lines = String::new();
     for command in program.get_subcommands() {

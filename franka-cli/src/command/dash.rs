@@ -1,4 +1,4 @@
-//! `franka dash`: the dashboard of a robot, in the browser.
+//! `franka dash`: shows the dashboard of robots in the browser.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::PathBuf;
@@ -71,7 +71,7 @@ impl Access {
         .map_err(no_token)
     }
 
-    /// Returns the fragment of the printed addresses. It does not repeat a token that the user
+    /// Returns the fragment of the printed addresses. The fragment omits a token that the user
     /// provided.
     fn fragment(&self, token: Option<&Token>) -> String {
         match token {
@@ -110,7 +110,7 @@ impl Dash {
             true => vec![None],
             false => self.robots.iter().cloned().map(Some).collect(),
         };
-        // A view-only page needs no real-time scheduling.
+        // A page that only shows the robot needs no real-time scheduling.
         let realtime = match self.allow_motion {
             true => self.realtime,
             false => Some(Realtime::Ignore),
@@ -131,7 +131,7 @@ impl Dash {
         }
         let mut robots = Vec::new();
         for place in places {
-            // The last second explains events.
+            // Events need the last second of cycles for their explanation.
             let robot = place.connect(realtime, |builder| {
                 builder.log_size(1000).accept_geometry_error(accepts)
             });
@@ -169,7 +169,7 @@ impl Dash {
             let (place, robot) = (place.to_string(), robot.clone());
             closed.spawn(async move { (place, robot.closed().await) });
         }
-        // If one robot is lost, the pages of the other robots continue, with their Stop buttons.
+        // If one robot is lost, the pages of the other robots and their Stop buttons still work.
         let all_closed = async {
             let mut last = String::new();
             while let Some(Ok((place, reason))) = closed.join_next().await {

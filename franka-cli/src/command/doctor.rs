@@ -1,4 +1,4 @@
-//! `franka doctor`: checks of this computer and the connection to a robot, before an arm moves.
+//! `franka doctor`: checks this computer and the connection to a robot before an arm moves.
 
 use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -100,8 +100,8 @@ impl Doctor {
             Some(place) => Some(resolve(&place.address, ROBOT).await?),
             None => None,
         };
-        // The robot is checked first: if another client is connected, checks that would disturb it
-        // are skipped.
+        // The robot is checked first. If another client is connected, the checks that would disturb
+        // this client are skipped.
         let selection = Selection::new(self.only.clone(), self.skip.clone());
         let mut found = Vec::new();
         let mut taken = false;
@@ -141,7 +141,7 @@ impl Doctor {
         })
     }
 
-    /// Returns the duration for which states are counted, and of the dry run.
+    /// Returns the duration of the dry run, which is also the time for which states are counted.
     fn length(&self) -> Duration {
         Duration::from_secs(match (self.quick, self.long) {
             (true, _) => 1,
@@ -150,8 +150,8 @@ impl Doctor {
         })
     }
 
-    /// Runs the checks of this computer, including the network card on the route to `robot`. If
-    /// `ping` is true, this sends echo requests to the robot.
+    /// Runs the checks of this computer and of the network card on the route to `robot`. If `ping`
+    /// is true, sends echo requests to the robot.
     async fn host(
         &self,
         robot: Option<IpAddr>,
@@ -182,7 +182,7 @@ impl Doctor {
         Ok(report)
     }
 
-    /// Runs the driver's control loop against a simulated robot in this process.
+    /// Runs the driver's control loop in this process with a simulated robot.
     async fn dry_run(&self) -> Option<Finding> {
         let (begin, length) = (Instant::now(), self.length());
         let sent = Arc::new(Mutex::new(Vec::with_capacity(1 << 17)));
@@ -203,7 +203,7 @@ impl Doctor {
                 };
                 Some(dry_run(&run, self.purpose.purpose()))
             }
-            // The report still contains the other checks.
+            // The report contains the results of the other checks.
             Err(error) => {
                 say(&format!(
                     "the dry run of the control loop failed to start: {error:#}"
@@ -214,7 +214,7 @@ impl Doctor {
     }
 
     /// Returns the findings about the robot's address and its states. The flag is true if another
-    /// client is connected.
+    /// client is connected to the robot.
     async fn robot(
         &self,
         place: &Place,
@@ -222,8 +222,8 @@ impl Doctor {
     ) -> anyhow::Result<(Vec<Finding>, bool)> {
         let mut found = Vec::new();
         let purpose = self.purpose.purpose();
-        // Desk is asked before the connection is made, because Desk knows the reason for a
-        // refusal.
+        // The program asks Desk before it connects, because Desk knows why the robot may refuse the
+        // connection.
         #[cfg(feature = "desk")]
         found.extend(self.desk(address).await?);
         let connected = place
@@ -241,7 +241,7 @@ impl Doctor {
                 found.extend(arrivals(&states?, purpose));
                 (answered, Some(true), Some(state))
             }
-            // The report still contains the other checks.
+            // The report contains the results of the other checks.
             Err((seen, failure)) => {
                 say(&format!("the robot's states were not checked: {failure}"));
                 let answered = match seen {
@@ -268,8 +268,8 @@ impl Doctor {
         Ok((found, taken))
     }
 
-    /// Returns the finding about Desk, at the given address, or otherwise at the robot's address
-    /// with the usual port.
+    /// Returns the finding about Desk. Uses the given address, or the robot's address with the
+    /// usual port.
     #[cfg(feature = "desk")]
     async fn desk(&self, robot: SocketAddr) -> anyhow::Result<Option<Finding>> {
         let desk = match &self.desk {
@@ -283,9 +283,9 @@ impl Doctor {
 }
 
 /// Returns a simulated robot that sends its states as punctually as this computer can, and that
-/// ends a motion if too many commands are late. It records in `sent` when it has sent each state.
+/// ends a motion if too many commands are late. `sent` receives the time of each state.
 fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
-    // This runs on the thread of the robot. If the request is refused, the thread keeps its
+    // This code runs on the robot's thread. If the system refuses the request, the thread keeps its
     // scheduling.
     let mut scheduling = Some(Scheduling {
         realtime: franka_async::Realtime::Ignore,
@@ -302,7 +302,7 @@ fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     })
 }
 
-/// Returns the states that arrive within this time.
+/// Returns the states that arrive within `length`.
 async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Received>> {
     let begin = Instant::now();
     let mut reader = robot.cycles(CycleFeed::<()>::DEFAULT_CAPACITY)?;

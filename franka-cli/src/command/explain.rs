@@ -1,4 +1,4 @@
-//! `franka explain`: the reason for the end of a motion, from its recording or a log of libfranka.
+//! `franka explain`: explains why a motion ended, from a recording or a log of libfranka.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -69,7 +69,7 @@ pub(crate) enum Source {
     Log(ControlLogFile),
 }
 
-/// An open recording, with one of its robots.
+/// An open recording, and the name of one of its robots.
 pub(crate) struct Opened {
     pub(super) recording: Recording,
     /// Name of the robot.
@@ -79,7 +79,7 @@ pub(crate) struct Opened {
 }
 
 impl Recorded {
-    /// Opens the file. The content of the file determines its kind.
+    /// Opens the file. The content of the file determines whether it is a recording or a log.
     pub(super) fn open_any(&self) -> anyhow::Result<Source> {
         match Recording::open(&self.file) {
             Ok(recording) => Ok(Source::Recording(Box::new(self.of_recording(recording)?))),
@@ -179,7 +179,7 @@ impl Explain {
     fn explain_log(&self, mut file: ControlLogFile) -> anyhow::Result<Ending> {
         let model = self.kind.map(Kind::model);
         let model = model.or_else(|| file.kind().map(Model::of));
-        // Without a table, no number in the text depends on the robot.
+        // Without a table, no number in the text depends on the kind of robot.
         if model.is_none() && !file.log.is_empty() {
             let path = self.recorded.file.display();
             let message = format!("{path} does not name the kind of the robot, expected --kind");

@@ -1,4 +1,4 @@
-//! `franka export`: recordings as tables, and as datasets for training.
+//! `franka export`: exports recordings as tables, and as datasets for training.
 
 use std::convert::Infallible;
 use std::error::Error;
@@ -126,7 +126,7 @@ impl Export {
         })
     }
 
-    /// Writes the requested tables with the selected columns. Returns the number of rows.
+    /// Writes the requested tables with the selected columns, and returns the number of rows.
     fn write_tables<E, I>(
         &self,
         cycles: impl Fn() -> I,
@@ -161,7 +161,7 @@ impl Export {
         Ok(rows)
     }
 
-    /// Adds the selected episodes to a dataset. Returns the numbers of episodes and frames.
+    /// Adds the selected episodes to a dataset, and returns the numbers of episodes and frames.
     #[cfg(feature = "export")]
     fn add_to_dataset(
         &self,
@@ -215,7 +215,7 @@ impl Export {
     }
 }
 
-/// Ends an export on Ctrl-C. Incomplete output is then deleted, as after any other error.
+/// Ends an export on Ctrl-C. The incomplete output is then deleted, as after any other error.
 struct Stop(Arc<OnceLock<Interruption>>);
 
 impl Stop {
@@ -233,7 +233,7 @@ impl Stop {
         self.0.get().copied()
     }
 
-    /// Returns the items. Once the export must end, the next item is an error.
+    /// Returns the items. After Ctrl-C, the next item is an error.
     fn until_asked<T, E: Error + Send + Sync + 'static>(
         &self,
         items: impl Iterator<Item = Result<T, E>>,

@@ -1,4 +1,4 @@
-//! `franka gripper`: the Franka Hand.
+//! `franka gripper`: controls the Franka Hand.
 
 use std::future::Future;
 
@@ -166,7 +166,7 @@ impl Fingers {
         )
     }
 
-    /// Asks, moves the fingers, and reports the result. Ctrl-C stops the fingers.
+    /// Asks for consent, moves the fingers, and reports the result. Ctrl-C stops the fingers.
     async fn act(
         &self,
         hand: &Hand,
@@ -210,15 +210,16 @@ async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     )
 }
 
-/// Moves the fingers. Returns false if they did not arrive, for example because of an obstacle. The
-/// Hand itself would continue to try for minutes.
+/// Moves the fingers. Returns false if the fingers did not reach the width, for example because of
+/// an obstacle. The Hand itself would try for minutes.
 async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError> {
     let stuck = async {
         let mut before = hand.state();
         loop {
             tokio::time::sleep(LOOK).await;
             let now = hand.state();
-            // Uses the Hand's clock. A Hand that does not report its state may be moving.
+            // The time comes from the Hand's clock, because a Hand that does not report its state
+            // may be moving.
             if (now.width - before.width).abs() >= STILL {
                 before = now;
             } else if now.message_id.wrapping_sub(before.message_id) >= STUCK_MS {

@@ -1,4 +1,4 @@
-//! `franka guide`: guiding the arm by hand.
+//! `franka guide`: lets a person guide the arm by hand.
 
 use std::time::Duration;
 
@@ -96,7 +96,7 @@ impl Guide {
             self.free.text()
         );
         moving.ask("guide", &what).await?;
-        // The handler is installed before the session begins, so that Ctrl-C always ends the
+        // The handler must be installed before the session begins, so that Ctrl-C always ends the
         // session.
         let interrupt = interrupted()?;
         let guided = async {
@@ -120,7 +120,7 @@ impl Guide {
                 arm.at_rest().await?;
                 arm.disengage().await
             };
-            // If a person continues to push, the arm does not stop.
+            // The arm does not stop as long as a person pushes it.
             tokio::select! {
                 held = timeout(PATIENCE, held) => match held {
                     Ok(held) => Ok(held.map(drop)?),
@@ -145,7 +145,7 @@ impl Guide {
 /// Reason why guiding failed.
 enum Guiding {
     Failed(MotionError),
-    /// The arm did not stop at the end, because a person still moved it.
+    /// The arm did not come to a stop at the end, because a person was still moving it.
     NotAtRest(Option<Interruption>),
     Host(std::io::Error),
 }

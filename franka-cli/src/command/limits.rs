@@ -1,4 +1,4 @@
-//! `franka limits`: the limits of joints and hand.
+//! `franka limits`: prints the limits of the joints and the hand.
 
 use std::fmt::Write as _;
 
@@ -34,7 +34,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// Returns the model with the constants of this kind.
+    /// Returns the constant model of this kind of robot.
     pub(crate) fn model(self) -> &'static Model {
         Model::of(match self {
             Self::Fr3 => RobotKind::Fr3,

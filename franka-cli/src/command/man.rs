@@ -1,4 +1,4 @@
-//! `franka man`: man pages, one for each command.
+//! `franka man`: writes one man page per command.
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The commands, one file each.
+//! The commands, in one file each.
 
 mod bench;
 mod cassette;
@@ -89,7 +89,7 @@ pub(crate) enum Command {
 }
 
 impl Command {
-    /// True if the command sets up its own logging.
+    /// Returns true if the command sets up its own logging.
     pub(crate) fn logs(&self) -> bool {
         matches!(self, Self::Sim(_) | Self::Tap(_))
     }
@@ -127,7 +127,7 @@ impl Command {
                 Self::Man(man) => man.run(),
             }
         });
-        // The connection to the robot is closed, so remaining tasks no longer concern it.
+        // The connection to the robot is closed, so the remaining tasks are no longer needed.
         runtime.shutdown_background();
         outcome
     }

@@ -1,4 +1,4 @@
-//! `franka model`: kinematics and dynamics of the arm.
+//! `franka model`: computes kinematics and dynamics of the arm.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Subcommand};
@@ -93,7 +93,7 @@ fn frame() -> impl TypedValueParser<Value = Frame> {
     })
 }
 
-/// Inputs of the computation.
+/// Inputs of a computation.
 struct Known {
     model: ArmModel,
     q: JointVector,
@@ -190,8 +190,8 @@ fn print_pose(pose: &Pose, output: Output) -> anyhow::Result<Ending> {
     })
 }
 
-/// Prints a matrix with a column for each joint. `names` are the names of the rows, whose index
-/// determines the unit.
+/// Prints a matrix with one column per joint. `names` are the names of the rows. The index of a row
+/// determines its unit.
 fn print_rows<'a, S: Storage<f64, U1, U7> + 'a>(
     what: &str,
     names: &[&str],

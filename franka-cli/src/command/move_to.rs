@@ -1,4 +1,4 @@
-//! `franka move`: motions to joint positions, to a pose, or by an offset.
+//! `franka move`: moves the arm to joint positions, to a pose, or by an offset.
 
 use clap::Args;
 use franka_async::goal::Destination;

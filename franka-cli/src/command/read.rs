@@ -1,4 +1,4 @@
-//! `franka read`: fields of the state by their names.
+//! `franka read`: prints fields of the state by name.
 
 use clap::Args;
 use serde_json::{Map, Value, json};

@@ -1,4 +1,4 @@
-//! `franka record`: a recording of a robot.
+//! `franka record`: records a robot.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `franka recover`: recovery from a reflex.
+//! `franka recover`: recovers the robot from a reflex.
 
 use std::sync::Arc;
 use std::time::Duration;

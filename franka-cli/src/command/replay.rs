@@ -1,4 +1,4 @@
-//! `franka replay`: repetition of a recorded motion.
+//! `franka replay`: repeats a recorded motion.
 
 use clap::{Args, ValueEnum};
 use franka_async::recording::{Sample, Samples};

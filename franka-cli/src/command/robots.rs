@@ -1,4 +1,4 @@
-//! `franka robots`: the file of named robots.
+//! `franka robots`: manages the names of robots.
 
 use clap::Subcommand;
 use franka_async::connection::Endpoint;

@@ -1,4 +1,4 @@
-//! `franka sim`: the simulator.
+//! `franka sim`: runs the simulator.
 
 use std::io;
 use std::net::SocketAddr;
@@ -37,7 +37,7 @@ pub(crate) struct Sim {
 }
 
 impl Sim {
-    /// Simulates until Ctrl-C.
+    /// Runs the simulator until Ctrl-C.
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let mut options = Options::default();
         if self.dash.is_some()

@@ -1,4 +1,4 @@
-//! `franka state`: the newest state, once or repeatedly.
+//! `franka state`: shows the newest state, once or repeatedly.
 
 use std::io::{self, IsTerminal, Write};
 use std::pin::pin;
@@ -48,7 +48,7 @@ impl State {
         let outcome = if self.watch {
             self.watch(&robot, &place).await
         } else {
-            // Waits long enough for statistics of the link.
+            // The statistics of the link need this time.
             tokio::time::sleep(LOOK).await;
             let value = view::value(&robot, &place);
             self.output.print(&value, || view::text(&robot, &place))
@@ -70,7 +70,7 @@ impl State {
                 _ = &mut interrupt => return Ok(Ending::Done),
                 _ = clock.tick() => {}
             }
-            // Waits for a state after the last update, so that a lost link is detected.
+            // A state that arrives after the last update shows that the link works.
             let newest = tokio::time::timeout(SILENCE, states.changed()).await;
             let lost = match newest {
                 Ok(Ok(_)) => None,
@@ -89,7 +89,7 @@ impl State {
     }
 }
 
-/// The terminal's alternate screen, until it is dropped.
+/// The terminal's alternate screen. Dropping this value restores the terminal.
 struct Screen {
     is_coloured: bool,
 }
@@ -97,7 +97,7 @@ struct Screen {
 impl Screen {
     fn open() -> io::Result<Self> {
         let choice = anstream::AutoStream::choice(&io::stdout());
-        // Alternate screen, no cursor, and long lines are cut.
+        // These codes select the alternate screen, hide the cursor, and cut long lines.
         let mut out = io::stdout().lock();
         out.write_all(b"\x1b[?1049h\x1b[?25l\x1b[?7l")?;
         out.flush()?;
@@ -106,9 +106,9 @@ impl Screen {
         })
     }
 
-    /// Replaces the displayed page, without a blank screen in between.
+    /// Replaces the displayed page. The screen is not blank in between.
     fn draw(&self, page: &str) -> io::Result<()> {
-        // Another line would make the terminal scroll.
+        // One more line would make the terminal scroll.
         let (rows, _) = Term::stdout().size();
         let lines = page.lines().chain(["", "Ctrl-C ends."]);
         let page: Vec<&str> = lines.take(usize::from(rows)).collect();
@@ -117,7 +117,7 @@ impl Screen {
             true => page,
             false => strip_str(&page).to_string(),
         };
-        // Each line is cleared after its text, and so is the rest of the screen.
+        // The codes clear the rest of each line, and the rest of the screen.
         let lines = page.replace('\n', "\x1b[K\r\n");
         let mut out = io::stdout().lock();
         write!(out, "\x1b[H{lines}\x1b[K\x1b[J")?;
@@ -127,7 +127,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // A closed terminal needs no restoration.
+        // An error means that the terminal is closed, so it needs no restoration.
         let mut out = io::stdout().lock();
         let _ = out.write_all(b"\x1b[?7h\x1b[?25h\x1b[?1049l");
         let _ = out.flush();

@@ -23,7 +23,7 @@ pub(crate) struct Stop {
 impl Stop {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let (robot, place) = self.which.connect().await?;
-        // A motion of an earlier client has already ended with that client's connection.
+        // A motion of an earlier client has ended together with that client's connection.
         let stopped = robot.stop().await;
         let state = robot.state();
         robot.shutdown().await;

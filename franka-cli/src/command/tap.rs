@@ -1,4 +1,4 @@
-//! `franka tap`: the traffic between clients and a robot, byte for byte.
+//! `franka tap`: records the traffic between clients and a robot.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ pub(crate) struct Listening {
 }
 
 impl Listening {
-    /// Returns the address at which clients of a device connect.
+    /// Returns the address at which clients connect to a device.
     pub(super) fn at(self, device: Device) -> SocketAddr {
         let port = match self.port {
             0 => 0,

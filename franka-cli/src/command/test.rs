@@ -1,4 +1,4 @@
-//! `franka test communication`: tests whether a connection is suitable for control at 1 kHz.
+//! `franka test communication`: tests whether a connection is good enough for control at 1 kHz.
 
 use std::time::Duration;
 
@@ -116,7 +116,7 @@ impl Communication {
             one.drive(nothing(one, self.seconds), length),
             other.drive(nothing(other, self.seconds), None)
         );
-        // If one test fails or is interrupted, the other test ends, too.
+        // If one test fails or is interrupted, the other test must end, too.
         if both.is_err() {
             let stopped = tokio::join!(one.robot.stop(), other.robot.stop());
             if let (Err(error), _) | (_, Err(error)) = stopped {
@@ -131,7 +131,7 @@ impl Communication {
     }
 }
 
-/// Commands zero torques for this time.
+/// Commands zero torques for `seconds`.
 async fn nothing(moving: &Moving, seconds: Duration) -> Result<MotionReport, MotionError> {
     let mut time = Duration::ZERO;
     let control = moving.robot.control_torques(move |_, step| {
@@ -163,7 +163,7 @@ pub(super) fn quantiles(times: &Histogram) -> Value {
     json!({ "p50": at(0.5), "p99": at(0.99), "p999": at(0.999), "max": at(1.0) })
 }
 
-/// Returns the quantiles as text.
+/// Returns quantiles as text.
 pub(super) fn times(quantiles: &Value) -> String {
     let at = |quantile: &str| quantiles[quantile].as_u64().unwrap_or(0);
     let [p50, p99, p999, max] = ["p50", "p99", "p999", "max"].map(at);
@@ -189,6 +189,7 @@ pub(super) fn table(figures: &Value) -> String {
     )
 }
 
-/// Least mean success rate that counts as good; the next constant is for usable.
+/// Smallest mean success rate that counts as good. The next constant is the rate that counts as
+/// usable.
 const GOOD_RATE: f64 = 0.95;
 const USABLE_RATE: f64 = 0.9;

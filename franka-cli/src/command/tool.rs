@@ -1,4 +1,4 @@
-//! `franka tool`: the load at the flange.
+//! `franka tool`: declares or measures the load at the flange.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -100,7 +100,7 @@ impl Set {
             anyhow::Ok(())
         };
         let outcome = outcome.await;
-        // The states show the change some cycles later.
+        // The states show the change a few cycles later.
         tokio::time::sleep(std::time::Duration::from_millis(50)).await;
         let state = robot.state();
         robot.shutdown().await;

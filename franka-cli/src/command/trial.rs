@@ -1,4 +1,4 @@
-//! `franka trial`: the first motions of an arm, small and slow, with checks and a report.
+//! `franka trial`: makes the first motions of an arm, small and slow, with checks and a report.
 
 mod limits;
 mod look;
@@ -44,17 +44,17 @@ pub(crate) struct Trial {
 
 impl Trial {
     pub(super) async fn run(mut self) -> anyhow::Result<Ending> {
-        // From here on every signal ends the trial properly, also between two steps.
+        // After this line, every signal ends the trial in the regular way, also between two steps.
         let mut interrupt = pin!(interrupted()?);
         let recording = self.recording()?;
         let mut file = NewFile::create(&self.report).map_err(of_file)?;
         let options = RecordOptions {
-            // Recordings of trials are shared, so the host is not named.
+            // Users share recordings of trials, so the recording does not name the host.
             metadata: BTreeMap::from([("host".to_owned(), String::new())]),
             ..RecordOptions::default()
         };
-        // A signal during this call is handled afterwards, so that a report exists in addition to
-        // the recording.
+        // A signal during this call is handled after the call, so that there is a report in
+        // addition to the recording.
         let moving = self.mover.how.begin_with(&self.mover.which, options);
         let moving = moving.await?;
         let secrets = secrets(&moving);
@@ -84,7 +84,7 @@ impl Trial {
         output.print(&report, || report.summary())
     }
 
-    /// Sets the name of the recording, if the user gave no name. Returns the name without its
+    /// Sets the name of the recording if the user gave no name. Returns the name without its
     /// folder.
     fn recording(&mut self) -> anyhow::Result<String> {
         let beside = self.report.with_extension("mcap");
@@ -109,7 +109,7 @@ impl Trial {
     }
 }
 
-/// Returns the texts that a report must not contain, for example addresses.
+/// Returns texts that must not appear in a report, for example addresses.
 fn secrets(moving: &Moving) -> Vec<String> {
     let address = moving.robot.address();
     vec![
@@ -120,8 +120,8 @@ fn secrets(moving: &Moving) -> Vec<String> {
     ]
 }
 
-/// Speed, as a factor of the default: 75 mm/s at most.
+/// Speed as a factor of the default. The result is at most 75 mm/s.
 const PACE: f64 = 0.25;
 
-/// Largest force of the hand, `[N]`.
+/// Largest force at the hand, `[N]`.
 const FORCE: f64 = 15.0;

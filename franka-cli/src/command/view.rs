@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::connection::{Place, kind_name};
 use crate::output::{BAD, BOLD, DIM, GOOD, WARN, unsigned_zero};
 
-/// Returns the newest state with all other known data, as JSON.
+/// Returns the newest state and all other known data as JSON.
 pub(super) fn value(robot: &Robot, place: &Place) -> Value {
     let stats = robot.stats();
     let microseconds = |quantile| {
@@ -112,7 +112,7 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
     }
 }
 
-/// Returns a bar with a mark at a share of its length.
+/// Returns a bar that has a mark at `share` of its length.
 fn bar(share: f64, style: Style) -> String {
     let at = (share * (BAR - 1) as f64).round() as usize;
     let (before, after) = ("─".repeat(at), "─".repeat(BAR - 1 - at));

@@ -1,4 +1,4 @@
-//! Comparison of the robot's joint limits with the known limits.
+//! Compares the robot's joint limits with known limits.
 
 use franka_async::model::limits::JointLimits;
 use franka_async::model::{JointVector, RobotKind};
@@ -17,7 +17,7 @@ fn tables(kind: RobotKind) -> Vec<Table> {
     }
 }
 
-/// Returns the closest table, and the largest difference from this table, if any.
+/// Returns the closest table, and the largest difference from this table, if there is any.
 pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, Option<String>) {
     let compared = tables(kind).into_iter().map(|(name, table)| {
         let most = differences(served, table)
@@ -31,7 +31,7 @@ pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, O
     (name, most.map(|(_, text)| text))
 }
 
-/// Returns the difference of each limit, with a text that describes it.
+/// Returns the difference for each limit, with a text that describes the difference.
 fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item = (f64, String)> {
     let (of_served, of_table) = (columns(served), columns(table));
     of_served
@@ -49,7 +49,7 @@ fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item 
         })
 }
 
-/// Returns those limits that robot descriptions contain.
+/// Returns the limits that a robot description contains.
 pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, JointVector); 7] {
     let (deceleration, offset) = match &limits.envelope {
         Some(envelope) => (envelope.deceleration, envelope.offset),
@@ -66,7 +66,7 @@ pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, Joi
     ]
 }
 
-/// Largest difference that comes from the limited number of digits in a text.
+/// Largest difference that rounding in a text can cause.
 const SAME: f64 = 1e-4;
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! Observation of an arm for some time: its mean pose, fields of its states that are zero, and how
-//! well the states match the model.
+//! Observes an arm for some time. The result is the mean pose, the fields of the states that are
+//! always zero, and how well the states match the model.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 use franka_async::{Pose, Robot, pose};
 
-/// Mean of some states.
+/// Mean of several states.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mean {
     count: u32,
@@ -30,7 +30,7 @@ impl Mean {
         }
     }
 
-    /// Returns the mean pose that the robot reported, if it is a valid pose.
+    /// Returns the mean of the reported poses, if it is a valid pose.
     pub(super) fn pose(&self) -> Option<Pose> {
         let count = f64::from(self.count);
         pose::from_array(&self.pose.map(|sum| sum / count)).ok()
@@ -43,35 +43,35 @@ impl Mean {
     }
 }
 
-/// Returns distance `[m]` and angle `[rad]` between two poses.
+/// Returns the distance, `[m]`, and the angle, `[rad]`, between two poses.
 pub(super) fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
     let way = one.translation.vector - other.translation.vector;
     (way.norm(), one.rotation.angle_to(&other.rotation))
 }
 
-/// Fields that some robots leave at zero.
+/// Fields that some robots do not fill in.
 pub(super) const SPARSE: [&str; 4] = ["O_T_EE_c", "elbow_c", "tau_J_d", "O_ddP_O"];
 
-/// Statistics of the states of an observation.
+/// Statistics of the states in an observation.
 #[derive(Debug)]
 pub(super) struct Look {
     /// `message_id` of the first and the last state.
     ids: Option<(u64, u64)>,
     /// Number of received states.
     pub(super) states: u64,
-    /// Mean over the third second, after initial transients.
+    /// Mean over the third second. Initial transients have then ended.
     pub(super) begin: Mean,
     /// Mean over the last second.
     pub(super) end: Mean,
-    /// For each field of [`SPARSE`], true if it was zero in every state.
+    /// For each field of [`SPARSE`]: true if the field was zero in every state.
     pub(super) zero: [bool; SPARSE.len()],
-    /// For each state, the distances between the reported pose and the pose of each model of
-    /// [`sets`], `[m]`.
+    /// Distances between the reported pose and the pose of each model in [`sets`], one array per
+    /// state, `[m]`.
     gaps: Vec<[f64; SETS]>,
 }
 
 impl Look {
-    /// Creates statistics without states.
+    /// Creates empty statistics.
     fn new() -> Self {
         Self {
             ids: None,
@@ -122,7 +122,7 @@ impl Look {
         for (zero, field) in self.zero.iter_mut().zip(sparse) {
             *zero &= field.iter().all(|value| *value == 0.0);
         }
-        // Every tenth state is enough for a median, and cheap to compute.
+        // Every tenth state is enough for a median, and keeps the computation cheap.
         if self.states % 10 == 1 {
             self.gaps
                 .push(std::array::from_fn(|i| gap(&sets[i], state)));
@@ -136,8 +136,8 @@ impl Look {
         (last - first + 1).saturating_sub(self.states)
     }
 
-    /// Returns each set of lengths with the median distance between reported poses and the model's
-    /// poses, `[m]`. The first set belongs to `model`.
+    /// Returns each set of lengths, with the median distance between the reported poses and the
+    /// model's poses, `[m]`. The first set belongs to `model`.
     pub(super) fn geometry(&self, model: &Model) -> [(Lengths, f64); SETS] {
         let lengths = sets(model).map(|model| *model.lengths());
         std::array::from_fn(|i| {
@@ -157,7 +157,7 @@ pub(super) fn described(robot: &Robot) -> Model {
     robot.model().clone().with_lengths(described)
 }
 
-/// Returns the model unchanged, and with each known set of lengths.
+/// Returns the given model, and copies of it with each known set of lengths.
 fn sets(model: &Model) -> [Model; SETS] {
     std::array::from_fn(|i| match i {
         0 => model.clone(),
@@ -165,7 +165,7 @@ fn sets(model: &Model) -> [Model; SETS] {
     })
 }
 
-/// Returns the distance of a state's reported pose from the model's pose, `[m]`.
+/// Returns the distance between a state's reported pose and the model's pose, `[m]`.
 fn gap(model: &Model, state: &RobotState) -> f64 {
     let ee = EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K);
     let pose = model.pose(Frame::EndEffector, &state.q.into(), &ee);
@@ -175,7 +175,7 @@ fn gap(model: &Model, state: &RobotState) -> f64 {
 
 const SETS: usize = 1 + Lengths::KNOWN.len();
 
-/// Time after which the measurement of a drift begins, `[ms]`.
+/// Time at which the measurement of the drift begins, `[ms]`.
 const SETTLED: u64 = 2000;
 
 /// One second, `[ms]`.
@@ -188,8 +188,8 @@ mod tests {
 
     use super::*;
 
-    /// Returns an observation of an arm with these lengths that drifts upwards, in metres per
-    /// second.
+    /// Returns an observation of an arm that has these lengths and drifts upwards at `creep` metres
+    /// per second.
     fn look(lengths: Lengths, creep: f64) -> Look {
         let arm = Model::fr3().clone().with_lengths(lengths);
         let pose = arm.pose(Frame::EndEffector, &READY, &EndEffector::default());

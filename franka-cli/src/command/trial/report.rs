@@ -1,4 +1,4 @@
-//! The result of a trial, as a text for people and programs.
+//! The result of a trial, as a text that people and programs can read.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::connection::kind_name;
 use crate::ending::{Ending, Failure};
 use crate::output::{BAD, GOOD, WARN, say};
 
-/// Findings of a trial, in their order.
+/// Findings of a trial, in order.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     driver: &'static str,
@@ -25,7 +25,7 @@ pub(super) struct Report {
     force_cap: f64,
     recording: String,
     complete: bool,
-    /// Reason why the report is incomplete, if it is.
+    /// Reason why the report is incomplete; `None` if it is complete.
     ended: Option<Ended>,
     pub(super) steps: Vec<Step>,
 }
@@ -37,7 +37,7 @@ pub(super) struct Step {
     findings: Vec<Finding>,
 }
 
-/// A check of the trial, with its numbers.
+/// A check of the trial and its numbers.
 #[derive(Debug, Serialize)]
 pub(super) struct Finding {
     check: &'static str,
@@ -46,24 +46,24 @@ pub(super) struct Finding {
     figures: Value,
 }
 
-/// Result of the comparison of a finding with its expected value.
+/// Result of a check: whether a finding matches its expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Verdict {
     Good,
-    /// The finding is noticeable, but no reason to stop.
+    /// The finding is unusual, but no reason to stop.
     Look,
     /// The finding ends the trial.
     Bad,
 }
 
 impl Verdict {
-    /// Returns good up to the first limit, and noticeable up to the second limit.
+    /// Returns good up to the first limit, and unusual up to the second limit.
     pub(super) fn of(value: f64, [good, bad]: [f64; 2]) -> Self {
         match value {
             value if value <= good => Self::Good,
             value if value <= bad => Self::Look,
-            // This includes NaN.
+            // NaN also matches here.
             _ => Self::Bad,
         }
     }
@@ -77,7 +77,7 @@ impl Verdict {
     }
 }
 
-/// Early end of a trial.
+/// The early end of a trial.
 #[derive(Debug, Serialize)]
 struct Ended {
     step: &'static str,
@@ -111,10 +111,10 @@ impl Report {
         self.steps.push(Step { name, findings });
     }
 
-    /// Records a finding of this step, and prints it.
+    /// Records and prints a finding of this step.
     ///
     /// # Errors
-    /// A bad finding ends the trial.
+    /// Returns an error, which ends the trial, if the finding is bad.
     pub(super) fn note(
         &mut self,
         check: &'static str,
@@ -127,7 +127,7 @@ impl Report {
             Verdict::Look => WARN,
             Verdict::Bad => BAD,
         };
-        // One part per line, because a terminal has 80 columns.
+        // Each part is on its own line, because a terminal has 80 columns.
         let lines = text.replace("; ", &format!(";\n{:20}", ""));
         let said = verdict.text();
         say(&format!(
@@ -148,7 +148,7 @@ impl Report {
         }
     }
 
-    /// Records the end of the trial, and removes the texts of `secrets`.
+    /// Records how the trial ended, and removes the texts in `secrets`.
     pub(super) fn end(&mut self, outcome: &anyhow::Result<()>, secrets: &[String]) {
         self.complete = outcome.is_ok();
         self.ended = outcome.as_ref().err().map(|error| {
@@ -177,7 +177,7 @@ impl Report {
         }
     }
 
-    /// Returns the report as Markdown, with all data as JSON at the end.
+    /// Returns the report as Markdown. All data is at the end, as JSON.
     pub(super) fn markdown(&self) -> serde_json::Result<String> {
         let priority = match self.priority {
             Some(priority) => format!("real-time scheduling, priority {priority}"),
@@ -231,15 +231,15 @@ impl Report {
     }
 }
 
-/// Returns a text escaped for a cell of a table.
+/// Returns a text that is escaped for a table cell.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-/// Returns the text, with placeholders for all `secrets`.
+/// Returns the text with a placeholder for each of `secrets`.
 fn without(text: &str, secrets: &[String]) -> String {
     let mut secrets: Vec<_> = secrets.iter().filter(|it| !it.is_empty()).collect();
-    // One text may be a part of another.
+    // A secret may be a part of another secret.
     secrets.sort_by_key(|it| std::cmp::Reverse(it.len()));
     secrets.iter().fold(text.to_owned(), |text, secret| {
         text.replace(*secret, "ROBOT")

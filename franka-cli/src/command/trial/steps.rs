@@ -19,7 +19,7 @@ use super::{FORCE, PACE, limits};
 use crate::motion::Moving;
 use crate::output::say;
 
-/// Performs all steps. The report contains the findings, even if a step fails.
+/// Performs all steps. The report contains the findings even if a step fails.
 pub(super) async fn all(moving: &Moving, report: &mut Report) -> anyhow::Result<()> {
     let mut steps = Steps { moving, report };
     let tare = steps.look().await?;
@@ -37,7 +37,7 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Observes the arm at rest, under the robot's own controller. The arm does not move.
+    /// Observes the arm at rest under the robot's own controller. The arm does not move.
     async fn look(&mut self) -> anyhow::Result<Option<WrenchTare>> {
         self.name("at rest");
         let robot = &self.moving.robot;
@@ -113,7 +113,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Lists fields that some robots leave at zero, which is not an error.
+    /// Lists the fields that this robot does not fill in. Such fields are not an error.
     fn zeros(&mut self, look: &Look) -> anyhow::Result<()> {
         let zeros = SPARSE.iter().zip(look.zero);
         let zeros: Vec<_> = zeros
@@ -128,7 +128,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Measures the drift of the reported pose from its third second to its last.
+    /// Measures how far the reported pose drifts from the third to the last second.
     fn drift(&mut self, look: &Look) -> anyhow::Result<()> {
         let poses = (look.begin.pose(), look.end.pose());
         let (Some(begin), Some(end)) = poses else {
@@ -144,7 +144,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Measures the robot's estimated wrench while nothing touches the arm.
+    /// Measures the wrench that the robot estimates while nothing touches the arm.
     async fn tare(&mut self) -> anyhow::Result<Option<WrenchTare>> {
         let tare = match self.moving.robot.tare().await {
             Ok(tare) => tare,
@@ -247,7 +247,7 @@ impl Steps<'_> {
         let there = self.turned(&start);
         let degrees = (there[6] - start.q[6]).to_degrees();
         let model = self.moving.robot.model();
-        // A fifth of the limits is the default.
+        // The default speed is a fifth of the limits.
         let pace = (0.2 * PACE * model.joint_limits().velocity[6]).to_degrees();
         let what = format!(
             "Joint 7 turns the hand by {degrees:+.0} deg and back.\n\
@@ -272,7 +272,7 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// Follows a stream of targets that rise and sink.
+    /// Follows a stream of targets that rise and fall.
     async fn stream(&mut self) -> anyhow::Result<()> {
         let (height, fastest) = (2e3 * WAVE.height, 1e3 * WAVE.velocity(0.25 * WAVE.period));
         let what = format!(
@@ -285,7 +285,7 @@ impl Steps<'_> {
         let arm = self.begin("a stream", &what).await?;
         let (robot, here) = (&self.moving.robot, self.moving.robot.pose());
         let (targets, followed) = watch::channel((here, Twist::zeros()));
-        // Measures time by the robot's clock, because a simulator may run faster than the wall
+        // The robot's clock measures the time, because a simulator may run faster than the wall
         // clock.
         let streaming = async move {
             let (mut first, mut sent, mut behind) = (None, 0, Vec::new());
@@ -301,7 +301,7 @@ impl Steps<'_> {
                     sent = since;
                     let pose = Pose::translation(0.0, 0.0, WAVE.at(time)) * here;
                     let twist = Twist::new(0.0, 0.0, WAVE.velocity(time), 0.0, 0.0, 0.0);
-                    // A motion that has ended returns its own error.
+                    // If this fails, the motion has ended, and returns its own error.
                     let _ = targets.send((pose, twist));
                 }
                 ControlFlow::Continue(())
@@ -337,7 +337,7 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// Measures the wrench that remains after the motions, relative to the first measurement.
+    /// Measures how much the wrench has changed during the motions.
     async fn after(&mut self, tare: Option<WrenchTare>) -> anyhow::Result<()> {
         self.name("after the motions");
         let (Some(first), Some(second)) = (tare, self.tare().await?) else {
@@ -372,13 +372,13 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Begins a step without a motion.
+    /// Begins a step in which the arm does not move.
     fn name(&mut self, name: &'static str) {
         say(name);
         self.report.begin(name);
     }
 
-    /// Asks for permission for a step, and begins a session that holds the arm.
+    /// Asks for permission for a step, and starts a session that holds the arm.
     async fn begin(&mut self, name: &'static str, what: &str) -> anyhow::Result<Arm> {
         self.report.begin(name);
         let what = format!("{what}\nforce {FORCE:.0} N at the hand at most");
@@ -414,7 +414,7 @@ impl Steps<'_> {
         Ok(mean)
     }
 
-    /// Returns joint positions with joint 7 turned towards the middle of its range.
+    /// Returns the joint positions after a turn of joint 7 towards the middle of its range.
     fn turned(&self, state: &RobotState) -> [f64; 7] {
         let limits = self.moving.robot.model().joint_limits();
         let middle = 0.5 * (limits.lower[6] + limits.upper[6]);
@@ -424,7 +424,7 @@ impl Steps<'_> {
     }
 }
 
-/// A series of targets that rise and sink again, with rest at both ends.
+/// A series of targets that rise and fall, and that are at rest at both ends.
 struct Wave {
     /// Half of the height, `[m]`.
     height: f64,
@@ -449,16 +449,16 @@ impl Wave {
     }
 }
 
-/// Wave of the stream. Its speed is at most 16 mm/s, well below the limit of the motion.
+/// Wave of the stream. Its speed is at most 16 mm/s, which is well below the motion's limit.
 const WAVE: Wave = Wave {
     height: 0.015,
     period: 6.0,
 };
 
-/// Time between two targets of the stream, `[ms]`.
+/// Interval between two targets of the stream, `[ms]`.
 const EVERY: u64 = 20;
 
-/// Turn of joint 7, 10 degrees, `[rad]`.
+/// Turn of joint 7, `[rad]`. It is 10 degrees.
 const TURN: f64 = 0.1745;
 
 /// Speed of any point of the arm at which a step ends, `[m/s]`. It is more than twice the commanded
@@ -472,15 +472,15 @@ const LOOK: Duration = Duration::from_secs(4);
 /// Duration of the hold.
 const HOLD: Duration = Duration::from_secs(10);
 
-/// Time over which a position is averaged, `[ms]`.
+/// Period over which a position is averaged, `[ms]`.
 const MOMENT: u64 = 200;
 
-/// Limits of the drift while the arm is held, `[m]`, for good and for bad. The driver aims at less
-/// than the first limit.
+/// Limits of the drift of a held arm, for good and for bad, `[m]`. The driver aims at less than the
+/// first limit.
 const DRIFT: [f64; 2] = [5e-5, 1e-3];
 
-/// Limits of the distance from a target, `[mm]`: the error of the control law on arms with
-/// stiction, and the limit that ends the trial.
+/// Limits of the distance from a target, `[mm]`. The first is the error of the control law on arms
+/// with stiction. The second ends the trial.
 const ARRIVAL_MM: [f64; 2] = [1.0, 10.0];
 
 /// Limits of the distance of a joint from its target, `[mrad]`.
@@ -489,11 +489,11 @@ const ARRIVAL_MRAD: [f64; 2] = [3.0, 30.0];
 /// Limits of the distance from the targets of a stream, `[mm]`.
 const BEHIND_MM: [f64; 2] = [4.0, 20.0];
 
-/// Limit of the force that remains after the motions, relative to the first measurement, `[N]`.
-/// Some force remains because stiction has changed.
+/// Limit of the change of the force during the motions, `[N]`. Some force remains because the
+/// stiction has changed.
 const LEFT: f64 = 3.0;
 
-/// Least mean success rate that counts as good, as in `franka test communication`; the next
-/// constant is for usable.
+/// Smallest mean success rate that counts as good, as in `franka test communication`. The next
+/// constant is the rate that counts as usable.
 const GOOD_RATE: f64 = 0.95;
 const USABLE_RATE: f64 = 0.9;
