@@ -199,7 +199,6 @@ impl Place {
         })
     }
 
-    /// Connects to the Hand.
     pub(crate) async fn connect_hand(&self) -> anyhow::Result<Gripper> {
         let gripper = Gripper::connect(self.hand.clone()).await;
         gripper.map_err(|error| {
@@ -314,7 +313,6 @@ pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failu
     }
 }
 
-/// Returns the common name of a kind of robot.
 pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
     match kind {
         RobotKind::Fr3 => "FR3",

@@ -68,7 +68,6 @@ impl Ending {
         }
     }
 
-    /// Returns the ending that belongs to an error.
     pub(crate) fn of(error: &anyhow::Error) -> Self {
         if let Some(failure) = error.downcast_ref::<Failure>() {
             return failure.ending;

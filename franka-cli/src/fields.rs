@@ -8,7 +8,6 @@ pub(crate) fn fields() -> Map<String, Value> {
     values(&RobotState::default())
 }
 
-/// Returns the fields of a state.
 pub(crate) fn values(state: &RobotState) -> Map<String, Value> {
     match serde_json::to_value(state) {
         Ok(Value::Object(fields)) => fields,

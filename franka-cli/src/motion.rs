@@ -129,7 +129,6 @@ impl Moving {
         Ok(())
     }
 
-    /// Returns the first state that the robot sends after this call.
     async fn state_from_now(&self) -> Result<RobotState, Error> {
         let mut newest = self.robot.state();
         let mut states = self.robot.states();

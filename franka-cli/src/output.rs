@@ -31,7 +31,6 @@ impl Output {
     }
 }
 
-/// Prints a value as JSON in one line.
 pub(crate) fn json_line(value: &impl Serialize) -> anyhow::Result<()> {
     line(&serde_json::to_string(&Versioned::new(value))?)
 }
@@ -70,13 +69,10 @@ pub(crate) fn say(text: &str) {
     anstream::eprintln!("{text}");
 }
 
-/// Style of titles.
 pub(crate) const BOLD: Style = Style::new().bold();
-/// Style of good values.
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
 /// Style of values near a limit.
 pub(crate) const WARN: Style = AnsiColor::Yellow.on_default();
-/// Style of wrong values.
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
 /// Style of less important text.
 pub(crate) const DIM: Style = Style::new().dimmed();

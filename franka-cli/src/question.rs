@@ -55,7 +55,6 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     }
 }
 
-/// Target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Target {
     Joints([f64; 7]),
@@ -132,7 +131,6 @@ impl Target {
     }
 }
 
-/// Returns the title of a question about a robot.
 pub(crate) fn title(what: &str, kind: RobotKind, place: &impl std::fmt::Display) -> String {
     let kind = crate::connection::kind_name(kind);
     format!("{BOLD}{what}: {kind}, {place}{BOLD:#}")

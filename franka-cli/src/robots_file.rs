@@ -42,7 +42,6 @@ pub(crate) struct Entry {
     pub(crate) hand: Option<String>,
 }
 
-/// The robots file.
 #[derive(Debug)]
 pub(crate) struct RobotsFile {
     pub(crate) path: PathBuf,

@@ -23,7 +23,6 @@ impl PartialPose {
     }
 }
 
-/// Parses a [`PartialPose`].
 pub(crate) fn partial_pose(text: &str) -> Result<PartialPose, String> {
     match text.split(',').count() {
         3 => Ok(PartialPose {

@@ -24,7 +24,6 @@ pub(crate) struct Hello {
     robot: &'static str,
     /// True if the robot is simulated and viewers may disturb it.
     simulated: bool,
-    /// True if the simulated robot has a Hand.
     simulated_hand: bool,
     /// True if the robot is simulated in virtual time, so its speed can be set.
     virtual_time: bool,
@@ -87,7 +86,6 @@ impl From<&Obstacle> for Region {
     }
 }
 
-/// A stiffness setting and its name.
 #[derive(Debug, Serialize)]
 struct Named {
     name: &'static str,

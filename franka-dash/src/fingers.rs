@@ -30,7 +30,6 @@ impl Drop for UnderWay {
     }
 }
 
-/// The state of the fingers for the page.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct FingerState {
     width: f64,
@@ -101,7 +100,6 @@ impl Fingers {
         self.lock().take();
     }
 
-    /// Ends the current action unless `commander` started it.
     pub(crate) fn end_unless(&self, commander: Option<ViewerId>) {
         self.lock().take_if(|it| Some(it.viewer) != commander);
     }
@@ -136,7 +134,6 @@ async fn act(gripper: &Gripper, action: GripperAction) -> Result<bool, GripperEr
     }
 }
 
-/// Returns the text for the result of an action.
 fn word(action: GripperAction, done: bool) -> &'static str {
     match (action, done) {
         (GripperAction::Home {}, true) => "homed: the greatest width is known",

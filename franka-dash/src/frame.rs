@@ -54,13 +54,11 @@ const FRAMES: [Frame; 9] = [
 pub(crate) struct Server {
     /// Time of the server, `[ms]`.
     pub(crate) ms: u64,
-    /// True if a hold is active.
     pub(crate) holding: bool,
     /// Width between the fingers, `[m]`; `None` without a connected gripper.
     pub(crate) width: Option<f64>,
 }
 
-/// Returns the encoded frame for a sample.
 pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> {
     let Sample {
         state,

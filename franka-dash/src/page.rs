@@ -6,7 +6,6 @@ use axum::http::{HeaderName, StatusCode, header};
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-/// Returns the routes for the files of a robot's page.
 pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(INDEX)
 }

@@ -12,7 +12,6 @@ use serde::Serialize;
 
 use crate::request::{ArmKind, Conditions, Disturbance, PUSH_MS};
 
-/// The simulated robot.
 #[derive(Clone)]
 pub(crate) struct Simulated {
     running: Arc<Running>,

@@ -12,7 +12,6 @@ use nalgebra::{Isometry3, SVector, Vector3};
 use super::evidence::{Evidence, Reading, Sample, positions, velocities};
 use super::finding::{Origin, Quantity, Subject};
 
-/// A command and its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Derivatives<const N: usize> {
     pub(super) velocity: SVector<f64, N>,
@@ -95,7 +94,6 @@ pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivati
     ))
 }
 
-/// Returns the angle of the commanded elbow and its derivatives.
 pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     let [angle, _] = sample.command.elbow_c?;
     let before = sample.before;
@@ -190,7 +188,6 @@ pub(super) fn joint_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Readi
     of_joints(evidence, Origin::Commanded, which, joints)
 }
 
-/// Returns the readings of the joint motion that results from the Cartesian commands.
 pub(super) fn resulting_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Desired, which, |sample| {
         resulting(evidence.model, sample)
@@ -242,7 +239,6 @@ fn of_joints(
     readings
 }
 
-/// Returns the readings of the commanded positions relative to the joint ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let mut readings = Vec::new();
     for sample in evidence.samples() {
@@ -260,7 +256,6 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// Returns the readings of all Cartesian commands in a log.
 pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     evidence
         .samples()
@@ -342,7 +337,6 @@ pub(super) fn cartesian_readings_of(
     readings
 }
 
-/// Returns the readings of all elbow commands.
 pub(super) fn elbow_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limits = &evidence.model.cartesian_limits().elbow;
     let mut readings = Vec::new();

@@ -24,7 +24,6 @@ pub(super) struct Evidence<'a> {
 pub(super) struct Sample<'a> {
     pub(super) before: &'a RobotState,
     pub(super) command: &'a RobotCommand,
-    /// True if the command is the first of the motion.
     pub(super) first: bool,
 }
 

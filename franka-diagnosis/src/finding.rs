@@ -185,7 +185,6 @@ impl Subject {
 }
 
 impl Quantity {
-    /// Returns a value of this quantity with its unit.
     pub(super) fn of(self, subject: Subject, value: f64) -> Measure {
         Measure {
             quantity: self,
@@ -265,7 +264,6 @@ const DIGITS: u8 = 4;
 const DIGITS_MAX: u8 = 8;
 
 impl Digits {
-    /// Formats the number with `digits` significant digits.
     fn with(&self, digits: u8) -> String {
         let value = self.0;
         if value == 0.0 || !value.is_finite() {

@@ -228,7 +228,6 @@ impl Diagnosis {
         Some(self.end?.saturating_sub(self.finding?.since))
     }
 
-    /// The errors except the error that explains them.
     fn others(&self) -> Errors {
         let mut others = self.errors;
         if let Some(error) = self.error {

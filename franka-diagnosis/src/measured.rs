@@ -8,7 +8,6 @@ use super::commanded::end_effector;
 use super::evidence::{Evidence, Reading, positions, velocities};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Returns the readings of the joint velocities relative to their envelopes.
 pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -19,7 +18,6 @@ pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Returns the readings of the joint positions relative to their ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -34,7 +32,6 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Returns the readings of the speed of the end effector.
 pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = evidence.model.cartesian_limits().translation.velocity;
     evidence
@@ -83,7 +80,6 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Returns the finding for the largest mechanical power of the joints.
 pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     let powers = evidence.states().map(|state| {
         let power = JointVector::from(state.tau_J)

@@ -13,7 +13,6 @@ use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::{command_steps, contact, lost_cycles, measured, posture};
 
-/// Category of an error by subject.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Category {
     /// Missing commands.
@@ -159,7 +158,6 @@ pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>,
     )
 }
 
-/// Returns the evidence of an error in the log.
 fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     // A value that certainly exceeds its limit has priority over a value that is near it.
     let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {

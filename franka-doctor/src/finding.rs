@@ -227,7 +227,6 @@ pub(crate) enum Matters {
     Reading,
 }
 
-/// Converts a verdict for a host that moves a robot to a verdict for `purpose`.
 fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
     match (purpose, matters, verdict) {
         (Purpose::Sim, _, Verdict::Warning | Verdict::Failure) => Verdict::Info,

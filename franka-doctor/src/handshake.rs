@@ -64,7 +64,6 @@ pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// Judges the version that the robot reported.
 fn version(answers: &[Answer]) -> Judged {
     let named = answers.iter().find_map(|answer| match answer {
         Answer::Accepted(version) => Some(version.number()),

@@ -371,7 +371,6 @@ fn unescaped(content: &str) -> String {
     text
 }
 
-/// Returns the sorted names in a directory.
 pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {

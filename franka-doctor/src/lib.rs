@@ -191,7 +191,6 @@ impl Doctor {
         }
     }
 
-    /// Runs the measurements.
     fn measured(
         &self,
         host: &dyn Host,

@@ -21,7 +21,6 @@ pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
         .into()
 }
 
-/// A port and its service.
 struct Port {
     id: &'static str,
     number: u16,
@@ -52,7 +51,6 @@ const PORTS: [Port; 3] = [
 ];
 
 impl Port {
-    /// Returns the finding about a connection attempt.
     fn finding(&self, connected: io::Result<()>, purpose: Purpose) -> Finding {
         let (what, number) = (self.what, self.number);
         let judged = match connected {

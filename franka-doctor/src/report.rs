@@ -203,7 +203,6 @@ const COLUMNS: usize = 80;
 /// Indentation of all lines after the first.
 const INDENT: usize = 12;
 
-/// Formats a count of `what` in words.
 pub(crate) fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

@@ -2,10 +2,8 @@
 
 use std::net::Ipv4Addr;
 
-/// The route to an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Route {
-    /// Name of the network interface.
     pub(crate) interface: String,
     /// Router on the route; `None` for a direct route.
     pub(crate) gateway: Option<Ipv4Addr>,

@@ -214,7 +214,6 @@ impl System {
     }
 }
 
-/// Returns `duration` in milliseconds, but at least 1.
 fn milliseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_millis())
         .unwrap_or(u64::MAX)

@@ -225,7 +225,6 @@ mod tests {
         }
     }
 
-    /// A check of latencies.
     type Check = fn(Result<Latencies, Unread>, Purpose) -> Finding;
 
     #[test]

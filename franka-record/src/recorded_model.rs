@@ -85,7 +85,6 @@ pub(crate) fn description(name: &str, kind: RobotKind) -> String {
     format!("{}.urdf", label(name, kind))
 }
 
-/// Writes the link lengths to the metadata of a robot.
 pub(crate) fn write_lengths(lengths: &Lengths, metadata: &mut BTreeMap<String, String>) {
     let Lengths { upper_arm, forearm } = lengths;
     metadata.insert(UPPER_ARM.to_owned(), upper_arm.to_string());

@@ -95,7 +95,6 @@ pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
         .map_or(samples, |(first, last)| &samples[first..=last])
 }
 
-/// Returns the pose at a `share` of the way from `a` to `b`.
 fn between(a: &Isometry3<f64>, b: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
     // The shorter arc is not unique if the orientations are opposite.
     a.try_lerp_slerp(b, share, 1e-9).unwrap_or(*a)

@@ -125,7 +125,6 @@ fn scheduling(priority: Option<i32>) -> String {
 /// Result of a control loop with a simulated robot.
 pub(super) struct DryRun {
     pub(super) outcome: Result<MotionReport, MotionError>,
-    /// Statistics of the control loop.
     pub(super) stats: Arc<Stats>,
     /// Rights that the operating system granted to the control thread.
     pub(super) granted: Arc<Granted>,

@@ -195,7 +195,6 @@ impl Dash {
     }
 }
 
-/// Listens for connections of browsers.
 pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<TcpListener, Failure> {
     let bound = franka_dash::bind(address, options).await;
     bound.map_err(|error| match &error {
@@ -204,7 +203,6 @@ pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<Tcp
     })
 }
 
-/// Returns the failure for an invalid token.
 pub(super) fn no_token(error: TokenError) -> Failure {
     let text = format!("{:#}", anyhow::Error::new(error));
     Failure::usage(text).advice(ADVICE)
@@ -213,5 +211,4 @@ pub(super) fn no_token(error: TokenError) -> Failure {
 const ADVICE: &str = "Set a token: in the variable FRANKA_ACCESS_TOKEN, with --token-file FILE, \
     or with --new-token, which generates one.";
 
-/// Default address of the dashboard.
 pub(super) const PAGE: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 8080));

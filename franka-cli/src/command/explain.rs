@@ -72,9 +72,7 @@ pub(crate) enum Source {
 /// An open recording, and the name of one of its robots.
 pub(crate) struct Opened {
     pub(super) recording: Recording,
-    /// Name of the robot.
     pub(super) name: String,
-    /// Model of the robot.
     pub(super) model: RecordedModel,
 }
 
@@ -88,7 +86,6 @@ impl Recorded {
         }
     }
 
-    /// Opens the recording.
     pub(super) fn open(&self) -> anyhow::Result<Opened> {
         let recording = Recording::open(&self.file);
         self.of_recording(recording.map_err(|error| self.unreadable(&error))?)

@@ -245,7 +245,6 @@ impl Stop {
     }
 }
 
-/// Converts an error about an exported file to the program's failure.
 pub(super) fn of_file(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } | ExportError::Io { .. } => {

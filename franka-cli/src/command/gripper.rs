@@ -192,7 +192,6 @@ impl Fingers {
     }
 }
 
-/// Stops the fingers, and returns the program's failure.
 async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     say(&format!("{by}: stopping the fingers"));
     let why = match timeout(PATIENCE, hand.stop()).await {

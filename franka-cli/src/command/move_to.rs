@@ -98,7 +98,6 @@ impl Move {
     }
 }
 
-/// Prints the result of a motion.
 fn print(report: &MotionReport, output: Output) -> anyhow::Result<Ending> {
     output.print(report, || {
         let off = report.final_error.map(|error| {

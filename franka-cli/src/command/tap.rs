@@ -105,7 +105,6 @@ impl Tap {
     }
 }
 
-/// Converts an error about a cassette to the program's failure.
 pub(super) fn failed(file: &Path, error: &CassetteError) -> Failure {
     Failure::new(Ending::Host, format!("{}: {error}", file.display()))
 }

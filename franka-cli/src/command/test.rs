@@ -163,7 +163,6 @@ pub(super) fn quantiles(times: &Histogram) -> Value {
     json!({ "p50": at(0.5), "p99": at(0.99), "p999": at(0.999), "max": at(1.0) })
 }
 
-/// Returns quantiles as text.
 pub(super) fn times(quantiles: &Value) -> String {
     let at = |quantile: &str| quantiles[quantile].as_u64().unwrap_or(0);
     let [p50, p99, p999, max] = ["p50", "p99", "p999", "max"].map(at);

@@ -112,7 +112,6 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
     }
 }
 
-/// Returns a bar that has a mark at `share` of its length.
 fn bar(share: f64, style: Style) -> String {
     let at = (share * (BAR - 1) as f64).round() as usize;
     let (before, after) = ("─".repeat(at), "─".repeat(BAR - 1 - at));

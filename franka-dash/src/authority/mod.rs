@@ -30,7 +30,6 @@ use serde::Serialize;
 
 use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 
-/// Number of a viewer.
 pub(crate) type ViewerId = u64;
 
 /// The kinds of requests that the server accepts from viewers.
@@ -42,7 +41,6 @@ pub(crate) struct Permissions {
     pub(crate) disturbances: bool,
     /// True if viewers may move the fingers. This also requires `motion`.
     pub(crate) gripper: bool,
-    /// True if viewers may record.
     pub(crate) recording: bool,
     /// Additional time for late messages. It is zero unless the robot is simulated.
     pub(crate) patience: Duration,
@@ -55,7 +53,6 @@ pub(crate) struct Status {
     pub(crate) commander: Option<u64>,
     /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
-    /// True if a hold is active.
     pub(crate) holding: bool,
     /// True if the commander's last hold ended because a message was late.
     pub(crate) expired: bool,
@@ -276,7 +273,6 @@ impl Authority {
         Ok(Step::default())
     }
 
-    /// Returns the commander if `viewer` is the commander.
     fn commander_mut(&mut self, viewer: ViewerId) -> Option<&mut Commander> {
         self.commander.as_mut().filter(|it| it.viewer == viewer)
     }

@@ -50,7 +50,6 @@ pub(crate) enum ArmKind {
     Bad,
 }
 
-/// Conditions of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Conditions {

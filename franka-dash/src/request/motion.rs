@@ -4,7 +4,6 @@ use serde::Deserialize;
 
 use super::within;
 
-/// Axes of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Axes {

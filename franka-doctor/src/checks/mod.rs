@@ -11,7 +11,6 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::Readings;
 
-/// One check.
 pub(crate) struct Check {
     pub(crate) id: &'static str,
     pub(crate) group: Group,

@@ -63,7 +63,6 @@ impl Device {
         }
     }
 
-    /// Returns the size in bytes of the millisecond counter at the beginning of a state.
     pub(crate) fn counter_size(self) -> usize {
         match self {
             Self::Robot => 8,

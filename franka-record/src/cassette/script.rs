@@ -129,7 +129,6 @@ impl Script {
         })
     }
 
-    /// Describes a step of the client.
     pub(super) fn describe(&self, step: &Step) -> String {
         match step {
             Step::Request(bytes) => match self.device.next_message(bytes) {

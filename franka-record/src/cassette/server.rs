@@ -103,7 +103,6 @@ impl Shared {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Ends the playback.
     fn fail(&self, error: PlayError) {
         self.state().failure.get_or_insert(error);
         self.stop.store(true, Ordering::Relaxed);
@@ -266,7 +265,6 @@ fn accept(
     }
 }
 
-/// The input from a client.
 enum Input {
     Stream(Vec<u8>),
     Datagram(Vec<u8>),

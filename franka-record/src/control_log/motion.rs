@@ -15,14 +15,12 @@ use nalgebra::Isometry3;
 use super::table::{Row, Table};
 use crate::{Cycle, HostTime};
 
-/// A motion that is reconstructed from its table.
 pub(super) struct Motion {
     pub(super) log: ControlLog,
     pub(super) commands: Vec<RobotCommand>,
 }
 
 impl Motion {
-    /// Creates the motion from a table and from the errors that ended the motion.
     pub(super) fn of(table: Table, errors: Errors) -> Self {
         let rows = table.rows;
         let generator = generator(&rows);

@@ -28,7 +28,6 @@ pub(super) struct Place {
     generation: Generation,
 }
 
-/// The numbers of a table.
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) generation: Generation,
@@ -72,7 +71,6 @@ pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
     (tables, around)
 }
 
-/// Returns the generation to which a line of column names belongs.
 fn generation(line: &str) -> Option<Generation> {
     let mut names = line.split(',');
     let blank = |name: &str| name.starts_with(' ');
@@ -175,7 +173,6 @@ impl Field {
 }
 
 impl Table {
-    /// Reads the table at this place in the text.
     pub(super) fn read(text: &str, place: &Place) -> Result<Self, ControlLogError> {
         let bytes = &text.as_bytes()[place.bytes.clone()];
         let mut reader = ReaderBuilder::new()

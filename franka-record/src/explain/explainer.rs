@@ -345,7 +345,6 @@ fn trace(model: &Model, state: &RobotState, lost: u64, external: &JointVector) -
     }
 }
 
-/// Parses a recorded diagnosis.
 #[cfg(feature = "serde")]
 fn read(json: &str) -> Option<Diagnosis> {
     serde_json::from_str(json).ok()

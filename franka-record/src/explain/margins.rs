@@ -169,7 +169,6 @@ fn range_of(model: &Model, approach: &Approach) -> Option<f64> {
     Some(limits.upper[i] - limits.lower[i])
 }
 
-/// Returns the remaining share of the limit.
 fn share(approach: &Approach) -> f64 {
     approach.margin / approach.limit.abs().max(f64::MIN_POSITIVE)
 }

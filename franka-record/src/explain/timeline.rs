@@ -59,7 +59,6 @@ pub(super) struct Timeline {
     collisions: [Option<u64>; AXES],
     guards: [Option<u64>; Guard::ALL.len()],
     last_loss: Option<u64>,
-    /// True if the events contain the goals.
     has_goals: bool,
     /// Time of the newest end of a motion. `until_end` contains the moments until shortly after it.
     end: Option<u64>,

@@ -79,7 +79,6 @@ pub(super) fn name_of(list: &'static [&'static str], number: f64) -> &'static st
     list.get(number as usize).copied().unwrap_or_default()
 }
 
-/// Returns the columns of a recording.
 fn recorded() -> impl Iterator<Item = &'static Column> {
     let is_recorded = |column: &&Column| !NOT_RECORDED.contains(&column.name);
     Column::all().iter().filter(is_recorded)

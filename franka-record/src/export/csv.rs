@@ -65,7 +65,6 @@ pub fn write_csv<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// Returns a text as a CSV field.
 fn quoted(text: &str) -> String {
     if text.contains(',') {
         format!("\"{text}\"")

@@ -69,7 +69,6 @@ pub enum ExportError {
 }
 
 impl ExportError {
-    /// Converts a system error to an error about `path`.
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { path, source }

@@ -55,7 +55,6 @@ impl Field {
         }
     }
 
-    /// Creates a list of `length` values in each row.
     pub(crate) fn list(name: impl Into<String>, kind: Kind, length: usize) -> Self {
         Self {
             length: Some(length),
@@ -223,7 +222,6 @@ impl Values {
     }
 }
 
-/// Converts an error of the format to an error about `path`.
 pub(crate) fn at(path: &Path) -> impl FnOnce(ParquetError) -> ExportError {
     let path = path.to_owned();
     move |source| ExportError::Table { path, source }

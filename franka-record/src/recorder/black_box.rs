@@ -9,7 +9,6 @@ use super::options::BlackBox;
 use super::session::Session;
 use crate::HostTime;
 
-/// Messages of the last seconds.
 #[derive(Debug)]
 pub(super) struct LastSeconds {
     options: BlackBox,

@@ -22,15 +22,12 @@ pub(super) struct DiskStatus {
     pub(super) written: u64,
     /// Number of cycles that were lost because they could not be written.
     pub(super) cycles_lost: u64,
-    /// True if a black box file waits for the disk.
     pub(super) black_box_waits: bool,
     /// The files of the recording, oldest first.
     pub(super) files: Vec<PathBuf>,
-    /// The files of the black box.
     pub(super) black_boxes: Vec<PathBuf>,
     /// Error that ended the recording early; `None` if none did.
     pub(super) error: Option<RecordError>,
-    /// Error that prevented the newest black box file from being written.
     pub(super) black_box_error: Option<RecordError>,
 }
 
@@ -96,17 +93,14 @@ impl Disk {
         lock(&self.status).error.is_none()
     }
 
-    /// Records why the recording cannot continue.
     pub(super) fn fail(&self, error: RecordError) {
         fail(&self.status, error);
     }
 
-    /// Records why a black box could not be written.
     pub(super) fn fail_black_box(&self, error: RecordError) {
         fail_black_box(&self.status, error);
     }
 
-    /// Opens the first file.
     pub(super) fn open(&self, path: PathBuf, file: File) {
         self.order(Job::Open(path, file), 0);
     }
@@ -116,7 +110,6 @@ impl Disk {
         self.order(Job::Follow(first), 0);
     }
 
-    /// Appends whole chunks that contain this number of cycles.
     pub(super) fn append(&self, bytes: Vec<u8>, cycles: u64) {
         let length = bytes.len();
         self.order(Job::Append(bytes, cycles), length);
@@ -173,7 +166,6 @@ fn fail_black_box(status: &Mutex<DiskStatus>, error: RecordError) {
     lock(status).black_box_error = Some(error);
 }
 
-/// Creates a file that does not exist yet.
 pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     let file = OpenOptions::new().write(true).create_new(true).open(path);
     let file = file.map_err(|source| match source.kind() {

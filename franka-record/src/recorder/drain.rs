@@ -49,7 +49,6 @@ pub(super) struct Drain {
     sources: Vec<Source>,
     files: Files,
     clock: RecordClock,
-    /// Reads the wall clock.
     wall: fn() -> HostTime,
     /// Time of the next comparison with the wall clock.
     compare_due: Instant,

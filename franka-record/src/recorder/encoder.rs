@@ -10,7 +10,6 @@ use crate::{Cycle, Event, EventKind, GripperState, HostTime, RecordedModel};
 use franka_model::{EndEffector, Frame, Model, transform};
 use franka_proto::{Errors, RobotMode};
 
-/// A message of a channel.
 #[derive(Clone, Debug)]
 pub(super) struct Message {
     pub(super) robot: usize,
@@ -63,7 +62,6 @@ impl Encoder {
         }
     }
 
-    /// Appends the messages of a cycle.
     pub(super) fn cycle(&mut self, mut cycle: Cycle, out: &mut Vec<Message>) {
         let state = &cycle.state;
         if cycle.reference.is_none() && cycle.record.q_ref != [0.0; 7] {
@@ -164,12 +162,10 @@ impl Encoder {
         self.put(Topic::Log, event.time, &log, out);
     }
 
-    /// Appends a state of the gripper.
     pub(super) fn gripper(&self, time: HostTime, state: &GripperState, out: &mut Vec<Message>) {
         self.put(Topic::Gripper, time, &franka::Gripper::from(state), out);
     }
 
-    /// Appends the tool, if known.
     pub(super) fn repeat_tool(&self, time: HostTime, out: &mut Vec<Message>) {
         if let Some(tool) = &self.tool {
             self.put(Topic::Tool, time, tool, out);

@@ -15,7 +15,6 @@ use super::thinning::Thinning;
 use crate::HostTime;
 use crate::schema::Topic;
 
-/// The files of a recording.
 pub(super) struct Files {
     options: RecordOptions,
     session: Session,
@@ -29,16 +28,13 @@ pub(super) struct Files {
     /// The server that shows the messages as they arrive.
     #[cfg(feature = "foxglove")]
     server: Option<super::live::Server>,
-    /// Time of the newest message.
     newest: HostTime,
     robots: Vec<RobotFiles>,
     /// Number of chunks of the recording so far.
     chunk: u64,
-    /// Number of events that were lost since the last call of [`Files::take_missing_events`].
     missing_events: u64,
 }
 
-/// The state of one robot.
 #[derive(Default)]
 struct RobotFiles {
     /// Number of this robot's cycles that were lost since the last call of [`Files::take_missing`].
@@ -50,7 +46,6 @@ struct RobotFiles {
 /// The current file.
 struct Open {
     file: McapFile,
-    /// The path of the first file of the recording.
     first: PathBuf,
     bytes: u64,
     /// Number of cycles since the last flush.

@@ -90,7 +90,6 @@ impl Frames {
         })
     }
 
-    /// Returns the joints of the arm.
     pub(super) fn joints(&self, cycle: &Cycle) -> JointStates {
         let state = &cycle.state;
         let joint = |index: usize| JointState {

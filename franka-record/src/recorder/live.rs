@@ -36,7 +36,6 @@ impl Default for Live {
     }
 }
 
-/// A server, and its channels.
 pub(super) struct Server {
     /// Runtime on a separate thread. Neither the recorder's thread nor the program waits for a
     /// viewer.
@@ -51,7 +50,6 @@ pub(super) struct Server {
 }
 
 impl Server {
-    /// Starts a server, and returns its address.
     pub(super) fn start(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
         if live.every == 0 {
             return Err(RecordError::Option {

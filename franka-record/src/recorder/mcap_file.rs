@@ -21,7 +21,6 @@ use crate::schema::{DESCRIPTORS, METADATA, ROBOT_METADATA, Topic};
 pub(super) struct McapFile {
     writer: Writer<Buffer>,
     buffer: Buffer,
-    /// The channels of each robot, by topic.
     channels: Vec<[u16; Topic::ALL.len()]>,
     /// Number of messages so far, by channel.
     sequences: BTreeMap<u16, u32>,

@@ -7,7 +7,6 @@ use super::error::RecordingError;
 use super::index::ChunkEntry;
 use super::wire::{self, ChunkHeader, Fields, HEADER, op};
 
-/// A decompressed chunk in memory.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
     pub(super) offset: u64,
@@ -16,7 +15,6 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    /// Reads a chunk and checks it.
     pub(super) fn read(bytes: &Bytes, entry: &ChunkEntry) -> Result<Self, RecordingError> {
         let offset = entry.offset;
         let damaged = |reason: &str| {

@@ -9,7 +9,6 @@ use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
 /// Positions of all parts of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Index {
-    /// Chunks, in the order of the file.
     pub(super) chunks: Vec<ChunkEntry>,
     pub(super) attachments: Vec<Entry>,
     pub(super) metadata: Vec<Entry>,
@@ -201,7 +200,6 @@ pub(super) struct Channels {
     channels: BTreeMap<u16, ChannelEntry>,
 }
 
-/// A channel of a recording.
 #[derive(Clone, Debug)]
 pub(super) struct ChannelEntry {
     pub(super) name: String,
@@ -237,7 +235,6 @@ impl Channels {
         }
     }
 
-    /// Returns the identifier of the channel with this name and this schema.
     pub(super) fn find(&self, name: &str, schema: &str) -> Option<u16> {
         let fits = |channel: &ChannelEntry| {
             channel.name == name

@@ -210,7 +210,6 @@ impl Recording {
         Ok(())
     }
 
-    /// Returns true if the channels of every robot are known.
     fn knows_channels(&self) -> bool {
         let schema = Topic::Gripper.schema();
         self.robots.iter().all(|robot| {
@@ -317,7 +316,6 @@ impl Recording {
     }
 }
 
-/// Returns the name and the bytes of an attachment.
 fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     let (op::ATTACHMENT, body, _) = wire::split(record)? else {
         return None;

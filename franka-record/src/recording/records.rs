@@ -8,7 +8,6 @@ use super::error::RecordingError;
 use super::index::Index;
 use super::wire::{self, Fields, HEADER, MAGIC, op};
 
-/// A record of an MCAP file.
 pub(crate) enum Record<'a> {
     Metadata {
         name: &'a str,

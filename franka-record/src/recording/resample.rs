@@ -12,7 +12,6 @@ pub struct Resampled {
     period: f64,
     /// Newest cycle that is not later than the next sample.
     held: Option<Cycle>,
-    /// The cycle after `held`.
     next: Option<Cycle>,
     /// Robot time of the first sample.
     first: u64,

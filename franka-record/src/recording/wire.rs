@@ -80,7 +80,6 @@ impl<'a> Fields<'a> {
         std::str::from_utf8(self.bytes(length)?).ok()
     }
 
-    /// Reads a map of texts.
     pub(super) fn map(&mut self) -> Option<BTreeMap<String, String>> {
         let length = usize::try_from(self.u32()?).ok()?;
         let mut entries = Fields(self.bytes(length)?);
@@ -93,7 +92,6 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// A schema, without its contents.
 pub(super) struct Schema<'a> {
     pub(super) id: u16,
     pub(super) name: &'a str,
@@ -115,7 +113,6 @@ impl<'a> Schema<'a> {
     }
 }
 
-/// A channel.
 pub(super) struct Channel<'a> {
     pub(super) id: u16,
     pub(super) schema: u16,
@@ -137,7 +134,6 @@ impl<'a> Channel<'a> {
     }
 }
 
-/// A message.
 #[derive(Clone, Copy)]
 pub(super) struct Message<'a> {
     pub(super) channel: u16,

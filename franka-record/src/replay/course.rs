@@ -29,7 +29,6 @@ const LEAD_IN: Duration = Duration::from_millis(100);
 pub struct ReplayCourse {
     /// Time of the first target, as the `message_id` of a state.
     begin: u64,
-    /// The number of the next chunk.
     next: usize,
 }
 

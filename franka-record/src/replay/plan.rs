@@ -225,7 +225,6 @@ impl ReplayPlan {
     }
 }
 
-/// Returns the pose of the end effector at `q`.
 pub(super) fn pose_at(model: &Model, q: &[f64; 7], tool: &Isometry3<f64>) -> Isometry3<f64> {
     let q = JointVector::from(*q);
     let flange = model.pose(Frame::Flange, &q, &EndEffector::default());

@@ -51,7 +51,6 @@ pub(super) fn matrix_of(pose: Option<&franka::Pose>) -> [f64; 16] {
     transform::array(&pose.and_then(isometry).unwrap_or_default())
 }
 
-/// Converts a pose to a message.
 pub(super) fn pose(isometry: &Isometry3<f64>) -> franka::Pose {
     let [x, y, z, qx, qy, qz, qw] = numbers(isometry).map(|number| number as f32);
     franka::Pose {

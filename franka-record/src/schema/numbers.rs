@@ -40,13 +40,11 @@ pub(super) fn guard_number(guard: Guard) -> i32 {
     guard as i32 + 1
 }
 
-/// Returns the guard with this number in messages.
 pub(super) fn guard(number: i32) -> Option<Guard> {
     let index = usize::try_from(number).ok()?.checked_sub(1)?;
     Guard::ALL.get(index).copied()
 }
 
-/// Returns the guards with these numbers, and ignores undefined numbers.
 pub(super) fn bindings(numbers: &[i32]) -> Bindings {
     let mut bindings = Bindings::default();
     for guard in numbers.iter().filter_map(|&number| guard(number)) {

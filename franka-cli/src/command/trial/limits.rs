@@ -3,10 +3,8 @@
 use franka_async::model::limits::JointLimits;
 use franka_async::model::{JointVector, RobotKind};
 
-/// A table of limits: its name and the limits.
 type Table = (&'static str, &'static JointLimits);
 
-/// Returns the known tables of limits for this kind of robot.
 fn tables(kind: RobotKind) -> Vec<Table> {
     match kind {
         RobotKind::Fr3 => vec![

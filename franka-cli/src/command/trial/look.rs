@@ -11,7 +11,6 @@ use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 use franka_async::{Pose, Robot, pose};
 
-/// Mean of several states.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mean {
     count: u32,
@@ -30,7 +29,6 @@ impl Mean {
         }
     }
 
-    /// Returns the mean of the reported poses, if it is a valid pose.
     pub(super) fn pose(&self) -> Option<Pose> {
         let count = f64::from(self.count);
         pose::from_array(&self.pose.map(|sum| sum / count)).ok()
@@ -57,7 +55,6 @@ pub(super) const SPARSE: [&str; 4] = ["O_T_EE_c", "elbow_c", "tau_J_d", "O_ddP_O
 pub(super) struct Look {
     /// `message_id` of the first and the last state.
     ids: Option<(u64, u64)>,
-    /// Number of received states.
     pub(super) states: u64,
     /// Mean over the third second. Initial transients have then ended.
     pub(super) begin: Mean,
@@ -151,7 +148,6 @@ impl Look {
     }
 }
 
-/// Returns the model with the lengths of the robot's description.
 pub(super) fn described(robot: &Robot) -> Model {
     let described = robot.geometry_check().described;
     robot.model().clone().with_lengths(described)

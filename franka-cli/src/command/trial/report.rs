@@ -30,7 +30,6 @@ pub(super) struct Report {
     pub(super) steps: Vec<Step>,
 }
 
-/// A step of the trial, with its findings.
 #[derive(Debug, Serialize)]
 pub(super) struct Step {
     name: &'static str,
@@ -105,7 +104,6 @@ impl Report {
         }
     }
 
-    /// Begins a step.
     pub(super) fn begin(&mut self, name: &'static str) {
         let findings = Vec::new();
         self.steps.push(Step { name, findings });
@@ -231,7 +229,6 @@ impl Report {
     }
 }
 
-/// Returns a text that is escaped for a table cell.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }

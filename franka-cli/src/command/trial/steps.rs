@@ -197,7 +197,6 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Holds the arm in place.
     async fn hold(&mut self) -> anyhow::Result<()> {
         let seconds = HOLD.as_secs();
         let what = format!("The arm holds its position for {seconds} s.");
@@ -241,7 +240,6 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// Turns joint 7 and back.
     async fn joint(&mut self) -> anyhow::Result<()> {
         let start = self.moving.robot.state();
         let there = self.turned(&start);
@@ -469,7 +467,6 @@ const FASTEST: f64 = 0.2;
 /// fourth second.
 const LOOK: Duration = Duration::from_secs(4);
 
-/// Duration of the hold.
 const HOLD: Duration = Duration::from_secs(10);
 
 /// Period over which a position is averaged, `[ms]`.

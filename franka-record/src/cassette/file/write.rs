@@ -165,7 +165,6 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(self.mcap.0.into_inner())
     }
 
-    /// Returns the channel of this key. Creates the channel if necessary.
     fn channel(&mut self, key: Key, device: Device) -> Result<&mut Channel, CassetteError> {
         let (connection, stream, client) = key;
         let channel = match self.channels.entry(key) {

@@ -30,7 +30,6 @@ struct Interface {
     offset: i64,
 }
 
-/// A packet.
 pub(super) struct Packet {
     /// Time in nanoseconds since the Unix epoch.
     pub(super) time: u64,

@@ -139,7 +139,6 @@ impl Sessions {
         events.push(Event { at, from, what });
     }
 
-    /// Returns the connection of a datagram, and its sender.
     fn connection_of(&self, from: SocketAddr, to: SocketAddr) -> Option<(usize, Side)> {
         let to_client = self.announced.get(&(to, from.ip()));
         let of_client = self.announced.get(&(from, to.ip()));

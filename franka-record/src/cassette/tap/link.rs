@@ -234,7 +234,6 @@ impl Handshake {
         }
     }
 
-    /// Returns the bytes to forward instead of `bytes`.
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         let Some(mut waiting) = self.waiting.take() else {
             return bytes.to_vec();

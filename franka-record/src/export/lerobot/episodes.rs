@@ -11,7 +11,6 @@ use crate::export::error::ExportError;
 use crate::export::new_file::NewFile;
 use crate::export::parquet::{Field, Kind, TableWriter, Values};
 
-/// A new episode of a dataset.
 pub(super) struct Episode {
     pub(super) index: u64,
     pub(super) task: String,

@@ -40,7 +40,6 @@ pub(super) const FLAGS: [&str; 2] = ["next.done", "next.success"];
 /// Columns that describe the robot.
 pub(super) const VECTORS: [&str; 2] = ["observation.state", "action"];
 
-/// The current contents of a dataset.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
     pub(super) tasks: Vec<String>,
@@ -49,7 +48,6 @@ pub(super) struct Contents {
     pub(super) stats: BTreeMap<String, Stats>,
 }
 
-/// Returns `features` of `info.json`.
 fn features(gripper: bool) -> Value {
     let names = names(gripper);
     let vectors = VECTORS.map(|name| {
@@ -255,7 +253,6 @@ fn read_tasks(path: &Path) -> Result<Vec<String>, ExportError> {
     Ok(tasks.into_values().collect())
 }
 
-/// Returns the number of rows of a table.
 pub(super) fn rows_in(path: &Path) -> Result<u64, ExportError> {
     let rows = open(path)?.metadata().file_metadata().num_rows();
     Ok(u64::try_from(rows).unwrap_or_default())

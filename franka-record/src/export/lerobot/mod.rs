@@ -105,9 +105,7 @@ pub struct Dataset {
     staging: Staging,
     options: DatasetOptions,
     contents: Contents,
-    /// The number of the next data file.
     next_file: FileNumber,
-    /// The current data file.
     data: Option<TableWriter>,
     /// Data files that are complete, but do not have their final names yet.
     full: Vec<TableWriter>,
