@@ -113,9 +113,9 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
     frame
 }
 
-/// Returns the number of the law that computes the torques: 0 for none, 1 for this driver's target
-/// control, 2 for torques of another client or motion, 3 for the robot's joint impedance, and 4 for
-/// the robot's Cartesian impedance.
+/// Returns the number of the law that computes the torques. 0 means no law, and 1 means target
+/// control of this driver. 2 means torques of another client or motion. 3 and 4 mean the robot's
+/// joint impedance and Cartesian impedance.
 fn law(state: &RobotState, ours: bool) -> u32 {
     if !state.motion_running() {
         return 0;

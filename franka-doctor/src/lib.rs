@@ -128,8 +128,8 @@ impl Doctor {
         self
     }
 
-    /// Selects long measurements: wake-ups and loopback for 60 s each instead of 10 s, and 10 000
-    /// round trips instead of 1000.
+    /// Selects long measurements. Wake-ups and loopback then take 60 s each instead of 10 s. The
+    /// number of round trips is 10 000 instead of 1000.
     pub fn long(mut self, long: bool) -> Self {
         self.long = long;
         self

@@ -282,8 +282,8 @@ impl Doctor {
     }
 }
 
-/// Returns a simulated robot that sends its states as punctually as this computer can, and that
-/// ends a motion if too many commands are late. `sent` receives the time of each state.
+/// Returns a simulated robot that sends its states as punctually as this computer can. It ends a
+/// motion if too many commands are late. `sent` receives the time of each state.
 fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     // This code runs on the robot's thread. If the system refuses the request, the thread keeps its
     // scheduling.

@@ -395,7 +395,7 @@ fn ended(hold: Option<Hold>, lost: Lost) -> Step {
 }
 
 /// Silence after which a hold ends. The page sends a message every 50 ms, so two messages may be
-/// lost or late.
+/// late.
 pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
 
 /// Silence after which another viewer may take the lease.

@@ -85,9 +85,9 @@ pub struct Explanation {
     pub last: u64,
     /// Number of cycles.
     pub cycles: u64,
-    /// Time of the cycle that shows the end of the explained motion, which is the last motion that
-    /// the robot stopped, a guard aborted or a lost link ended. If a guard aborted the motion, this
-    /// is the cycle in which the arm came to a stop. Without such a motion, this is the last cycle.
+    /// Time of the cycle that shows the end of the explained motion. This is the last motion that
+    /// the robot stopped, a guard aborted or a lost link ended. If a guard aborted it, the time is
+    /// the cycle in which the arm came to a stop. Without such a motion, it is the last cycle.
     pub end: u64,
     /// Time at which this host received the cycle at [`end`](Self::end); `None` if the source has
     /// no such time. A log has none.

@@ -82,9 +82,9 @@ impl Recording {
     /// chunks (see [`Recording::damage`]).
     ///
     /// # Errors
-    /// Returns [`RecordingError::File`] if the file cannot be opened, [`RecordingError::NotMcap`]
-    /// if it is not an MCAP file, [`RecordingError::Foreign`] if it is not a recording, and
-    /// [`RecordingError::Read`] if it cannot be read.
+    /// Returns [`RecordingError::File`] if the file cannot be opened, and [`RecordingError::Read`]
+    /// if it cannot be read. Returns [`RecordingError::NotMcap`] if it is not an MCAP file, and
+    /// [`RecordingError::Foreign`] if it is not a recording.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         let bytes = File::open(path).and_then(Bytes::of_file);
