@@ -35,7 +35,7 @@ pub enum Advice {
     LessEffort,
     /// Reduce the gains: they are too high for this pose or contact.
     SofterGains,
-    /// Check a setting in Desk, which a client cannot change.
+    /// Check a setting in Desk. A client cannot change it.
     Desk,
 }
 

@@ -1,4 +1,4 @@
-//! Causes in a diagnosis and their texts. The module `reasoning` selects the causes.
+//! Causes in a diagnosis and their texts. The module `reflex_reason` selects the causes.
 
 use core::fmt;
 use core::time::Duration;
@@ -52,7 +52,7 @@ pub enum Cause {
     },
     /// The robot received no command in some cycles.
     LostPackets {
-        /// Number of states that did not arrive and were therefore not answered.
+        /// Number of states that did not arrive, so this host did not answer them.
         states: u64,
         /// Number of commands that were sent but did not arrive in time, computed from the robot's
         /// success rate.
@@ -78,7 +78,7 @@ pub enum Cause {
     },
     /// The estimated external force or torque exceeded the lower (contact) threshold.
     Contact {
-        /// The joint, or the axis of the base frame, with the contact.
+        /// The joint or the axis of the base frame at which the robot senses the contact.
         subject: Subject,
         /// Largest estimate during the contact: `[N·m]` for a joint or a rotation, `[N]` for a
         /// translation. It is positive when the robot pushes the environment.

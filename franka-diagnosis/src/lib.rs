@@ -1,6 +1,6 @@
 //! Explains why a Franka robot ended a motion, for example with a reflex. A diagnosis lists the
 //! exceeded limit, the excess, the first cycle above the limit, the causes, and the recommended
-//! changes. The module `reasoning` combines the evidence.
+//! changes. The module `reflex_reason` combines the evidence.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
@@ -58,10 +58,10 @@
 //!
 //! # What it does not do
 //!
-//! The crate reads no clock, file or socket. It allocates, so it is not for the control thread. It
-//! uses only the contents of a log. States do not contain collision thresholds, virtual walls or
-//! the robot's own filters. A diagnosis gives two values between which a threshold lies. The log
-//! does not show events before its first cycle.
+//! The crate reads no clock, no file and no socket. It allocates memory, so do not call it in the
+//! control thread. It uses only the contents of a log. States contain no collision thresholds, no
+//! virtual walls and no filters of the robot. Therefore a diagnosis can only state two values
+//! between which a threshold lies. A log does not show events before its first cycle.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -100,13 +100,13 @@ pub use franka_rt::driver::Commander;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Errors that contain the log of the motion that ended with them.
+/// Errors that ended a motion and contain its log.
 pub trait Diagnose {
-    /// Returns the diagnosis of a motion that the robot itself stopped; `None` for any other end of
-    /// a motion.
+    /// Returns the diagnosis if the robot itself stopped the motion; `None` if it ended
+    /// differently.
     ///
-    /// Each call computes the diagnosis in the caller's thread. This allocates and takes up to a
-    /// few milliseconds.
+    /// Each call computes the diagnosis in the caller's thread. It allocates memory and takes up to
+    /// a few milliseconds.
     fn diagnose(&self) -> Option<Diagnosis>;
 }
 
@@ -123,7 +123,7 @@ impl Diagnose for MotionError {
     }
 }
 
-/// Returns `None` for a reflex that ended no motion of this program.
+/// Returns `None` if the reflex did not end a motion of this program.
 impl Diagnose for Reflex {
     fn diagnose(&self) -> Option<Diagnosis> {
         self.error.as_deref()?.diagnose()
@@ -132,32 +132,33 @@ impl Diagnose for Reflex {
 
 /// Reason why the robot ended a motion, derived from the motion's last cycles.
 ///
-/// `Display` gives a few lines: the exceeded limit, the causes, other errors, and the advice.
+/// The `Display` implementation writes a few lines: the exceeded limit, the causes, other errors,
+/// and the advice.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
     /// Source of the motion's commands.
     pub commander: Commander,
-    /// The errors that the robot named.
+    /// The errors that the robot reported.
     pub errors: Errors,
-    /// The error that explains the other errors; `None` if the robot named no error.
+    /// The error that explains the other errors; `None` if the robot reported no error.
     pub error: Option<RobotError>,
-    /// The exceeded limit, if the log shows it.
+    /// The exceeded limit; `None` if the log does not show it.
     pub finding: Option<Finding>,
-    /// Events that led to the error, the most likely first. Empty if the log shows no such event.
+    /// Events that led to the error, most likely first; empty if the log shows no such event.
     pub causes: Vec<Cause>,
-    /// Recommended changes, the most promising first. [`Advice::text`] names the settings for this
-    /// commander.
+    /// Recommended changes, most promising first. [`Advice::text`] names the settings that apply to
+    /// `commander`.
     pub advice: Vec<Advice>,
-    /// `message_id` of the state that shows the end of the motion; `None` without a log.
+    /// `message_id` of the state that shows the end of the motion; `None` if there is no log.
     pub end: Option<u64>,
-    /// Number of cycles of the log that were used.
+    /// Number of cycles in the log that the diagnosis used.
     pub cycles: usize,
 }
 
-/// The input of a diagnosis, in addition to the model of the robot. A program can save it and
-/// diagnose it later.
+/// The input of a diagnosis, except the model of the robot. A program can save a case and diagnose
+/// it later.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Case {
@@ -167,8 +168,8 @@ pub struct Case {
     pub errors: Errors,
     /// The last cycles of the motion.
     pub log: Arc<ControlLog>,
-    /// Counts over the whole motion, which show commands that left too late; `None` if they were
-    /// not recorded.
+    /// Counts over the whole motion, which also show late commands; `None` if they were not
+    /// recorded.
     pub statistics: Option<MotionStatistics>,
 }
 
@@ -185,12 +186,12 @@ impl From<&ControlError> for Case {
 }
 
 impl Diagnosis {
-    /// Largest number of cycles of a log that a diagnosis uses; they are the newest. This is
-    /// enough: the robot checks limits in every cycle, stops after 20 lost cycles, and averages the
-    /// success rate over 100 cycles.
+    /// Largest number of cycles in a log that a diagnosis uses. It uses the newest cycles. This
+    /// number is enough, because the robot checks limits in every cycle, stops after 20 lost
+    /// cycles, and averages the success rate over 100 cycles.
     pub const CYCLES_MAX: usize = 200;
 
-    /// Returns the diagnosis of a case, for a robot of this model.
+    /// Returns the diagnosis of a case for a robot with this model.
     pub fn of(case: &Case, model: &Model) -> Self {
         let older = case.log.len().saturating_sub(Self::CYCLES_MAX);
         let evidence = Evidence {
@@ -222,8 +223,8 @@ impl Diagnosis {
         }
     }
 
-    /// Number of cycles from the first cycle in which the limit was exceeded to the state that
-    /// shows the end of the motion.
+    /// Returns the number of cycles from the first cycle above the limit to the state that shows
+    /// the end of the motion; `None` without a log or a finding.
     pub fn cycles_before_end(&self) -> Option<u64> {
         Some(self.end?.saturating_sub(self.finding?.since))
     }

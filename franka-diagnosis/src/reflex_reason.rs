@@ -159,7 +159,7 @@ pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>,
 }
 
 fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
-    // A value that certainly exceeds its limit has priority over a value that is near it.
+    // A value that certainly exceeds its limit has priority over a value that is near its limit.
     let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {
         let found = || readings.iter().map(|readings| newest(error, &readings()));
         found()
@@ -206,7 +206,7 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         E::JointReflex => contact::collision(evidence, error, Sense::Joints),
         E::CartesianReflex => contact::collision(evidence, error, Sense::Axes),
         E::SelfCollisionAvoidanceViolation => measured::nearest_bodies(evidence),
-        // Newer systems of the FR3 report this for commands too.
+        // Newer systems of the FR3 report this error for commands, too.
         E::JointPositionLimitsViolation => {
             beyond(newest(error, &commanded::position_readings(evidence)))
                 .or_else(|| worst(error, &measured::position_readings(evidence)))

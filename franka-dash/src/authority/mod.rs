@@ -59,7 +59,7 @@ pub(crate) struct Status {
 }
 
 impl Permissions {
-    /// True if the server accepts any command.
+    /// Returns true if the server accepts any command.
     pub(crate) fn any(&self) -> bool {
         self.motion || self.disturbances || self.recording
     }

@@ -206,7 +206,7 @@ impl Timeline {
         flags.copied().flatten().max()
     }
 
-    /// Returns the moments until shortly after the end, oldest first, and the number of the omitted
+    /// Returns the moments until shortly after the end, oldest first, and the number of omitted
     /// moments.
     pub(super) fn finish(self) -> (Vec<Moment>, u64) {
         let mut moments = self.until_end.unwrap_or(self.moments);

@@ -147,7 +147,7 @@ impl TableWriter {
         append().map(|_| ()).map_err(at(&self.path))
     }
 
-    /// Number of bytes written so far.
+    /// Returns the number of bytes written so far.
     pub(crate) fn size(&self) -> usize {
         self.writer.bytes_written()
     }

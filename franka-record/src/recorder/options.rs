@@ -209,7 +209,7 @@ pub struct Robot {
     /// Lengths of the robot's links, as used by the driver. The default comes from the vendor's
     /// description.
     pub lengths: Lengths,
-    /// URDF of the robot, if known. The recorder attaches it to the file.
+    /// URDF of the robot; `None` if unknown. The recorder attaches it to the file.
     pub urdf: Option<String>,
     /// Other facts about the robot for the metadata, such as its address, version and options.
     pub metadata: BTreeMap<String, String>,

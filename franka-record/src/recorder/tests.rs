@@ -1,4 +1,4 @@
-//! Recorders with disks that hang, and with a wall clock that is set.
+//! Recorders whose disk blocks, and recorders whose wall clock is set during a recording.
 
 use std::fs::File;
 use std::io::{PipeReader, Read as _};
@@ -21,7 +21,7 @@ use feed::{Arm, Scratch, quick};
 #[path = "../../tests/recording/feed.rs"]
 mod feed;
 
-/// Returns a disk that accepts some bytes and then blocks, until the other end is read.
+/// Returns a recorder whose disk accepts some bytes and then blocks until the other end is read.
 fn hanging() -> (Recorder, PipeReader) {
     let (reader, writer) = std::io::pipe().unwrap();
     let file = File::from(OwnedFd::from(writer));

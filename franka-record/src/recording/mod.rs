@@ -249,7 +249,7 @@ impl Recording {
     /// program set a name.
     ///
     /// # Errors
-    /// [`RecordingError::NoRobot`] if the recording has no robot with this name.
+    /// Returns [`RecordingError::NoRobot`] if the recording has no robot with this name.
     pub fn robot(&self, name: &str) -> Result<RobotRecording<'_>, RecordingError> {
         if self.robots.iter().any(|robot| robot.name == name) {
             Ok(RobotRecording {
@@ -269,7 +269,7 @@ impl Recording {
     /// Returns the names of the attached files.
     ///
     /// # Errors
-    /// [`RecordingError::Read`] if the file cannot be read.
+    /// Returns [`RecordingError::Read`] if the file cannot be read.
     pub fn attachments(&self) -> Result<Vec<String>, RecordingError> {
         let mut names = Vec::new();
         for entry in &self.index.attachments {
@@ -286,7 +286,7 @@ impl Recording {
     /// damaged.
     ///
     /// # Errors
-    /// [`RecordingError::Read`] if the file cannot be read.
+    /// Returns [`RecordingError::Read`] if the file cannot be read.
     pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, RecordingError> {
         self.attachment_in(self.index.attachments.iter(), name)
     }

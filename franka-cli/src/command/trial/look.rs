@@ -127,7 +127,7 @@ impl Look {
         since
     }
 
-    /// Number of missing states between the first and the last state.
+    /// Returns the number of missing states between the first and the last state.
     pub(super) fn missing(&self) -> u64 {
         let (first, last) = self.ids.unwrap_or_default();
         (last - first + 1).saturating_sub(self.states)

@@ -21,7 +21,7 @@ impl Cassette {
     /// the data before the cut, and [`Cassette::damage`] contains the reason.
     ///
     /// # Errors
-    /// [`CassetteError`] if the bytes are not a cassette.
+    /// Returns [`CassetteError`] if the bytes are not a cassette.
     pub fn read(file: &[u8]) -> Result<Self, CassetteError> {
         let mut reading = Reading::default();
         let damage = each_record(file, |record| reading.on_record(record))?;

@@ -146,8 +146,8 @@ impl Dataset {
     /// the dataset, provided that it has the same features.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if the dataset differs in version, robot, rate or features, or if
-    /// its files do not contain the declared number of frames.
+    /// Returns [`ExportError::Dataset`] if the dataset has a different version, robot, rate or
+    /// features, or if its files do not contain the declared number of frames.
     pub fn open(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
@@ -277,8 +277,8 @@ impl Dataset {
     /// Makes the new episodes part of the dataset.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`] if a file
-    /// cannot be written.
+    /// Returns [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`]
+    /// if a file cannot be written.
     pub fn finish(mut self) -> Result<(), ExportError> {
         if self.contents.episodes == 0 {
             let why = "got no episodes, expected at least one".to_owned();
