@@ -95,7 +95,6 @@ impl Fingers {
         }
     }
 
-    /// Ends the current action.
     pub(crate) fn end(&self) {
         self.lock().take();
     }

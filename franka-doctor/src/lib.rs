@@ -240,7 +240,6 @@ impl Doctor {
     }
 }
 
-/// Records the histogram of a measurement.
 fn note(readings: &Readings<'_>, what: &str, measured: &Result<Latencies, Unread>) {
     if let Ok(latencies) = measured {
         let bucket = |(us, count)| format!("{us}: {count}");

@@ -191,7 +191,6 @@ impl Hub {
         self.publish(&command);
     }
 
-    /// Brakes the arm if a hold has ended.
     fn end(&self, command: &mut Command, ended: Option<Lost>) {
         let Some(lost) = ended else { return };
         command.hold = None;

@@ -299,7 +299,6 @@ impl Files {
         }
     }
 
-    /// Ends all files.
     pub(super) fn finish(&mut self) {
         if let Some(mut thinning) = self.thinning.take() {
             thinning.finish(|message| self.write(&message));
@@ -316,7 +315,6 @@ impl Files {
         }
     }
 
-    /// Ends the recording if data could not be encoded.
     fn check(&mut self, result: Result<(), RecordError>) {
         if let Err(error) = result {
             self.disk.fail(error);

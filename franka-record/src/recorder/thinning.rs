@@ -52,7 +52,6 @@ impl Thinning {
         is_next
     }
 
-    /// Forwards all delayed messages.
     pub(super) fn finish(&mut self, mut pass: impl FnMut(Message)) {
         for (message, kept) in self.waiting.drain(..) {
             if kept {

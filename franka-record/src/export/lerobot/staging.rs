@@ -58,7 +58,6 @@ impl Staging {
         })
     }
 
-    /// Makes the files of the export part of the dataset.
     pub(super) fn commit(self) -> Result<(), ExportError> {
         for file in files(&self.folder)? {
             let to = self.root.join(&file);
