@@ -190,8 +190,7 @@ impl Drain {
                 lock(&self.status).dropped += lost;
                 self.take_waiting_cycles(index);
             }
-            // A cycle may still be in transit when newer data arrives, so the data waits for the
-            // cycle.
+            // A cycle that is still in transit is only slightly older than this data.
             self.sources[index].pass(self.clock.now(), &mut self.files);
         }
     }

@@ -24,7 +24,7 @@ pub(super) struct McapFile {
     channels: Vec<[u16; Topic::ALL.len()]>,
     /// Number of messages so far, by channel.
     sequences: BTreeMap<u16, u32>,
-    /// Time of the newest message. Later messages get this time if they are older.
+    /// Time of the newest message. A message with an earlier time gets this time.
     newest: HostTime,
     /// Start of the recording.
     began: HostTime,

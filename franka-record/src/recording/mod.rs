@@ -307,8 +307,8 @@ impl Recording {
         Ok(None)
     }
 
-    /// Returns the description of a robot. If the program attached another file under the same
-    /// name, that file precedes the description.
+    /// Returns the description of a robot. If the program attached a file under the same name, the
+    /// description is the newer attachment.
     fn description(&self, name: &str) -> Option<String> {
         let newest_first = self.index.attachments.iter().rev();
         let data = self.attachment_in(newest_first, name).ok()??;

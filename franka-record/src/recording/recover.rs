@@ -37,8 +37,9 @@ impl Recording {
     /// # Errors
     /// Returns [`RecordingError::NotMcap`] if `damaged` is not an MCAP file,
     /// [`RecordingError::Compression`] if its compression is not supported, and
-    /// [`RecordingError::Read`] if it cannot be read. Returns [`RecordingError::File`] if `whole`
-    /// exists or cannot be written, and removes the incomplete new file.
+    /// [`RecordingError::Read`] if it cannot be read. Returns [`RecordingError::File`] if `damaged`
+    /// cannot be opened, or if `whole` exists or cannot be written. An incomplete new file is
+    /// removed.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,
