@@ -4,7 +4,7 @@ use crate::checks::{Check, all};
 use crate::finding::{Finding, Purpose, Verdict};
 use crate::readings::Readings;
 
-/// What was observed when a motion ended because of missing packets.
+/// Observation when a motion ended because of missing packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// States stopped arriving.

@@ -17,7 +17,7 @@ pub enum Purpose {
     Move,
 }
 
-/// What a value means for the purpose. [`Verdict::Unknown`] is neither good nor bad.
+/// Meaning of a value for the purpose. [`Verdict::Unknown`] is neither good nor bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -111,13 +111,13 @@ pub struct Finding {
     pub id: &'static str,
     /// The group that contains the finding.
     pub group: Group,
-    /// What the value means for the purpose.
+    /// Meaning of the value for the purpose.
     pub verdict: Verdict,
     /// The value. For [`Verdict::Unknown`], a description of what is missing.
     pub read: String,
     /// The expected value, with its thresholds.
     pub wanted: &'static str,
-    /// What happens if the value is not as expected.
+    /// Consequence if the value is not as expected.
     pub why: &'static str,
     /// Source of the threshold.
     pub source: &'static str,

@@ -99,8 +99,8 @@ pub struct Doctor {
 
 impl Doctor {
     /// Creates the checks for `purpose`. By default, the robot's address is not set, and the report
-    /// contains no personal names and no device names. Wake-ups and loopback are measured for 10 s
-    /// each, unless the purpose is only simulation.
+    /// replaces personal and device names. Wake-ups and loopback are measured for 10 s each, unless
+    /// the purpose is only simulation.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
