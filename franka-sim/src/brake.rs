@@ -1,4 +1,4 @@
-//! The time-optimal stop of each joint under bounded acceleration and jerk.
+//! Time-optimal stop of each joint under bounded acceleration and jerk.
 
 use franka_model::JointVector;
 
@@ -33,7 +33,7 @@ impl Brake {
         }
     }
 
-    /// State of the joints `dt` seconds later.
+    /// Advances by `dt` seconds, and returns the joint signal at that time.
     pub(crate) fn advance(&mut self, dt: f64) -> JointSignal {
         self.elapsed += dt;
         let mut signal = JointSignal::resting(JointVector::zeros());
@@ -62,9 +62,9 @@ struct AxisStop {
 
 impl AxisStop {
     fn plan(position: f64, velocity: f64, acceleration: f64, limit: f64, jerk: f64) -> Self {
-        // The sign of the velocity that remains if the acceleration ended now decides the
-        // direction of the peak. The problem is mirrored so that this velocity is positive, and
-        // therefore the peak negative.
+        // `left` is the velocity that would remain if the acceleration now fell to zero. Its sign
+        // decides the direction of the peak. The problem is mirrored to make this velocity positive
+        // and the peak negative.
         let left = velocity + acceleration * acceleration.abs() / (2.0 * jerk);
         let side = if left < 0.0 { -1.0 } else { 1.0 };
         let (v, a) = (side * velocity, side * acceleration);
@@ -133,8 +133,8 @@ mod tests {
                     assert!((now.0 - last.0).abs() <= 2.7e-3, "{v} {a}");
                     last = now;
                 }
-                // Checks that the analytic end of the last phase is at rest, not only the final
-                // snap to rest.
+                // Checks that the last phase itself ends at rest, because `at` returns rest after
+                // the end in any case.
                 let (_, v_end, a_end) = stop.at(duration - 1e-9);
                 assert!(
                     v_end.abs() < 1e-6 && a_end.abs() < 1e-4,

@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
 
 use crate::arm::Arm;
 
-/// Configuration of one simulated robot. [`Default`] is a Franka Research 3 with a bare flange in
+/// Configuration of one simulated robot. The default is a Franka Research 3 with a bare flange in
 /// the ready pose. It enforces its limits as a real robot does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -22,37 +22,38 @@ pub struct Config {
     pub kind: RobotKind,
     /// Joint positions at the start, `[rad]`.
     pub q: JointVector,
-    /// Tool on the flange that the robot knows, as set up in Desk.
+    /// Tool on the flange, as set up in Desk. The robot's model includes it.
     pub tool: Tool,
     /// Load on the flange in addition to the tool. The robot does not know it until a client
     /// declares it with `SetLoad`.
     pub payload: Load,
-    /// The arm: friction, drives, sensors, and differences from its model. `None` is the
-    /// [ideal](Arm::ideal) arm of the robot's kind, which no real arm equals. Robots of
-    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) have a realistic arm.
+    /// The arm: friction, drives, sensors, and differences from its model. `None` selects the
+    /// [ideal](Arm::ideal) arm of the robot's kind, although no real arm is ideal.
+    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) select a realistic arm.
     pub arm: Option<Arm>,
-    /// Seed of all randomness. The same seed and the same input give the same states.
+    /// Seed of all random numbers. The same seed and the same input give the same states.
     pub seed: u64,
     /// Value of `message_id` before the first cycle: milliseconds since the robot started.
     pub clock: u64,
-    /// True if commands and motions outside the limits end in a reflex (the robot's own stop). If
+    /// True if commands and motions outside the limits cause a reflex (the robot stops itself). If
     /// false, only physics limits the arm.
     pub enforce_limits: bool,
-    /// Factor on the bounds of acceleration and jerk for commanded joints. Use a value above 1 for
-    /// clients whose commands are rougher than a robot allows. Default 1.
+    /// Factor by which the robot multiplies the acceleration and jerk limits of commanded joints.
+    /// Use a value above 1 for clients whose commands are rougher than a real robot allows. Default
+    /// 1.
     pub joint_discontinuity_scale: f64,
-    /// True if 20 lost commands in a row end in a reflex. If false, the motion generator ignores a
-    /// cycle without a command and keeps its setpoint until the next command. A client may then be
-    /// slower than 1 kHz or stopped in a debugger.
+    /// True if 20 lost commands in a row cause a reflex. If false, the motion generator keeps its
+    /// setpoint until the next command arrives. A client may then be slower than 1 kHz, or stopped
+    /// in a debugger.
     pub enforce_communication: bool,
     /// URDF that the robot serves instead of the built-in description (protocol 10). The simulator
-    /// does not check it. Use it to test clients.
+    /// does not check it. Use this field to test clients.
     pub urdf: Option<String>,
-    /// The model library that the robot serves to every architecture and system (protocol 5). The
-    /// licence of the vendor's library does not permit to distribute it here. Without a library the
-    /// robot answers with an error.
+    /// Model library that the robot serves to clients of every architecture and operating system
+    /// (protocol 5). The licence of the vendor's library does not permit us to distribute it here.
+    /// If `None`, the robot answers with an error.
     pub model_library: Option<Bytes>,
-    /// Virtual walls, as set up in Desk, with the numbers by which clients request them (protocol
+    /// Virtual walls, as set up in Desk, each with the number by which clients request it (protocol
     /// 5). Each wall is a cuboid from the origin of its frame to its corner. The end effector stays
     /// inside the cuboid of each active wall.
     pub walls: Vec<(i32, VirtualWall)>,
@@ -61,7 +62,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Returns [`arm`](Self::arm), or the ideal arm if it is `None`.
+    /// Returns [`arm`](Self::arm), or the ideal arm if the field is `None`.
     pub fn chosen_arm(&self) -> Arm {
         self.arm.clone().unwrap_or_else(|| Arm::ideal(self.kind))
     }
@@ -113,9 +114,9 @@ impl Tool {
         has_hand_shape: false,
     };
 
-    /// The Franka Hand. It is turned by -45 degrees about the flange axis, and its fingertips are
-    /// 0.1034 m from the flange. Its mass is 0.73 kg, as Desk declares it (the description files
-    /// say 0.7126 kg).
+    /// Returns the Franka Hand, turned by -45 degrees about the flange axis. Its fingertips are
+    /// 0.1034 m from the flange. Its mass is 0.73 kg, the value that Desk declares (the description
+    /// files contain 0.7126 kg).
     pub fn hand() -> Self {
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), -core::f64::consts::FRAC_PI_4);
         let mut f_t_ne = turn.to_homogeneous();

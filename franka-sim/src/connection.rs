@@ -18,7 +18,8 @@ pub enum SessionError<C: ServiceCommand = Command> {
     /// The client sent a message that the protocol does not permit.
     #[error("{0}")]
     Violation(Violation<C>),
-    /// The client announced another protocol version. The server has told the client so.
+    /// The client announced another protocol version. The server has already sent its own version
+    /// to the client.
     #[error("got protocol {announced}, which this server does not support")]
     Incompatible {
         /// The version that the client announced.
@@ -35,13 +36,14 @@ pub struct Datagram<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Splits the first message off a stream; `None` while the message is incomplete.
+/// Function that splits the first message off a stream. It returns `None` while the message is
+/// incomplete.
 pub(crate) type Framing = fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>;
 
-/// A request, and the id for its answer.
+/// A request, and the id that its answer must carry.
 pub(crate) type Received<P> = (CommandId, <P as Protocol>::Request);
 
-/// A client, from its first to its last byte.
+/// Connection of one client, from its first byte to its last.
 pub(crate) struct Connection<P: Protocol> {
     pub(crate) session: Session<P>,
     framing: Framing,
@@ -64,13 +66,13 @@ impl<P: Protocol> Connection<P> {
         self.udp_port
     }
 
-    /// Appends bytes of the client's stream, in any portions.
+    /// Appends bytes of the client's stream, which may arrive in pieces of any size.
     pub(crate) fn receive(&mut self, bytes: &[u8]) {
         self.received.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete request. This function itself answers handshakes and requests that
-    /// no device accepts, through `replies`.
+    /// Returns the next complete request. Answers handshakes, and requests that no device accepts,
+    /// by itself: it writes these answers to `replies`.
     pub(crate) fn next_request(
         &mut self,
         replies: &mut VecDeque<Bytes>,

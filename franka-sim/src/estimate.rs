@@ -8,16 +8,15 @@ use crate::config::ForceAxes;
 use crate::generator::ArmModel;
 use crate::signal::{halves, stack};
 
-/// Estimated external torques, the wrench that corresponds to them, and the thresholds that they
-/// exceed.
+/// Estimated external torques, the corresponding wrench, and the thresholds that they exceed.
 ///
-/// A positive value is the robot's action on its environment, as in the state (libfranka 0.21,
+/// Positive values act from the robot on its environment, as in the state (libfranka 0.21,
 /// `robot_state.h`). If a hand pushes the arm upwards, the force along z is negative.
 #[derive(Debug, Clone)]
 pub(crate) struct Estimate {
     /// Estimated external torques, `tau_ext_hat_filtered`, `[N·m]`.
     pub(crate) torque: JointVector,
-    /// `O_F_ext_hat_K`, its torque about the origin of the base, `[N, N·m]`.
+    /// `O_F_ext_hat_K`, with the torque about the origin of the base, `[N, N·m]`.
     pub(crate) wrench_base: Wrench,
     /// The same wrench with its torque about the origin of the stiffness frame.
     wrench_at_stiffness: Wrench,
@@ -31,7 +30,7 @@ pub(crate) struct Estimate {
 }
 
 impl Estimate {
-    /// An estimate of no contact.
+    /// An estimate without any contact.
     pub(crate) fn new() -> Self {
         Self {
             torque: JointVector::zeros(),
@@ -61,8 +60,8 @@ impl Estimate {
         self.wrench_base = stack(&force, &(torque + origin.cross(&force)));
     }
 
-    /// Compares the estimate with the thresholds, with forces along `axes`; `accelerating` selects
-    /// the set. Returns the errors that stop the robot.
+    /// Compares the estimate with the thresholds. `axes` are the axes of the forces, and
+    /// `accelerating` selects the set of thresholds. Returns the errors that stop the robot.
     ///
     /// A collision is latched only if `moving` is true, because an arm at rest need not stop.
     pub(crate) fn compare(
@@ -137,11 +136,12 @@ fn latch<const N: usize>(flags: &mut [bool; N], set: &[bool; N]) {
     }
 }
 
-/// The wrench that corresponds to `torque`, by least squares: `(J Jᵀ)⁻¹ J τ`; zero where the
-/// smallest singular value of `J` is at most `singular`.
+/// Wrench that corresponds to `torque`, by least squares: `(J Jᵀ)⁻¹ J τ`. Zero if the smallest
+/// singular value of `J` is at most `singular`.
 fn wrench(jacobian: &Jacobian, torque: &JointVector, singular: f64) -> Wrench {
     let gram = jacobian * jacobian.transpose();
-    // The matrix is positive definite exactly if all singular values are greater.
+    // This matrix is positive definite if and only if all singular values are greater than
+    // `singular`.
     let excess = gram - Matrix6::from_diagonal_element(singular * singular);
     match (Cholesky::new(excess), Cholesky::new(gram)) {
         (Some(_), Some(factor)) => factor.solve(&(jacobian * torque)),

@@ -8,9 +8,9 @@ use crate::generator::Desired;
 /// Filters a command. The filters continue from the desired values and from the last torques,
 /// `[N·m]`.
 ///
-/// They are first-order low-passes of gain `T / (T + 1 / 2πf)`. The highest cutoff that can be
-/// set, 1000 Hz, means no filter (FCI documentation). An invalid pose passes unchanged and is
-/// refused later.
+/// The filters are first-order low-passes with the gain `T / (T + 1 / 2πf)`. The highest cutoff
+/// that can be set, 1000 Hz, means no filter (FCI documentation). An invalid pose passes unchanged
+/// and is refused later.
 pub(crate) fn filtered(
     command: &RobotCommand,
     before: &Desired,

@@ -1,4 +1,4 @@
-//! Differences between the kinds of robot, besides their arms: versions, names, statuses.
+//! Differences between the kinds of robot, except their arms: versions, names, statuses.
 
 use franka_model::RobotKind;
 use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version};
@@ -12,9 +12,9 @@ pub(crate) struct Description {
     pub(crate) urdf_name: Option<&'static str>,
     /// Precision of the numbers in its states.
     pub(crate) precision: Precision,
-    /// Errors of desired joint positions outside their range.
+    /// Errors that the robot raises for desired joint positions outside their range.
     pub(crate) range: RangeErrors,
-    /// Answers while a safety function is active.
+    /// Answers to requests while a safety function is active.
     pub(crate) safety: SafetyStatuses,
 }
 

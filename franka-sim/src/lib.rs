@@ -10,18 +10,18 @@
 //! | module | content |
 //! |---|---|
 //! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await`, [`Sim::fer`] |
-//! | [`robot`] | the robot as a value, without clock and sockets, for tests in virtual time |
+//! | [`robot`] | the robot as a value without a clock and sockets, for tests in virtual time |
 //! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with separate servers |
-//! | [`arm`] | one arm's friction, drives, sensors and errors, and families of arms |
+//! | [`arm`] | friction, drives, sensors and errors of one arm, and families of arms |
 //! | [`plant`] | the physics of the arm |
-//! | [`network`] | the network between a robot and its client, as a value: loss, delay, stalls |
+//! | [`network`] | the network between a robot and its client: loss, delay, stalls |
 //! | [`config`] | configuration of a robot: arm, pose, tool, load, strictness |
 //!
-//! The binary `franka-sim` is `command_line`, for clients in any language.
+//! The binary `franka-sim` runs the module `command_line`. It serves clients in any language.
 //!
 //! # Example
 //!
-//! One millisecond at a time, without sockets:
+//! This program advances the robot by one millisecond at a time, without sockets:
 //!
 //! ```
 //! use franka_sim::{Config, Robot};
@@ -36,39 +36,42 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
-//! On Unix a robot over sockets follows the wall clock. With [`Sim::virtual_time`] its time follows
-//! the client.
+//! On Unix, a robot on sockets follows the wall clock. With [`Sim::virtual_time`], the robot's time
+//! advances with the answers of the client.
 //!
 //! # Features
 //!
-//! - `command-line`, on by default: the binary `franka-sim`, and its options for other programs.
-//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. It requires Rust 1.95 and MuJoCo's library,
-//!   which `cargo xtask mujoco` fetches in this workspace.
-//! - `serde`: families of arms as JSON, `arm::Family::from_json`. `command-line` includes it.
+//! - `command-line`, on by default: the binary `franka-sim`, and the parser of its options for
+//!   other programs.
+//! - `mujoco`: the physics in MuJoCo, `plant::MujocoArm`. This feature requires Rust 1.95 and
+//!   MuJoCo's library, which `cargo xtask mujoco` fetches in this workspace.
+//! - `serde`: reads families of arms from JSON, with `arm::Family::from_json`. The feature
+//!   `command-line` includes this feature.
 //!
 //! # Disturbances
 //!
-//! The methods of [`Robot`] disturb the robot; [`Running::with`] calls them from any task. They
-//! press the user stop, close the brakes, guide the arm, activate a safety function, change the
-//! payload, raise any error, or perform the recovery that requires a person.
+//! The methods of [`Robot`] disturb the robot; [`Running::with`] calls these methods from any task.
+//! They press the user stop, close the brakes, guide the arm, activate a safety function, change
+//! the payload, raise any error, or perform the recovery that requires a person.
 //! [`touch`](Robot::touch) acts on the arm at any point ([`Touch`]). It pushes the arm, pulls it by
 //! a spring, holds it, blocks a joint, or puts a wall in its path.
 //!
 //! # What it does not do
 //!
-//! - The robot: the user must provide its model library (protocol 5). Its self-collision check
-//!   knows the shape of the Franka Hand, and no other tool.
-//! - Errors that never occur automatically: errors of the force controller, of Desk's own motions
-//!   and of the base's acceleration. [`Robot::trip`] raises any.
-//! - Physics: links do not bend, and joints only if the [`Arm`] has elasticity. The rigid-body
-//!   plant has no surroundings except a [`Touch`], and no contact with itself. The plant of MuJoCo
-//!   (feature `mujoco`) has a scene.
-//! - The end effectors have only kinematics, unless the plant (the physics) has fingers. Without
-//!   fingers in the plant, arm and end effectors are independent, and held objects have neither
+//! - The robot: the user must provide the robot's model library (protocol 5). The self-collision
+//!   check knows the shape of the Franka Hand, but not of other tools.
+//! - Errors: the simulator never raises errors of the force controller, of Desk's own motions, or
+//!   of the base's acceleration by itself. [`Robot::trip`] raises any error.
+//! - Physics: links do not bend, and joints bend only if the [`Arm`] has elasticity. The rigid-body
+//!   plant models no surroundings except a [`Touch`], and no contact of the arm with itself. The
+//!   MuJoCo plant (feature `mujoco`) contains a scene.
+//! - End effectors: they have only kinematics, unless the plant (the physics) has fingers. Without
+//!   fingers in the plant, the end effectors do not affect the arm, and held objects have neither
 //!   mass nor pose.
-//! - Unpublished values: this simulator chooses them, and [`Unpublished`] makes them options. They
-//!   are tolerances, default thresholds and gains, the gain of the force estimate, and the
-//!   criterion for instability. None has been measured on a robot.
+//! - Unpublished values: the simulator chooses values that the vendor has not published, and
+//!   [`Unpublished`] makes them options. They are tolerances, default thresholds and gains, the
+//!   gain of the force estimate, and the criterion for instability. None has been measured on a
+//!   robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // Some items are used only by the robot on sockets.

@@ -1,4 +1,4 @@
-//! Randomness from a seed.
+//! Random numbers from a seed.
 
 use franka_model::JointVector;
 
@@ -6,7 +6,7 @@ use franka_model::JointVector;
 /// transform.
 ///
 /// The crate `rand` may change its small generator with the version or the platform. This generator
-/// gives the same run for a seed everywhere.
+/// gives the same numbers for a seed everywhere.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,
@@ -17,7 +17,7 @@ impl Random {
         Self { state: seed }
     }
 
-    /// Seven independent values of these standard deviations.
+    /// Seven independent, normally distributed values with these standard deviations.
     pub(crate) fn joints(&mut self, deviations: &JointVector) -> JointVector {
         if *deviations == JointVector::zeros() {
             return *deviations;
@@ -26,13 +26,13 @@ impl Random {
     }
 
     pub(crate) fn normal(&mut self) -> f64 {
-        // In (0, 1], so that the logarithm is finite.
+        // The value is in (0, 1], because the logarithm must be finite.
         let u = 1.0 - self.uniform();
         let angle = core::f64::consts::TAU * self.uniform();
         (-2.0 * u.ln()).sqrt() * angle.cos()
     }
 
-    /// In [0, 1).
+    /// Uniformly distributed number in [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }

@@ -7,8 +7,8 @@ use franka_model::{CYCLE, Dynamics, JointVector, MassMatrix};
 ///
 /// The generalised momentum `p = M dq` of the links obeys `dp/dt = τ + (dM/dt − C) dq − g + τ_ext`,
 /// with `τ` the torques between gears and links, which the joint sensors read. The residual `r` is
-/// the difference that remains without `τ_ext`. It follows `τ_ext` like a first-order low-pass:
-/// `dr/dt = gain (τ_ext − r)`. No acceleration is measured or computed.
+/// computed without `τ_ext`. It follows `τ_ext` like a first-order low-pass: `dr/dt = gain (τ_ext −
+/// r)`. No acceleration is measured or computed.
 ///
 /// `M`, `C` and `g` include the *declared* load. Any other load on the flange, and the force to
 /// accelerate it, count as external.
@@ -17,7 +17,7 @@ pub(crate) struct MomentumObserver {
     residual: JointVector,
 }
 
-/// The arm as the observer sees it at one instant.
+/// Motion and dynamics of the arm at one instant, the observer's input.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instant {
     /// Measured joint velocities, `[rad/s]`.
@@ -39,17 +39,18 @@ impl Instant {
 }
 
 impl MomentumObserver {
-    /// Observer of an arm that nothing touches.
+    /// Returns the observer of an arm that nothing touches.
     pub(crate) fn new() -> Self {
         Self {
             residual: JointVector::zeros(),
         }
     }
 
-    /// Processes one millisecond, from the arm at its beginning and end and the mean sensor torque,
-    /// `[N·m]`. `gain` is in `[1/s]`.
+    /// Processes one millisecond: `before` and `after` are the arm at its beginning and at its end,
+    /// `sensed` is the mean sensor torque, `[N·m]`. `gain` is in `[1/s]`.
     ///
-    /// The residual uses backward Euler and the rest the trapezoidal rule, so every gain is stable.
+    /// Backward Euler for the residual makes every gain stable; all other terms use the trapezoidal
+    /// rule.
     pub(crate) fn update(
         &mut self,
         before: &Instant,
@@ -63,7 +64,7 @@ impl MomentumObserver {
         self.residual = (self.residual + (momentum - explained) * gain) / (1.0 + gain * CYCLE);
     }
 
-    /// Action of the environment on the joints, `[N·m]`.
+    /// Torques of the environment on the joints, `[N·m]`.
     pub(crate) fn external_torque(&self) -> &JointVector {
         &self.residual
     }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 use crate::config::{SetterBounds, Tool, Unpublished};
 
-/// Settings in force. They outlive the client that set them, as on a robot.
+/// Current settings. They persist after the client that set them disconnects, as on a real robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Settings {
     pub(crate) tool: Tool,
@@ -69,7 +69,8 @@ impl Settings {
         self.tool.load.combine(&self.load)
     }
 
-    /// Applies a setter (a request that changes a setting), or returns the reason for refusing it.
+    /// Applies a setter (a request that changes a setting). Returns its status: success, or the
+    /// reason for refusing it.
     pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
         let applied = match request {
             Request::SetCollisionBehavior(thresholds) => {
@@ -116,7 +117,7 @@ fn all_within(values: &[f64], lower: f64, upper: f64) -> bool {
     values.iter().all(|value| (lower..=upper).contains(value))
 }
 
-/// True if the cutoff frequencies are in their documented range, `[Hz]`.
+/// Returns true if the cutoff frequencies are in their documented range, `[Hz]`.
 fn are_filters(filters: &Filters) -> bool {
     let frequencies = [
         filters.joint_position_filter_frequency,
@@ -128,9 +129,9 @@ fn are_filters(filters: &Filters) -> bool {
     all_within(&frequencies, 1.0, 1000.0)
 }
 
-/// True if all thresholds are finite and not negative. A threshold of zero is always reached. Upper
-/// thresholds below the lower thresholds are valid: a collision then occurs without an earlier
-/// contact.
+/// Returns true if all thresholds are finite and not negative. A threshold of zero is always
+/// reached. Upper thresholds below the lower thresholds are valid: a collision then occurs without
+/// an earlier contact.
 fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
     let t = thresholds;
     let torques = [
@@ -159,9 +160,9 @@ fn rigid(column_major: &[f64; 16], bounds: &SetterBounds) -> Option<Matrix4<f64>
     is_near.then(|| Matrix4::from_column_slice(column_major))
 }
 
-/// Returns the load if a rigid body can have it, and if it is within the bounds. The mass must not
-/// be negative, and the inertia must be symmetric. No principal moment may be below zero or, except
-/// for rounding, above the sum of the other two.
+/// Returns the load if it is physically possible for a rigid body and within the bounds. The mass
+/// must not be negative, and the inertia must be symmetric. No principal moment may be below zero
+/// or, except for rounding, above the sum of the other two.
 fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
     let inertia = Matrix3::from_column_slice(&load.I_load);
     let com = Vector3::from(load.F_x_Cload);
@@ -291,7 +292,7 @@ mod tests {
         let mut odd = good;
         odd.I_load[8] = -0.01;
         assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
-        // A moment larger than the sum of the others.
+        // This moment is larger than the sum of the other two.
         odd.I_load[8] = 0.03;
         assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
     }

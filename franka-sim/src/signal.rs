@@ -1,8 +1,8 @@
 //! Commanded quantities with their first two derivatives, advanced once per millisecond.
 //!
 //! Derivatives are backward differences of the commanded values, started from the previously
-//! published state (FCI documentation, control parameters). A cycle whose command is lost continues
-//! with the last acceleration.
+//! published state (FCI documentation, control parameters). In a cycle whose command is lost, the
+//! signal continues with the last acceleration.
 
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -22,7 +22,7 @@ pub(crate) struct JointSignal {
 }
 
 impl JointSignal {
-    /// At rest at `q`.
+    /// Returns the signal at rest at `q`.
     pub(crate) fn resting(q: JointVector) -> Self {
         Self {
             q,
@@ -31,14 +31,15 @@ impl JointSignal {
         }
     }
 
-    /// The signal one cycle later at the position `q`, and the jerk that this requires, `[rad/s³]`.
+    /// Returns the signal one cycle later at the position `q`, and the jerk that this requires,
+    /// `[rad/s³]`.
     pub(crate) fn to_position(self, q: &JointVector) -> (Self, JointVector) {
         let (mut next, jerk) = self.to_velocity(&((q - self.q) / CYCLE));
         next.q = *q;
         (next, jerk)
     }
 
-    /// The signal one cycle later at the velocity `dq`, and the jerk that this requires,
+    /// Returns the signal one cycle later at the velocity `dq`, and the jerk that this requires,
     /// `[rad/s³]`.
     pub(crate) fn to_velocity(self, dq: &JointVector) -> (Self, JointVector) {
         let ddq = (dq - self.dq) / CYCLE;
@@ -50,7 +51,7 @@ impl JointSignal {
         (next, (ddq - self.ddq) / CYCLE)
     }
 
-    /// The signal one cycle later with the acceleration unchanged.
+    /// Returns the signal one cycle later with the acceleration unchanged.
     pub(crate) fn extrapolated(self) -> Self {
         let dq = self.dq + self.ddq * CYCLE;
         Self {
@@ -60,7 +61,7 @@ impl JointSignal {
         }
     }
 
-    /// The signal that a client reads from a state of this precision.
+    /// Returns the signal as a client reads it from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {
@@ -83,7 +84,7 @@ pub(crate) struct CartesianSignal {
 }
 
 impl CartesianSignal {
-    /// At rest at `pose`.
+    /// Returns the signal at rest at `pose`.
     pub(crate) fn resting(pose: Isometry3<f64>) -> Self {
         Self {
             pose,
@@ -92,7 +93,8 @@ impl CartesianSignal {
         }
     }
 
-    /// The signal one cycle later at `pose`, and the jerk that this requires, `[m/s³, rad/s³]`.
+    /// Returns the signal one cycle later at `pose`, and the jerk that this requires, `[m/s³,
+    /// rad/s³]`.
     pub(crate) fn to_pose(self, pose: &Isometry3<f64>) -> (Self, Twist) {
         let shift = (pose.translation.vector - self.pose.translation.vector) / CYCLE;
         let turn = rotation::error(&pose.rotation, &self.pose.rotation) / CYCLE;
@@ -101,7 +103,8 @@ impl CartesianSignal {
         (next, jerk)
     }
 
-    /// The signal one cycle later with `twist`, and the jerk that this requires, `[m/s³, rad/s³]`.
+    /// Returns the signal one cycle later with `twist`, and the jerk that this requires, `[m/s³,
+    /// rad/s³]`.
     pub(crate) fn to_twist(self, twist: &Twist) -> (Self, Twist) {
         let acceleration = (twist - self.twist) / CYCLE;
         let next = Self {
@@ -112,8 +115,8 @@ impl CartesianSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// The signal one cycle later with the acceleration unchanged. The angular acceleration is
-    /// constant in the axes that `orientation` selects.
+    /// Returns the signal one cycle later with the acceleration unchanged. The angular acceleration
+    /// is constant in the axes that `orientation` selects.
     pub(crate) fn extrapolated(self, orientation: Extrapolation) -> Self {
         let (linear, angular) = halves(&self.twist);
         let (acceleration, turning) = halves(&self.acceleration);
@@ -135,7 +138,7 @@ impl CartesianSignal {
         }
     }
 
-    /// The signal that a client reads from a state of this precision.
+    /// Returns the signal as a client reads it from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         let rounded = transform::array(&self.pose).map(read);
@@ -163,7 +166,7 @@ pub(crate) struct ElbowSignal {
 }
 
 impl ElbowSignal {
-    /// At rest at `angle`, `[rad]`.
+    /// Returns the signal at rest at `angle`, `[rad]`.
     pub(crate) fn resting(angle: f64) -> Self {
         Self {
             angle,
@@ -171,7 +174,7 @@ impl ElbowSignal {
         }
     }
 
-    /// The signal one cycle later at `angle`, and the jerk that this requires, `[rad/s³]`.
+    /// Returns the signal one cycle later at `angle`, and the jerk that this requires, `[rad/s³]`.
     pub(crate) fn to_angle(self, angle: f64) -> (Self, f64) {
         let velocity = (angle - self.angle) / CYCLE;
         let acceleration = (velocity - self.velocity) / CYCLE;
@@ -184,7 +187,7 @@ impl ElbowSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// The signal one cycle later with the acceleration unchanged.
+    /// Returns the signal one cycle later with the acceleration unchanged.
     pub(crate) fn extrapolated(self) -> Self {
         let velocity = self.velocity + self.acceleration * CYCLE;
         Self {
@@ -194,7 +197,7 @@ impl ElbowSignal {
         }
     }
 
-    /// The signal that a client reads from a state of this precision.
+    /// Returns the signal as a client reads it from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {
@@ -206,14 +209,14 @@ impl ElbowSignal {
     }
 }
 
-/// The `[linear; angular]` vector of two halves.
+/// Returns the `[linear; angular]` vector of the two halves.
 pub(crate) fn stack(linear: &Vector3<f64>, angular: &Vector3<f64>) -> Twist {
     Twist::new(
         linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
     )
 }
 
-/// The two halves of a `[linear; angular]` vector.
+/// Returns the two halves of a `[linear; angular]` vector.
 pub(crate) fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     (
         Vector3::new(twist[0], twist[1], twist[2]),
@@ -224,7 +227,7 @@ pub(crate) fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
 fn moved(pose: &Isometry3<f64>, twist: &Twist) -> Isometry3<f64> {
     let (linear, angular) = halves(twist);
     let mut rotation = rotation::exp(&(angular * CYCLE)) * pose.rotation;
-    // Thousands of products would otherwise let the quaternion's length drift.
+    // Without this call, the length of the quaternion would drift after thousands of products.
     rotation.renormalize_fast();
     Isometry3::from_parts((pose.translation.vector + linear * CYCLE).into(), rotation)
 }

@@ -13,7 +13,7 @@ const WINDOW: u32 = 100;
 /// The last hundred cycles, newest in the lowest bit.
 ///
 /// Counting begins with the client's first command; before it the robot waits. A late command
-/// counts as the first command, which is a choice of this simulator.
+/// counts as the first command, which is a choice of the simulator.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,
@@ -35,8 +35,8 @@ impl SuccessRate {
         self.lost_in_a_row
     }
 
-    /// Fraction of commands received over the window; while the window is not full, `first` selects
-    /// the divisor. The rate is zero before the first command that arrived in time.
+    /// Fraction of the window's cycles whose command arrived in time. While the window is not full,
+    /// `first` selects the divisor. The rate is zero before the first command in time.
     pub(crate) fn rate(&self, first: FirstCycles) -> f64 {
         if self.counted == 0 {
             return 0.0;

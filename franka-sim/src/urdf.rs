@@ -1,14 +1,14 @@
 //! The description that the robot serves: a URDF text.
 //!
-//! Clients read two things from the description: the velocity envelope (from the joints' limits and
-//! a vendor element), and the rigid-body model. Both parsers of libfranka 0.21 require the
-//! following:
+//! Clients read two things from the description: the velocity envelope (from the joint limits and
+//! an XML element of the vendor), and the rigid-body model. Both parsers of libfranka 0.21 require
+//! the following:
 //!
 //! - all of `joint1` to `joint7`, each with `limit` (lower, upper, velocity, effort) and
 //!   `position_based_velocity_limits` as direct children; no other joint name may contain one of
 //!   these names (the names of finger joints do);
 //! - exactly seven movable joints, a link named `link8`, an `axis` for each joint;
-//! - no fixed link with mass behind link 7: a hand is part of `m_ee`.
+//! - no fixed link with mass after link 7, because a hand is part of `m_ee`.
 //!
 //! Numbers have the fewest digits that read back as the same value.
 
@@ -19,7 +19,7 @@ use franka_model::{Model, RigidBody};
 
 /// Returns the URDF text that describes `model` as a robot called `name`.
 ///
-/// A model without a velocity envelope has no element for it.
+/// If the model has no velocity envelope, the text has no element for it.
 pub(crate) fn text(name: &str, model: &Model) -> String {
     let mut text = format!("<?xml version=\"1.0\" ?>\n<robot name=\"{name}\">\n");
     write_robot(&mut text, model).expect("writing to a string cannot fail");

@@ -6,44 +6,44 @@ use nalgebra::{Isometry3, Vector3};
 use super::{StateGeometry, SystemLimits};
 
 /// Differences between the arm's body and the controllers' model, and between the controllers'
-/// model and the model of the clients. The robot's controllers and its state compute with
-/// [`state_geometry`](Self::state_geometry). The physics and everything that touches the arm add
-/// the errors to it.
+/// model and the clients' model. The robot computes its control and its state with
+/// [`state_geometry`](Self::state_geometry). The physics and all touches use this geometry plus the
+/// errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Error of each link's mass as a fraction. The link's inertia has the same relative error.
-    /// Source: a third to a half of the torque residuals at rest depends on the pose, because all
-    /// robots share one averaged model (franka_ros issue 404).
+    /// Relative error of each link's mass. The link's inertia has the same relative error. Source:
+    /// a third to a half of the torque residuals at rest depends on the pose, because all robots
+    /// share one averaged model (franka_ros issue 404).
     pub mass_error: [f64; 7],
     /// Error of each link's centre of mass in the link's axes, `[m]`. Source: see
     /// [`mass_error`](Self::mass_error).
     pub com_error: [Vector3<f64>; 7],
     /// Geometry that `O_T_EE`, the robot's controllers and the served description use.
     pub state_geometry: StateGeometry,
-    /// Pose of each joint's true frame in the frame that `state_geometry` gives for this joint.
-    /// `O_T_EE` does not show this error. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2
-    /// to 1 mm.
+    /// Pose of each joint's true frame, relative to the joint's frame in `state_geometry`. `O_T_EE`
+    /// does not show this error. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2 to 1 mm.
     /// The rotation about a joint's own axis is an error of its zero position.
     pub kinematic_error: [Isometry3<f64>; 7],
-    /// Undeclared mass on the flange besides tool and payload, `[kg]`, at the centre of mass of the
-    /// tool. Source: the small sag at the start of a session rules out 0.2 kg on two FERs.
+    /// Undeclared mass on the flange in addition to tool and payload, `[kg]`, at the centre of mass
+    /// of the tool. Source: on two FERs, the sag at the start of a session is too small for 0.2 kg.
     pub undeclared_mass: f64,
     /// Error of the tool's centre of mass in the flange frame, `[m]`. The default is an estimate,
     /// not a measurement.
     pub load_com_error: Vector3<f64>,
     /// Gravitational acceleration in the base frame, `[m/s²]`. Only the physics uses it. The
-    /// controllers' model and the state (`O_ddP_O`) assume an upright arm. With another value here,
-    /// the controllers estimate a load that does not exist. See [`tilted`](Self::tilted).
+    /// controllers' model and the state (`O_ddP_O`) assume an upright arm. With the gravity of
+    /// another mounting, the controllers estimate a load that does not exist. See
+    /// [`tilted`](Self::tilted).
     pub gravity_earth: Vector3<f64>,
     /// Mechanical end stops.
     pub stops: EndStops,
 }
 
 impl Body {
-    /// An upright arm without errors against its model.
+    /// An upright arm that equals its model.
     pub fn exact(kind: RobotKind) -> Self {
-        // The mechanics are the same with every system version, so the stops are outside the
-        // widest limits.
+        // The mechanics do not depend on the system version, so the stops are outside the widest
+        // limits.
         let limits = SystemLimits::default().joints(kind);
         Self {
             mass_error: [0.0; 7],
@@ -57,8 +57,8 @@ impl Body {
         }
     }
 
-    /// Tilts the base by this rotation vector from the upright position, `[rad]`. Real mountings
-    /// are estimated to tilt by 0.25 degrees about each horizontal axis.
+    /// Tilts the base by this rotation vector from the upright position, `[rad]`. We estimate that
+    /// real mountings tilt by 0.25 degrees about each horizontal axis.
     #[must_use]
     pub fn tilted(mut self, rotation: Vector3<f64>) -> Self {
         let turn = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
@@ -107,9 +107,9 @@ pub struct EndStops {
 const CLEARANCE: f64 = 0.04;
 
 impl EndStops {
-    /// Stops for an arm whose interface enforces `lower` and `upper`, `[rad]`.
+    /// End stops of an arm whose interface enforces the joint limits `lower` and `upper`, `[rad]`.
     ///
-    /// Clearance, stiffness and damping are choices of this simulator. The strongest joint moves
+    /// Clearance, stiffness and damping are choices of the simulator. The strongest joint moves
     /// 0.03 rad into its stop at 87 N·m.
     pub fn around(lower: &JointVector, upper: &JointVector) -> Self {
         Self {
@@ -120,7 +120,7 @@ impl EndStops {
         }
     }
 
-    /// No stops: the joints turn freely.
+    /// No stops. The joints turn without limits.
     pub const NONE: Self = Self {
         lower: joint_vector([f64::NEG_INFINITY; 7]),
         upper: joint_vector([f64::INFINITY; 7]),

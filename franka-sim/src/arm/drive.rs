@@ -2,23 +2,23 @@
 
 use franka_model::{JointVector, RobotKind, joint_vector};
 
-/// Everything between a commanded torque and the link.
+/// Parameters of the drives, which turn commanded torques into torques on the links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// Rotor inertia at each joint without torque control, `[kg·m²]`. Source: the README of Drake's
     /// FR3 model, "given by Franka".
     pub rotor_inertia: JointVector,
     /// Gain of the inner loop that makes the torque between gear and link follow the command. The
-    /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Sources: a gain of 2 turns the
-    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`; a fit to a recorded
-    /// Franka Research 3 is between 1.3 (joint 4) and more than 4 (wrist).
+    /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Sources: with a gain of 2, the
+    /// wrist's 0.2055 appears as the 0.074 of franka-rs and `mujoco_menagerie`; fits to a recorded
+    /// Franka Research 3 give 1.3 (joint 4) to more than 4 (wrist).
     pub torque_loop_gain: f64,
     /// Time constant of the first-order lag with which the torque follows a command of the torque
-    /// interface, `[s]`. No source is known. A force bandwidth of 10 Hz and the gains that run on
-    /// real arms bound the value.
+    /// interface, `[s]`. We know no source. A force bandwidth of 10 Hz, and the gains that are
+    /// stable on real arms, bound the value.
     pub torque_lag: f64,
-    /// Number of cycles from a state to the cycle in which the command that answers it acts, at
-    /// least 1. The protocol prescribes 1.
+    /// Number of cycles between a state and the cycle in which the answer to this state takes
+    /// effect, at least 1. The protocol prescribes 1.
     pub command_delay: u32,
     /// Elasticity between gear and link; `None` for rigid joints.
     pub elasticity: Option<Elasticity>,
@@ -32,10 +32,10 @@ pub struct Drive {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elasticity {
     /// Stiffness of each spring, `[N·m/rad]`. Source: `theta − q = tau_J / K` in published states:
-    /// 14250 (joints 1 to 4) and 9000 (5 to 7) on two FERs, 7000 in the oldest sample of the
-    /// documentation.
+    /// 14250 (joints 1 to 4) and 9000 (joints 5 to 7) on two FERs, and 7000 in the oldest sample of
+    /// the documentation.
     pub stiffness: JointVector,
-    /// Damping of each damper, `[N·m·s/rad]`. The values come from a calculation with two masses.
+    /// Damping of each damper, `[N·m·s/rad]`. The values are computed from a model with two masses.
     /// With 30 and 5, libfranka's example gains are just stable. With 30 to 40 at the wrist, the
     /// arm rings, as users report.
     pub damping: JointVector,
@@ -59,23 +59,23 @@ pub struct Ripple {
     pub order: JointVector,
 }
 
-/// A torque on the link of each joint that the robot's model lacks, such as the torque of cables:
-/// `sine · sin(angle) + cosine · cos(angle)`, to be subtracted.
+/// A torque that opposes the link of each joint and is missing in the robot's model, for example
+/// the torque of cables: `sine · sin(angle) + cosine · cos(angle)`.
 ///
-/// Source: the log of Gaz et al., in which such a term lowers the unexplained torque of joint 4
-/// from 0.23 to 0.14 N·m. That is an amplitude of 0.26 N·m.
+/// Source: the log of Gaz et al., in which such a term with an amplitude of 0.26 N·m lowers the
+/// unexplained torque of joint 4. It falls from 0.23 to 0.14 N·m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseTorque {
-    /// `[N·m]`
+    /// Coefficient of the sine, `[N·m]`.
     pub sine: JointVector,
-    /// `[N·m]`
+    /// Coefficient of the cosine, `[N·m]`.
     pub cosine: JointVector,
 }
 
 /// Rotor inertia of a Franka Research 3 under its torque loop, `[kg·m²]`.
 ///
 /// Source: `mujoco_menagerie`, `franka_fr3`. Joint 7 needs rotor inertia, because its link alone
-/// has 1.2e-4 kg·m². With the link alone, a damping above 0.24 N·m·s/rad in a torque client is
+/// has 1.2e-4 kg·m². Without a rotor, a torque client with a damping above 0.24 N·m·s/rad would be
 /// unstable at 1 kHz.
 const IDEAL_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
 
@@ -106,7 +106,7 @@ impl Drive {
         self.rotor_inertia / (1.0 + self.torque_loop_gain)
     }
 
-    /// Inertia that drives without friction add to the links over a step of `dt` seconds,
+    /// Inertia that the drives add to the links over a step of `dt` seconds, without friction,
     /// `[kg·m²]`.
     #[cfg(feature = "mujoco")]
     pub(crate) fn link_inertia(&self, dt: f64) -> JointVector {
@@ -120,7 +120,7 @@ impl Drive {
 }
 
 impl PoseTorque {
-    /// No such torque.
+    /// No torque.
     pub const NONE: Self = Self {
         sine: joint_vector([0.0; 7]),
         cosine: joint_vector([0.0; 7]),

@@ -1,4 +1,4 @@
-//! Families of arms: a distribution of every parameter.
+//! Families of arms, which contain a distribution for every parameter of an arm.
 
 use franka_model::geometry::Lengths;
 use franka_model::{JointVector, RobotKind};
@@ -18,9 +18,9 @@ use crate::noise::Random;
 
 /// Family of arms: one distribution for each parameter of an arm.
 ///
-/// Units are SI. Unless noted otherwise, a parameter is drawn for each joint (or link), and its
-/// distribution has one number for all or seven. With the feature `serde` a family can be read from
-/// JSON, which must have every field:
+/// Units are SI. Unless noted otherwise, a parameter is drawn for each joint (or link). Its
+/// distribution contains one number for all joints, or seven numbers. With the feature `serde`, a
+/// family can be read from JSON text, which must contain every field:
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore")]
@@ -41,15 +41,15 @@ use crate::noise::Random;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Family {
-    /// Breakaway torque before the factor [`static_friction_scale`](Self::static_friction_scale),
-    /// `[N·m]`.
+    /// Breakaway torque, `[N·m]`. The factor [`static_friction_scale`](Self::static_friction_scale)
+    /// multiplies it.
     pub static_friction: Distribution,
     /// Factor on the breakaway torques of all joints, drawn once per arm.
     pub static_friction_scale: Distribution,
     /// Kinetic friction divided by static friction, 0 to 1.
     pub kinetic_ratio: Distribution,
-    /// Speed at which friction falls from static to kinetic ([`Friction::stribeck_speed`]),
-    /// `[rad/s]`.
+    /// Speed at which friction falls from static to kinetic friction
+    /// ([`Friction::stribeck_speed`]), `[rad/s]`.
     pub stribeck_speed: Distribution,
     /// Stiffness of the bristles ([`Bristle`]), `[N·m/rad]`.
     pub bristle_stiffness: Distribution,
@@ -57,9 +57,9 @@ pub struct Family {
     pub bristle_damping: Distribution,
     /// Viscous friction, `[N·m·s/rad]`.
     pub viscous_friction: Distribution,
-    /// Share of the friction on the link's side of the torque sensor, 0 to 1.
+    /// Share of the friction that is on the link's side of the torque sensor, 0 to 1.
     pub link_share: Distribution,
-    /// Rotor inertia without torque control, `[kg·m²]`.
+    /// Rotor inertia at the joint without torque control, `[kg·m²]`.
     pub rotor_inertia: Distribution,
     /// Gain of the torque loop, drawn once per arm.
     pub torque_loop_gain: Distribution,
@@ -102,10 +102,10 @@ pub struct Family {
     pub axis_error: Distribution,
     /// Error of each coordinate of the position of a joint's frame, `[m]`.
     pub length_error: Distribution,
-    /// Excess of the lengths of upper arm and forearm over the vendor's description, `[m]`, drawn
-    /// once per arm. The states of a Franka Research 3 and the description that it serves contain
-    /// this excess. 0.2 mm gives [`StateGeometry::RECORDED_FR3`]. A Franka Emika Robot has the
-    /// described lengths.
+    /// Difference between the lengths of upper arm and forearm and the vendor's description, `[m]`,
+    /// drawn once per arm. The states of a Franka Research 3, and the description that it serves,
+    /// contain this difference. A value of 0.2 mm results in [`StateGeometry::RECORDED_FR3`]. A
+    /// Franka Emika Robot has the described lengths.
     pub state_length_excess: Distribution,
     /// Error of the joint frames that the states use: each coordinate of the rotation vector in the
     /// described frame, `[rad]`.
@@ -119,11 +119,12 @@ pub struct Family {
     pub load_com_error: Distribution,
     /// Tilt about each horizontal axis, `[rad]`.
     pub base_tilt: Distribution,
-    /// Stalls of the network interface of a Franka Emika Robot, per second, drawn once per arm. A
-    /// Franka Research 3 has no stalls. [`Stalls::FER`] gives the lengths of the stalls.
+    /// Number of stalls of the network interface of a Franka Emika Robot, per second, drawn once
+    /// per arm. A Franka Research 3 has no stalls. [`Stalls::FER`] defines the lengths of the
+    /// stalls.
     pub stalls_per_second: Distribution,
     /// Zero error of the motors' positions, for a Franka Research 3, `[rad]`. A Franka Emika Robot
-    /// has none.
+    /// has no such error.
     pub motor_offset: Distribution,
     /// Joint limits of a Franka Research 3: `"5.9"` or `"before-5.9"`.
     pub limits: SystemLimits,
@@ -163,8 +164,8 @@ impl Family {
     /// Reads a family from JSON.
     ///
     /// # Errors
-    /// [`FamilyError`] if the text is not JSON, lacks a field or has an unknown field, or if a
-    /// distribution has impossible values.
+    /// Returns [`FamilyError`] if the text is not JSON, if it lacks a field or contains an unknown
+    /// field, or if a distribution has impossible values.
     #[cfg(feature = "serde")]
     pub fn from_json(text: &str) -> Result<Self, FamilyError> {
         let mut reader = serde_json::Deserializer::from_str(text);
@@ -378,7 +379,7 @@ impl Family {
     }
 }
 
-/// Draws values, or takes the middle of each distribution.
+/// Source of parameters: random values, or the middle of each distribution.
 struct Draw {
     random: Option<Random>,
 }
@@ -403,7 +404,7 @@ impl Draw {
         self.number(distribution, 0)
     }
 
-    /// A whole number between the ends of the distribution; all are equally probable.
+    /// A whole number between the ends of the distribution. All numbers are equally probable.
     fn whole(&mut self, distribution: &Distribution) -> u32 {
         let wide = match *distribution {
             Distribution::Uniform { low, high } if self.random.is_some() => Distribution::Uniform {

@@ -1,15 +1,15 @@
-//! Joint limits by the system of the robot.
+//! Joint limits of the robot's system versions.
 
 use franka_model::RobotKind;
 use franka_model::limits::JointLimits;
 
 /// The joint limits that a Franka Research 3 enforces and serves. They depend on the version of its
-/// system software, not on its mechanics. A Franka Emika Robot has the same limits with either
-/// value.
+/// system software, not on its mechanics. Both values select the same limits for a Franka Emika
+/// Robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SystemLimits {
-    /// System versions from 5.9. Their hard range is an assumption: see
+    /// System versions 5.9 and later. Their hard range is an assumption: see
     /// [`JointLimits::fr3_system_5_9`].
     #[default]
     #[cfg_attr(feature = "serde", serde(rename = "5.9"))]

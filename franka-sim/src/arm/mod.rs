@@ -1,4 +1,5 @@
-//! One simulated arm, and its differences from its model and from an ideal drive.
+//! Parameters of one simulated arm: its differences from its model, and from ideal drives and
+//! sensors.
 //!
 //! ```text
 //! Family (distributions, JSON) ── sample, central ──> Arm ──> drive train, plant, sensors
@@ -10,8 +11,8 @@
 //! | `drive` | [`Drive`]: rotors, torque loop, elasticity, ripple, torque by pose |
 //! | `sensors` | [`Sensors`]: offset, noise and quanta |
 //! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
-//! | `limits` | [`SystemLimits`]: joint limits by the robot's system |
-//! | `state_geometry` | [`StateGeometry`]: the robot's geometry of its own poses |
+//! | `limits` | [`SystemLimits`]: joint limits of the robot's system versions |
+//! | `state_geometry` | [`StateGeometry`]: the geometry from which the robot computes its poses |
 //! | `family` | [`Family`]: distributions of all of these, read from JSON |
 //!
 //! The documentation of each field names the source of its figures.
@@ -36,7 +37,7 @@ use franka_model::{Model, RobotKind};
 
 use crate::network::Stalls;
 
-/// The parameters of one arm. Units are SI, vectors go from joint 1 to joint 7.
+/// The parameters of one arm. Units are SI. Vectors contain joints 1 to 7, in this order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     /// Joint friction.
@@ -50,16 +51,16 @@ pub struct Arm {
     /// Joint limits that the robot enforces and serves.
     pub limits: SystemLimits,
     /// Stalls of the network interface that sends the states; `None` for an interface without
-    /// stalls. [`Sim`](crate::Sim) applies them between its sockets unless it has a network.
+    /// stalls. [`Sim`](crate::Sim) applies them unless it has a simulated network.
     pub stalls: Option<Stalls>,
 }
 
 impl Arm {
     /// An arm that matches its model: rigid joints, a perfect torque loop and perfect sensors. Its
-    /// friction is smooth and a twentieth of the published friction; the arm creeps to its target.
-    /// Its lengths match the vendor's description, also for a Franka Research 3.
+    /// friction is smooth, and a twentieth of the published friction, which makes the arm creep to
+    /// its target. Its lengths match the vendor's description, even for a Franka Research 3.
     ///
-    /// Use this arm for tests that need exact results. No real arm is like this.
+    /// Use this arm for tests that need exact results. No real arm is ideal.
     pub fn ideal(kind: RobotKind) -> Self {
         Self {
             friction: Friction::smooth(kind),
@@ -71,7 +72,7 @@ impl Arm {
         }
     }
 
-    /// The central arm of [`Family::nominal`]: a good arm, better than those measured.
+    /// The central arm of [`Family::nominal`]: a good arm, better than the arms that were measured.
     pub fn nominal(kind: RobotKind) -> Self {
         Self::central(kind, &Family::nominal())
     }
@@ -94,7 +95,7 @@ impl Arm {
         model.with_joint_limits(limits)
     }
 
-    /// The arm with every parameter in the middle of its distribution.
+    /// The arm of this family with every parameter in the middle of its distribution.
     pub fn central(kind: RobotKind, family: &Family) -> Self {
         family.arm(kind, None)
     }

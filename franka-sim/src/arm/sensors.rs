@@ -1,4 +1,4 @@
-//! Errors of the sensors.
+//! Sensor errors.
 
 use franka_model::{JointVector, joint_vector};
 
@@ -7,14 +7,15 @@ use franka_model::{JointVector, joint_vector};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensors {
     /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this value, and the torque
-    /// of the torque loop is lower by it. Sources: `tau_J` at rest minus the gravity torques of the
-    /// model, in published states of two FERs and two FR3s; MTI TU Berlin, five Pandas.
+    /// of the torque loop is lower by this value. Sources: `tau_J` at rest minus the gravity
+    /// torques of the model, in published states of two FERs and two FR3s; MTI TU Berlin, five
+    /// Pandas.
     pub torque_offset: JointVector,
     /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
-    /// (joints 1 to 4) and 0.006 (5 to 7).
+    /// (joints 1 to 4) and 0.006 (joints 5 to 7).
     pub torque_quantum: JointVector,
-    /// Noise of `tau_J` at rest, `[N·m]`. Source: a recorded Franka Research 3, 0.007 to 0.027 with
-    /// the steps.
+    /// Noise of `tau_J` at rest, `[N·m]`. Source: a recorded Franka Research 3, 0.007 to 0.027,
+    /// including the effect of the steps.
     pub torque_noise_at_rest: JointVector,
     /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`. Between rest and 1 rad/s, the noise grows
     /// with the speed. Source: the log of Gaz et al., in motion, 0.03 to 0.08.
@@ -80,7 +81,7 @@ impl Sensors {
     }
 }
 
-/// Standard deviation between `rest` and `motion`. The value is `motion` from 1 rad/s on.
+/// Standard deviation between `rest` and `motion`. The value is `motion` at 1 rad/s and above.
 fn between(rest: &JointVector, motion: &JointVector, dq: &JointVector) -> JointVector {
     JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
 }

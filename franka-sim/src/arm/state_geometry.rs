@@ -6,30 +6,31 @@ use nalgebra::{Isometry3, Vector3};
 
 use crate::noise::Random;
 
-/// Kinematics of the robot's controllers. `O_T_EE`, all other poses in its states and its inverse
-/// kinematics use it. The served description has the lengths, not the deviations. The model of a
-/// client may differ from this geometry. The links may differ, too: their
-/// [`kinematic_error`](super::Body::kinematic_error) is added to it.
+/// Kinematics of the robot's controllers. The robot computes `O_T_EE`, all other poses in its
+/// states, and its inverse kinematics with this geometry. The served description contains the
+/// lengths, but not the deviations. A client's model may differ from this geometry. The real links
+/// may also differ, by their [`kinematic_error`](super::Body::kinematic_error).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateGeometry {
     /// Upper arm and forearm.
     pub lengths: Lengths,
-    /// Pose of each joint's frame in the frame that this joint has on an arm with these lengths.
+    /// Pose of each joint's frame, relative to the joint's frame on an arm with these lengths and
+    /// no deviations.
     pub deviations: [Isometry3<f64>; 7],
 }
 
 impl StateGeometry {
     /// Geometry of the vendor's description. Franka Emika Robots and [ideal](super::Arm::ideal)
-    /// arms have it.
+    /// arms have this geometry.
     pub const DESCRIBED: Self = Self::with(Lengths::DESCRIBED);
 
     /// Geometry of the Franka Research 3 whose states were recorded, [`Lengths::RECORDED_FR3`]. All
-    /// Franka Research 3 arms in the [families](super::Family) of the simulator have it.
+    /// Franka Research 3 arms in the built-in [families](super::Family) have this geometry.
     pub const RECORDED_FR3: Self = Self::with(Lengths::RECORDED_FR3);
 
-    /// Random joint frames, drawn from `seed`. In total (root of the sum of squares) they deviate
-    /// from the described frames by 1 mm and 3 mrad, equally for each joint. No client knows these
-    /// deviations.
+    /// Random joint frames, drawn from `seed`. The total deviation from the described frames (root
+    /// of the sum of squares) is 1 mm and 3 mrad, with equal shares of all joints. No client knows
+    /// these deviations.
     pub fn random(seed: u64) -> Self {
         let mut random = Random::new(seed);
         let mut along = |size: f64| {

@@ -1,38 +1,37 @@
-//! Assumptions about the robot where the vendor has published nothing.
+//! Assumptions about properties of the robot that the vendor has not published.
 
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
-/// Assumptions about the robot where nothing is published. None has been measured. If a client
-/// depends on one of these values, test the client with other values, too.
+/// Assumptions about properties of the robot that are not published. None has been measured. If a
+/// client depends on one of these values, test the client with other values, too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {
     /// Largest permitted distance of the first command of a motion from the commanded values in the
     /// state.
     pub start: StartTolerance,
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-    /// start. Default 0.05. A pose that a real robot refuses has 0.011. Ordinary poses have 0.14 to
-    /// 0.23.
+    /// start. Default 0.05. In a pose that a real robot refuses, the smallest singular value is
+    /// 0.011. In ordinary poses, it is 0.14 to 0.23.
     pub singular: f64,
     /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
-    /// is zero. Default 0.1. Two Franka Research 3 were recorded. The first reports no wrench at
-    /// 0.076 (three states), the second reports a wrench at 0.159. The range between these values
-    /// is unknown.
+    /// is zero. Default 0.1. In recordings of two Franka Research 3, the first robot reports no
+    /// wrench at 0.076 (three states). The second robot reports a wrench at 0.159. The threshold
+    /// between these values is unknown.
     pub wrench_singular: f64,
     /// Extrapolation of the orientation in a cycle whose command is lost.
     pub extrapolation: Extrapolation,
     /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`. Default
-    /// `None`: no filter. A robot of protocol 5 starts with this value and accepts a request to
-    /// change it.
+    /// `None`: no filter. A robot of protocol 5 starts with this value, and a client can change it.
     pub command_filter: Option<f64>,
-    /// Divisor of `control_command_success_rate` in the first 100 cycles of a motion, the length of
-    /// the averaging window.
+    /// Divisor of `control_command_success_rate` in the first 100 cycles of a motion (100 cycles
+    /// are the length of the averaging window).
     pub first_cycles: FirstCycles,
     /// True if an accepted `Move` clears `reflex_reason`. Default true.
     pub move_clears_reason: bool,
     /// True if fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
     /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
-    /// controllers. No recording of a motion is known. Default true.
+    /// controllers. We know no recording of a motion that shows these fields. Default true.
     pub zero_fields: bool,
     /// Number of errors that a cycle latches if its command violates several bounds.
     pub error_bits: ErrorBits,
@@ -40,11 +39,11 @@ pub struct Unpublished {
     pub setters: Setters,
     /// The largest load and frames that setters accept.
     pub setter_bounds: SetterBounds,
-    /// Axes in which the robot compares forces with their thresholds.
+    /// Axes of the wrench that the robot compares with the force thresholds.
     pub force_axes: ForceAxes,
     /// Measured joint velocity above which no motion under an external controller may finish,
-    /// `[rad/s]`. Infinity permits every velocity. Default 0.1. Real robots are known to refuse a
-    /// motion under an internal controller that finishes at speed.
+    /// `[rad/s]`. Infinity permits every velocity. Default 0.1. Under an internal controller, real
+    /// robots are known to refuse a motion that finishes while the arm moves.
     pub finish_velocity: f64,
     /// Stiffness of the internal joint impedance controller until a client sets another,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
@@ -53,13 +52,13 @@ pub struct Unpublished {
     /// stiffness-frame axes, `[N/m, N·m/rad]`. Default: the values of libfranka 0.21,
     /// `examples_common.cpp`.
     pub cartesian_stiffness: Twist,
-    /// Thresholds of contact and collision until a client sets others. Default for contact: near
-    /// the values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25
-    /// N·m). Default for collision: twice these values.
+    /// Thresholds of contact and collision until a client sets others. The defaults for contact are
+    /// close to the values in the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N
+    /// and 25 N·m). The defaults for collision are twice these values.
     pub thresholds: CollisionBehavior,
-    /// Joint acceleration above which the thresholds for acceleration phases apply, `[rad/s²]`.
-    /// Under the robot's own controllers it is the desired acceleration, under a client's
-    /// controller the measured acceleration. Default 1.
+    /// Joint acceleration above which the thresholds for acceleration phases apply, `[rad/s²]`. The
+    /// robot compares the desired acceleration under its own controllers, and the measured
+    /// acceleration under a client's controller. Default 1.
     pub accelerating: f64,
     /// Gain of the momentum observer that computes `tau_ext_hat_filtered`, `[1/s]`. It is the
     /// inverse of the observer's time constant. Default 100, about 16 Hz.
@@ -67,15 +66,15 @@ pub struct Unpublished {
     /// Bounds at which the robot reports that the arm is about to collide with itself.
     pub self_collision: SelfCollision,
     /// Total mechanical power of all joints above which the robot raises `power_limit_violation`,
-    /// `[W]`. Default 600. No motion of a Franka Research 3 without a load, within its limits,
-    /// requires as much.
+    /// `[W]`. Default 600. A Franka Research 3 without a load never needs this much power within
+    /// its limits.
     pub power: f64,
     /// Condition for the error `instability_detected`.
     pub instability: Instability,
     /// Range of the torque sensors, as a multiple of the nominal torque. Default 1.1.
     pub sensor_range: f64,
-    /// Stiffness between motor and link from which the simulator computes `theta` for an arm with
-    /// rigid joints, `[N·m/rad]`. Default 10 000, the published magnitude for joints of this kind.
+    /// Stiffness between motor and link, `[N·m/rad]`. The simulator computes `theta` from it for an
+    /// arm with rigid joints. Default 10 000, the published magnitude for joints of this kind.
     pub joint_elasticity: f64,
 }
 
@@ -116,9 +115,9 @@ impl Default for Unpublished {
     }
 }
 
-/// Largest distance of the first command of a motion from the published values. The defaults permit
-/// the commands of clients that start from measured values. They are below the distances that
-/// robots are known to refuse: 0.2 rad on joint 1, 0.5 rad of the elbow.
+/// Largest distance of the first command of a motion from the commanded values in the state. The
+/// defaults permit the commands of clients that start from measured values. The defaults are below
+/// the distances that robots are known to refuse: 0.2 rad on joint 1, 0.5 rad of the elbow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartTolerance {
     /// Largest distance of each joint, `[rad]`. Default 0.1.
@@ -150,7 +149,7 @@ pub enum Extrapolation {
     BaseAxes,
     /// Constant angular acceleration in the axes of the end effector.
     BodyAxes,
-    /// The orientation stays.
+    /// The orientation does not change.
     Held,
 }
 
@@ -177,13 +176,14 @@ pub enum ErrorBits {
 /// Modes besides Idle in which the robot accepts setters. It never accepts them in a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setters {
-    /// Accept setters after a reflex. Default true.
+    /// True if the robot accepts setters after a reflex. Default true.
     pub reflex: bool,
-    /// Accept setters while a person guides the arm. Default true.
+    /// True if the robot accepts setters while a person guides the arm. Default true.
     pub guiding: bool,
-    /// Accept setters while the user stop is pressed. Default true.
+    /// True if the robot accepts setters while the user stop is pressed. Default true.
     pub user_stopped: bool,
-    /// Accept setters with the brakes closed and during a recovery. Default true.
+    /// True if the robot accepts setters while the brakes are closed and during a recovery. Default
+    /// true.
     pub other: bool,
 }
 
@@ -198,11 +198,12 @@ impl Default for Setters {
     }
 }
 
-/// Bounds of a setter's arguments. The robot refuses values beyond them as invalid. Larger values
-/// are physically possible, but the controllers could not hold such an arm.
+/// Bounds on the arguments of setters. The robot refuses values beyond them as invalid. Larger
+/// values are physically possible, but the controllers could not hold such an arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetterBounds {
-    /// Largest mass of a declared load, `[kg]`. Default 10: three times the arms' payload.
+    /// Largest mass of a declared load, `[kg]`. Default 10, about three times the payload of the
+    /// arms.
     pub mass: f64,
     /// Largest distance of the load's centre of mass from the flange, `[m]`. Default 1.
     pub com: f64,
@@ -223,8 +224,8 @@ impl Default for SetterBounds {
     }
 }
 
-/// Axes of the wrench that the robot compares with the force thresholds. The wrench refers to the
-/// origin of the stiffness frame with either value.
+/// Axes of the wrench that the robot compares with the force thresholds. With both values, the
+/// wrench refers to the origin of the stiffness frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceAxes {
     /// Axes of the base.
@@ -240,11 +241,12 @@ pub struct SelfCollision {
     /// Distance `[m]` between two capsules below which the robot does not let them approach each
     /// other. Default 0.05.
     pub margin: f64,
-    /// Permitted approach of two capsules within the margin, measured from their largest distance
-    /// so far, `[m]`. Default 0.001. A motion out of the margin is always possible.
+    /// Distance by which two capsules within the margin may approach each other, measured from
+    /// their largest distance so far, `[m]`. Default 0.001. A motion out of the margin is always
+    /// possible.
     pub closing: f64,
     /// Least difference of the link numbers of a checked pair; a tool counts as link 8. Default 3,
-    /// because nearer links come close to each other in everyday postures.
+    /// because links with a smaller difference come close to each other in ordinary postures.
     pub apart: u8,
 }
 

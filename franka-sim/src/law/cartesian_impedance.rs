@@ -21,8 +21,8 @@ pub(crate) struct Firmness {
 /// A spring and critical damper between the stiffness frame and its desired pose, and a joint
 /// spring in the null space.
 ///
-/// `pose` is the desired pose of the end effector, `desired` are the joints that belong to it, and
-/// `q` are the joint positions.
+/// `pose` is the desired pose of the end effector, `desired` are the joint positions for this pose,
+/// and `q` are the current joint positions.
 #[allow(clippy::too_many_arguments)] // the two halves of the error and their inputs
 pub(crate) fn cartesian_impedance(
     firmness: &Firmness,
@@ -102,16 +102,16 @@ fn null_space(jacobian: &Jacobian) -> MassMatrix {
     }
 }
 
-/// Posture stiffness in a motion, `[N·m/rad]`: a choice of this simulator, soft against the joint
-/// impedance.
+/// Posture stiffness in a motion, `[N·m/rad]`: a choice of the simulator, low in comparison with
+/// the joint impedance.
 pub(crate) const POSTURE_STIFFNESS: f64 = 50.0;
 
-/// Damping per stiffness, `[s]`: at 50 N·m/rad overdamped for the arm's 1 to 2 kg·m².
+/// Damping per stiffness, `[s]`. At 50 N·m/rad, it overdamps the arm's inertia of 1 to 2 kg·m².
 const POSTURE_DAMPING: f64 = 0.4;
 
-/// Least mobility, `[1/kg, 1/(kg·m²)]`. Near a singularity the apparent inertia grows without
-/// bound.
+/// Smallest mobility, `[1/kg, 1/(kg·m²)]`, because the apparent inertia grows without bound near a
+/// singularity.
 const MOBILITY_MIN: f64 = 0.02;
 
-/// Keeps the projector finite in a singularity.
+/// Term that keeps the projector finite in a singularity.
 const GRAM_DAMPING: f64 = 1e-8;

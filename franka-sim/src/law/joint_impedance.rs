@@ -5,8 +5,8 @@ use franka_model::{Dynamics, JointVector, MassMatrix};
 use super::{Law, Spring};
 use crate::signal::JointSignal;
 
-/// A spring and critical damper per joint towards `desired`, on top of the torques for the desired
-/// motion.
+/// For each joint, a spring and a critical damper towards `desired`, in addition to the torques for
+/// the desired motion.
 ///
 /// `stiffness` in `[N·m/rad]`, `armature` in `[kg·m²]`. The damping is critical for the joint's own
 /// inertia, `2 √(K (M_ii + armature))`.

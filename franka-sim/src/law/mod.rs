@@ -1,8 +1,9 @@
 //! The robot's own controllers.
 //!
-//! A controller computes a [`Law`] once per millisecond. In between, its spring and damper follow
-//! the arm at the rate of the plant's steps, as a robot's joint loops do. This rate keeps every
-//! stiffness stable, even 14 250 N·m/rad on 0.074 kg·m², which oscillates at 70 Hz.
+//! A controller computes a [`Law`] once per millisecond. Within the millisecond, the spring and
+//! damper of the law act on the arm at every step of the plant, like a robot's joint loops. This
+//! rate keeps every stiffness stable. An example is a stiffness of 14 250 N·m/rad on 0.074 kg·m²,
+//! which oscillates at 70 Hz.
 
 mod cartesian_impedance;
 mod joint_impedance;
@@ -34,7 +35,7 @@ pub(crate) struct Spring {
 }
 
 impl Law {
-    /// The same torques for every state of the arm.
+    /// Returns the law with the same torques for every state of the arm.
     pub(crate) fn constant(torque: JointVector) -> Self {
         Self {
             feedforward: torque,

@@ -2,24 +2,24 @@
 
 use std::time::Duration;
 
-/// Conditions for the datagrams of one direction. By default, datagrams arrive at the time of
-/// sending.
+/// Conditions for the datagrams of one direction. By default, datagrams arrive at the time at which
+/// they are sent.
 ///
 /// Probabilities are compared with a random number: 0 or less and NaN mean never, 1 or more means
 /// always.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Loss of packets. A datagram of several packets is lost if any of its packets is lost.
+    /// Loss of packets. If one packet of a datagram is lost, the whole datagram is lost.
     pub loss: Loss,
-    /// Time in transit.
+    /// Time from the end of the line to the receiver.
     pub delay: Duration,
-    /// Largest random delay before a datagram reaches the line. Delays are uniformly distributed
-    /// from zero. Datagrams keep their order.
+    /// Largest random delay before a datagram reaches the line. The delays are uniformly
+    /// distributed from zero to this value. Datagrams keep their order.
     pub jitter: Duration,
     /// Rate of the line, `[bit/s]`. Datagrams that are sent together arrive one after the other.
     /// Infinity means that transmission takes no time.
     pub rate: f64,
-    /// Stalls of the sender's interface.
+    /// Stalls of the sender's network interface, if any.
     pub stalls: Option<Stalls>,
     /// Reordering: some datagrams take longer, and others overtake them.
     pub reordering: Reordering,

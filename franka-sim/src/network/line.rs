@@ -1,4 +1,5 @@
-//! The sender's interface and the line that it feeds: first in, first out.
+//! The sender's interface and the line that it feeds: datagrams leave in the order in which they
+//! came.
 
 use std::time::Duration;
 
@@ -45,7 +46,7 @@ impl Line {
 struct Schedule {
     stalls: Stalls,
     random: Random,
-    /// Computed from the first datagram on.
+    /// `None` until the first datagram.
     next: Option<Next>,
 }
 
@@ -59,7 +60,8 @@ struct Next {
 }
 
 impl Schedule {
-    /// The first moment at or after `time` that is in no stall. Successive times must not decrease.
+    /// Returns the first moment at or after `time` that is in no stall. Successive times must not
+    /// decrease.
     fn outlast(&mut self, time: Duration) -> Duration {
         let mut next = match self.next.take() {
             Some(next) => next,
@@ -93,8 +95,8 @@ impl Schedule {
         }
     }
 
-    /// The next stall near a multiple of the period that comes after the multiple `grid`. Returns
-    /// that multiple and the start of the stall.
+    /// Returns the first multiple of the period after `grid` that has a stall nearby, and the start
+    /// of this stall.
     fn on_grid_after(&mut self, mut grid: Duration) -> (Duration, Duration) {
         let (period, share) = (self.stalls.period, self.stalls.on_grid());
         if share <= 0.0 {
@@ -122,7 +124,7 @@ impl Schedule {
     }
 }
 
-/// Distance of stalls from the grid, one standard deviation.
+/// Standard deviation of the distance between a stall and its multiple of the period.
 const SPREAD: Duration = Duration::from_millis(6);
 
 /// The shortest delay of a single datagram; the longest is twice that.
@@ -131,7 +133,7 @@ const LATE_LEAST: Duration = Duration::from_micros(500);
 /// Time after which a stall of a single datagram is discarded if no datagram comes.
 const RECENT: Duration = Duration::from_millis(2);
 
-/// A year, which stands for never.
+/// One year. It means never.
 const FAR: Duration = Duration::from_secs(365 * 24 * 3600);
 
 #[cfg(test)]
@@ -153,8 +155,8 @@ mod tests {
         assert_eq!(instant.carry(ms(10), 125), ms(10));
     }
 
-    /// Sends a datagram every 10 us. Returns the start and duration of each time in which none
-    /// left.
+    /// Sends a datagram every 10 us. Returns the start and the duration of each interval in which
+    /// no datagram left.
     fn stalls(stalls: Stalls, seconds: u64) -> Vec<(Duration, Duration)> {
         let conditions = Conditions {
             stalls: Some(stalls),

@@ -1,4 +1,4 @@
-//! The network between client and robot, as a value.
+//! The network between client and robot, as a value without sockets.
 //!
 //! ```text
 //!  send(now, datagram)                                                        take(now)
@@ -7,12 +7,13 @@
 //! ```
 //!
 //! A [`Network`] takes datagrams and the time, and returns datagrams. It has no clock and no
-//! socket, and its seed determines all randomness. The same datagrams at the same times always
-//! arrive in the same way. The two directions are separate [`Path`]s with separate [`Conditions`].
+//! socket, and its seed determines all random numbers. The same datagrams, sent at the same times,
+//! always arrive at the same times. The two directions are separate [`Path`]s with separate
+//! [`Conditions`].
 //!
-//! The caller's time starts at any moment and must not run backwards. The server passes the
-//! datagrams of its sockets to a network ([`Sim::network`](crate::Sim::network)). Tests use a
-//! network in virtual time.
+//! The caller's time may start at any value, but must not decrease. The server passes the datagrams
+//! of its sockets to a network ([`Sim::network`](crate::Sim::network)). Tests use a network in
+//! virtual time.
 //!
 //! A network models datagrams only. The command connection (TCP) repairs its own losses and
 //! bypasses the network.
@@ -50,7 +51,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// Returns a network under these conditions. `seed` determines all randomness.
+    /// Returns a network under these conditions. `seed` determines all random numbers.
     pub fn new(seed: u64, to_client: Conditions, to_robot: Conditions) -> Self {
         Self {
             to_client: Path::new(to_client, seed),
@@ -58,18 +59,18 @@ impl Network {
         }
     }
 
-    /// A network without delay and loss.
+    /// Returns a network without delay and loss.
     pub fn perfect() -> Self {
         Self::new(0, Conditions::default(), Conditions::default())
     }
 
-    /// The network of an FER on a separate cable. States wait until a stall of the robot's network
-    /// interface ends ([`Stalls::FER`]); commands do not.
+    /// Returns the network of an FER on a separate cable. Stalls of the robot's network interface
+    /// ([`Stalls::FER`]) delay states, but not commands.
     pub fn fer(seed: u64) -> Self {
         Self::stalling(seed, Stalls::FER)
     }
 
-    /// The network [`fer`](Self::fer) with the given stalls.
+    /// Returns the network [`fer`](Self::fer) with these stalls.
     pub fn stalling(seed: u64, stalls: Stalls) -> Self {
         let cable = Conditions::cable();
         let stalling = Conditions {

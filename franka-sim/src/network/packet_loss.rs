@@ -1,9 +1,9 @@
-//! Loss of the next packet, from a seed. `path` applies it to datagrams of several packets.
+//! Random loss of packets. `path` applies it to datagrams of several packets.
 
 use super::conditions::Loss;
 use crate::noise::Random;
 
-/// [`Loss`] from a seed.
+/// Decides which packets are lost, from a [`Loss`] and a seed.
 #[derive(Debug, Clone)]
 pub(super) struct Losses {
     loss: Loss,
@@ -21,7 +21,7 @@ impl Losses {
         }
     }
 
-    /// True if the next packet is lost.
+    /// Returns true if the next packet is lost.
     pub(super) fn lose(&mut self) -> bool {
         match self.loss {
             Loss::Never => false,
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
     use crate::network::BurstLoss;
 
-    /// Fraction of packets lost, and mean length of the runs of losses.
+    /// Returns the fraction of lost packets and the mean length of a run of losses.
     fn measure(loss: Loss) -> (f64, f64) {
         let mut losses = Losses::new(loss, 5);
         let (mut lost, mut runs, mut before) = (0, 0, false);

@@ -11,17 +11,18 @@ use super::line::Line;
 use super::packet_loss::Losses;
 use crate::noise::Random;
 
-/// One direction of a network. It delays, loses or repeats datagrams.
+/// One direction of a network. A path delays, loses or repeats datagrams.
 ///
-/// [`send`](Self::send) is the input, [`take`](Self::take) the output;
-/// [`next_arrival`](Self::next_arrival) returns the time of the next output. [`cut`](Self::cut) and
-/// [`drop_next`](Self::drop_next) cause a loss that does not depend on chance.
+/// Pass datagrams to [`send`](Self::send), and receive them from [`take`](Self::take).
+/// [`next_arrival`](Self::next_arrival) returns the time at which the next datagram arrives.
+/// [`cut`](Self::cut) and [`drop_next`](Self::drop_next) cause a loss that does not depend on
+/// chance.
 #[derive(Debug, Clone)]
 pub struct Path {
     conditions: Conditions,
     line: Line,
     losses: Losses,
-    /// Randomness of jitter, duplication and reordering.
+    /// Random numbers for jitter, duplication and reordering.
     random: Random,
     cuts: Vec<Range<Duration>>,
     drop_next: u64,
@@ -47,15 +48,15 @@ pub struct Tally {
     pub sent: u64,
     /// Number of datagrams that do not arrive.
     pub lost: u64,
-    /// Number of lost datagrams of which some packets (IP fragments) arrive. The host cannot
-    /// reassemble such a datagram, so programs do not receive it.
+    /// Number of lost datagrams of which some, but not all, packets (IP fragments) arrive. The host
+    /// cannot reassemble such a datagram, so programs do not receive it.
     pub fragment_lost: u64,
 }
 
 impl Path {
-    /// Returns a path under these conditions. `seed` determines all randomness.
+    /// Returns a path under these conditions. `seed` determines all random numbers.
     pub fn new(conditions: Conditions, seed: u64) -> Self {
-        // Separate random numbers, because loss must not change the stalls.
+        // Each part draws separate random numbers, because loss must not change the stalls.
         let mut seeds = Random::new(seed);
         Self {
             line: Line::new(&conditions, seeds.bits()),
@@ -69,7 +70,7 @@ impl Path {
         }
     }
 
-    /// Conditions for datagrams.
+    /// Returns the conditions of this path.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }
@@ -79,12 +80,13 @@ impl Path {
         self.tally
     }
 
-    /// Loses all datagrams that leave within `time`, end excluded. Several cuts can be active.
+    /// Loses all datagrams that leave the line within `time` (the end is excluded). Several cuts
+    /// can be active at the same time.
     pub fn cut(&mut self, time: Range<Duration>) {
         self.cuts.push(time);
     }
 
-    /// Loses the next `count` datagrams. This count replaces what is left of an earlier count.
+    /// Loses the next `count` datagrams. This count replaces the rest of an earlier count.
     pub fn drop_next(&mut self, count: u64) {
         self.drop_next = count;
     }
@@ -153,7 +155,7 @@ impl Path {
     }
 }
 
-/// Ordered by arrival, and then as sent.
+/// The order is by time of arrival, and then by order of sending.
 #[derive(Debug, Clone)]
 struct UnderWay {
     at: Duration,
@@ -187,13 +189,13 @@ impl PartialEq for UnderWay {
 
 impl Eq for UnderWay {}
 
-/// Number of IPv4 packets for a datagram of this size in bytes: two for a protocol 5 state, one for
-/// all others.
+/// Returns the number of IPv4 packets for a datagram of this size in bytes. A protocol 5 state has
+/// two packets, all other datagrams have one.
 const fn packets(bytes: usize) -> usize {
     (UDP_HEADER + bytes).div_ceil(MTU - IP_HEADER)
 }
 
-/// Size on Ethernet, in bytes.
+/// Returns the size of a datagram on Ethernet, in bytes.
 const fn on_the_wire(bytes: usize) -> usize {
     UDP_HEADER + bytes + packets(bytes) * (IP_HEADER + ETHERNET)
 }

@@ -49,7 +49,8 @@ impl Boards {
         }
     }
 
-    /// Readings of the two sensors of each board, top and bottom, in their own axes, `[m/s²]`.
+    /// Readings of the top sensors and of the bottom sensors of the boards, each in its own axes,
+    /// `[m/s²]`.
     pub(super) fn read(&self) -> ([[f32; 3]; 6], [[f32; 3]; 6]) {
         let (mut top, mut bottom) = ([[0.0; 3]; 6], [[0.0; 3]; 6]);
         for (i, board) in self.boards.iter().enumerate() {

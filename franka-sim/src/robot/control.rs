@@ -36,7 +36,7 @@ pub(super) struct Measurement {
 }
 
 impl Measurement {
-    /// Readings for an arm that has always been at rest.
+    /// Readings of the sensors of an arm that has always been at rest.
     pub(super) fn resting(q: &JointVector, holding: &JointVector, sensors: &Sensors) -> Self {
         Self {
             q: *q,
@@ -103,7 +103,8 @@ impl Robot {
             true => self.interface.delayed(law.feedforward),
             false => law.feedforward,
         };
-        // The robot's own controllers close their loops around the motors. Brakes close no loop.
+        // The robot's own controllers close their loops around the motors. The brakes close no
+        // loop.
         let deflection = self.train.deflection(&self.dynamics.gravity);
         let (q_error, dq_error) = match self.are_brakes_holding() {
             true => (JointVector::zeros(), JointVector::zeros()),
@@ -145,7 +146,7 @@ impl Robot {
         torque
     }
 
-    /// Advances the robot's own desired motion: a stop continues, a recovery moves back.
+    /// Advances a desired motion that the robot itself plans: a stop, or the motion of a recovery.
     fn advance_desired(&mut self) {
         match &mut self.activity {
             Activity::Braking(brake) => {
@@ -195,8 +196,7 @@ impl Robot {
             Activity::Moving(motion) => motion,
             Activity::Guided(guidance) => return self.guiding_law(guidance),
             _ if self.are_brakes_holding() => return joint(&BRAKE_STIFFNESS),
-            // Holding and braking do not use the client's settings, because soft settings must not
-            // weaken them.
+            // The robot holds and brakes without the client's stiffness, which may be too low.
             _ => return joint(&self.config.unpublished.joint_stiffness),
         };
         match motion.request().controller {
@@ -246,9 +246,9 @@ impl Robot {
         law
     }
 
-    /// The desired joints with derivatives that the arm can have. They differ from the desired
-    /// derivatives only if limits are not enforced. A jump in position must then not cause a jump
-    /// of the feedforward torque.
+    /// The desired joint signal, with its derivatives limited to the abilities of the arm. The
+    /// limits matter only if the robot does not enforce limits on commands: a jump of the desired
+    /// position must not cause a jump of the feedforward torque.
     fn attainable(&self) -> JointSignal {
         let limits = self.model.joint_limits();
         let within =
@@ -266,7 +266,8 @@ impl Robot {
         }
     }
 
-    /// Records the mean sensor torque of the millisecond that began with joint velocities `dq`.
+    /// Records the mean sensor torque of a millisecond. `dq` are the joint velocities at its
+    /// beginning.
     fn measure(&mut self, sensed: &JointVector, dq: &JointVector) {
         let sensors = &self.arm.sensors;
         let noise = self.random.joints(&sensors.torque_noise(self.plant.dq()));
@@ -298,8 +299,8 @@ impl Robot {
         }
     }
 
-    /// State from which a stop begins: the desired motion if the arm follows it, otherwise the
-    /// arm's own motion.
+    /// Joint signal from which a stop begins: the desired motion if the arm follows it, otherwise
+    /// the measured motion of the arm.
     pub(super) fn brake_start(&self, follows_desired: bool) -> JointSignal {
         let measured = self.measured_signal();
         let desired = &self.desired.joints;
@@ -317,7 +318,8 @@ const VELOCITY_MAX: f64 = 1e3;
 /// Stiffness of closed brakes, `[N·m/rad]`: the highest stiffness of the internal controller.
 const BRAKE_STIFFNESS: JointVector = joint_vector([14_250.0; 7]);
 
-/// Damping of a guided arm, `[N·m·s/rad]`, chosen here. It stops the arm when nothing pushes it.
+/// Damping of a guided arm, `[N·m·s/rad]`, a choice of the simulator. It stops the arm when nothing
+/// pushes it.
 const GUIDING_DAMPING: JointVector = joint_vector([2.0, 2.0, 2.0, 2.0, 0.5, 0.5, 0.5]);
 
 /// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the highest setting of the

@@ -1,4 +1,4 @@
-//! Actions on the arm by a person next to the robot: push, hold, add a load. The stop, brakes and
+//! Actions of a person on the arm: push, hold, add a load. The user stop, the brakes and the
 //! buttons are in [`operation`](super::operation).
 
 use franka_model::{Frame, JointVector, Load, Wrench, transform};
@@ -27,7 +27,7 @@ impl Robot {
         self.touches.remove(touch)
     }
 
-    /// Mean wrench of a touch on the arm in the last millisecond: `[force; torque]` about the
+    /// Mean wrench of a touch on the arm in the last millisecond, as `[force; torque]` about the
     /// touched point, in base axes, `[N, N·m]`. `None` once the touch has ended. The wrench is zero
     /// for torques on joints.
     pub fn felt(&self, touch: TouchId) -> Option<Wrench> {
@@ -49,8 +49,8 @@ impl Robot {
         self.touch(Touch::wrench(wrench).lasting(duration));
     }
 
-    /// Puts the arm at rest at `q`, `[rad]`, as if a person had guided it there. A running motion
-    /// ends as if the client had stopped it.
+    /// Puts the arm at rest at `q`, `[rad]`, as if a person had guided it there. If a motion is
+    /// running, it ends as if the client had stopped it.
     pub fn place(&mut self, q: &JointVector) {
         self.forget_motion(MoveStatus::Preempted);
         let holding = self.plant.place(q);
@@ -68,8 +68,8 @@ impl Robot {
         self.boards = Boards::resting(&self.model, q);
     }
 
-    /// Adds a load to the flange, in addition to the tool and in place of any earlier load. The
-    /// robot is not informed. [`Load::NONE`] removes it.
+    /// Adds a load to the flange, in addition to the tool. The load replaces any load that was
+    /// attached before. The robot's model does not include it. [`Load::NONE`] removes the load.
     pub fn attach(&mut self, load: Load) {
         self.load = load;
         self.plant
@@ -79,9 +79,10 @@ impl Robot {
     /// Replaces the arm by another arm, at rest in the same position and with the same load, as
     /// [`place`](Self::place) does.
     ///
-    /// Tool, settings, client and errors stay. The joint limits and the geometry of the states also
-    /// stay, because clients have read them. The [stalls](Arm::stalls) of the robot's network
-    /// interface do not change here: see [`Running::with_network`](crate::Running::with_network).
+    /// Tool, settings, client and errors do not change. The joint limits and the geometry of the
+    /// states do not change either, because clients have read them. This function does not change
+    /// the [stalls](Arm::stalls) of the robot's network interface: see
+    /// [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
         let limits = self.arm.limits;
         let mut arm = Arm { limits, ..arm };
@@ -98,9 +99,9 @@ impl Robot {
         self.place(&q);
     }
 
-    /// Passes the command of `hand` to the fingers of the plant, if the plant has fingers, and the
-    /// width of these fingers to `hand`. Call this once per millisecond, between
-    /// [`tick`](Self::tick) of this robot and `tick` of the hand.
+    /// If the plant has fingers, passes the command of `hand` to these fingers, and their width to
+    /// `hand`. Call this function once per millisecond, after the robot's [`tick`](Self::tick) and
+    /// before the hand's `tick`.
     pub fn couple(&mut self, hand: &mut Hand) {
         let fingers = hand.mechanism_mut();
         if let Some(width) = self.plant.drive_fingers(&fingers.drive()) {
@@ -108,8 +109,8 @@ impl Robot {
         }
     }
 
-    /// True pose of the end effector in the base frame. It includes the errors of the arm as built,
-    /// which `O_T_EE` does not show.
+    /// True pose of the end effector in the base frame. It includes the deviations of the real arm
+    /// from its model, which `O_T_EE` does not show.
     pub fn true_pose(&self) -> Isometry3<f64> {
         let frames = &self.settings.frames;
         let pose = self

@@ -29,7 +29,7 @@ impl TorqueInterface {
         }
     }
 
-    /// Discards all torques: no command is active.
+    /// Discards all torques, because no command is active.
     pub(super) fn clear(&mut self) {
         self.pending.iter_mut().for_each(|torque| torque.fill(0.0));
         self.torque = JointVector::zeros();

@@ -1,5 +1,5 @@
-//! The whole simulated robot as a value: bytes go in, bytes come out, and each [`Robot::tick`] is
-//! one millisecond.
+//! The whole simulated robot as a value without sockets. Bytes go in, bytes come out, and each
+//! [`Robot::tick`] is one millisecond.
 //!
 //! ```text
 //! TCP bytes ── receive() ──> session ──> requests ──┐                     ┌──> take_reply()
@@ -7,11 +7,12 @@
 //! datagrams ── command() ──> the newest command ────┘    tick()   plant   └──> tick(): datagram
 //! ```
 //!
-//! The robot has no clock, socket, thread or log. Its driver calls, per millisecond:
+//! The robot has no clock, socket, thread or log. In each millisecond, the program that runs the
+//! robot must do the following:
 //!
-//! 1. [`command`](Robot::command) for each datagram, [`receive`](Robot::receive) for stream bytes,
-//!    and after each `receive` sends the replies from [`take_reply`](Robot::take_reply);
-//! 2. [`tick`](Robot::tick), and sends its datagram **before** the replies that follow: a reply
+//! 1. Call [`command`](Robot::command) for each datagram and [`receive`](Robot::receive) for bytes
+//!    of the stream. After each `receive`, send the replies from [`take_reply`](Robot::take_reply).
+//! 2. Call [`tick`](Robot::tick), and send its datagram **before** the replies that follow. A reply
 //!    like `kReflexAborted` must not overtake the state that explains it.
 
 mod boards;
@@ -63,13 +64,13 @@ use recovery::Recovery;
 use touch::Touches;
 use watch::Watch;
 
-/// A simulated robot; see the [module](self).
+/// A simulated robot. The [module](self) describes how to run it.
 pub struct Robot {
     config: Config,
     kind: &'static Description,
     /// The controllers' model.
     model: Model,
-    /// The arm as configured, and the links and axes that result from it.
+    /// The configured arm, and the links and axes that result from it.
     arm: Arm,
     as_built: AsBuilt,
     train: DriveTrain,
@@ -83,7 +84,7 @@ pub struct Robot {
 
     client: Option<Connection<Version>>,
     replies: VecDeque<Bytes>,
-    /// Command for the cycle that began with the last state.
+    /// Command for the cycle that began with the last state, if it has arrived.
     command: Option<RobotCommand>,
     /// `message_id` of the last state.
     clock: u64,
@@ -118,24 +119,24 @@ pub struct Robot {
 // Only one value exists, so the size of its largest variant does not matter.
 #[allow(clippy::large_enum_variant)]
 enum Activity {
-    /// At rest at the desired position.
+    /// The arm holds the desired position.
     Holding,
-    /// Braking to rest.
+    /// The arm brakes until it is at rest.
     Braking(Brake),
-    /// Following a client.
+    /// The arm follows a client.
     Moving(ActiveMotion),
-    /// Guided by a hand.
+    /// A person guides the arm.
     Guided(Guidance),
 }
 
 impl Robot {
-    /// A robot at rest, with the rigid-body plant.
+    /// Returns a robot at rest, with the rigid-body plant.
     pub fn new(config: Config) -> Self {
         let plant = RigidArm::new(config.kind, &config.chosen_arm(), config.q, Load::NONE);
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot that moves `plant` (the physics of the arm). Its controllers use the model of
+    /// Returns a robot whose physics is `plant`. The controllers of the robot use the model of
     /// `config.kind`. The plant receives the configured arm, tool and payload, at rest in the
     /// configured position.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
@@ -198,10 +199,10 @@ impl Robot {
 
     /// Accepts a UDP datagram of the client.
     ///
-    /// A command counts if it is valid and the first answer to the newest state. The robot drops
-    /// all other datagrams. It counts lost commands from the first command on, even if that command
-    /// is late. The targets of an asynchronous motion do not answer a state; the last target
-    /// counts.
+    /// The robot accepts a command if it is valid and the first answer to the newest state. The
+    /// robot drops all other datagrams. It counts lost commands after the first command, even if
+    /// the first command is late. In an asynchronous motion, targets need not answer the newest
+    /// state, and the last target applies.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
@@ -220,7 +221,7 @@ impl Robot {
         }
     }
 
-    /// The kind of command that the newest state requires, unless the command has arrived.
+    /// Kind of command that the newest state still requires.
     pub(crate) fn awaits(&self) -> Awaited {
         match &self.activity {
             Activity::Moving(motion) if self.command.is_none() => motion.awaits(),
@@ -247,7 +248,8 @@ impl Robot {
         })
     }
 
-    /// The UDP port that the client announced. It receives states and sends commands there.
+    /// UDP port that the client announced. The client receives states and sends commands on this
+    /// port.
     pub fn udp_port(&self) -> Option<u16> {
         self.client.as_ref()?.udp_port()
     }
@@ -257,7 +259,7 @@ impl Robot {
         &self.state
     }
 
-    /// The configuration with which the robot started. It does not show an arm that was
+    /// The configuration with which the robot started. It does not include an arm that was
     /// [fitted](Self::fit) later.
     pub fn config(&self) -> &Config {
         &self.config
@@ -276,8 +278,9 @@ impl Robot {
         self.plant.as_ref()
     }
 
-    /// The plant (the physics of the arm), mutable, to change its surroundings. A change of the arm
-    /// itself bypasses the controllers and acts as a disturbance.
+    /// Mutable reference to the plant (the physics of the arm), for example to change the arm's
+    /// surroundings. If you change the motion of the arm itself, the controllers see the change as
+    /// a disturbance.
     pub fn plant_mut(&mut self) -> &mut dyn Plant {
         self.plant.as_mut()
     }
@@ -292,8 +295,7 @@ impl Robot {
         self.kind.version
     }
 
-    /// The description that clients fetch, a URDF text; `None` if robots of this kind serve no
-    /// description.
+    /// URDF text that clients fetch; `None` if robots of this kind serve no description.
     pub fn description(&self) -> Option<&str> {
         std::str::from_utf8(self.description.as_ref()?).ok()
     }

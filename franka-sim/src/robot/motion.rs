@@ -1,4 +1,5 @@
-//! A running motion: which commands count, the effect of a lost command, and the end of the motion.
+//! A running motion: which commands the robot accepts, the effect of a lost command, and the end of
+//! the motion.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};
@@ -30,23 +31,23 @@ pub(super) struct ActiveMotion {
     torque: JointVector,
     /// True if the last cycle had no command, so that the generator did not advance.
     paused: bool,
-    /// The generator of an asynchronous motion, in place of one command per cycle.
+    /// The generator of an asynchronous motion, which replaces the commands of each cycle.
     asynchronous: Option<PointToPoint>,
 }
 
-/// The command that the newest state requires of the client.
+/// Kind of command that the newest state requires of the client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Awaited {
     /// No command, or the command has already arrived.
     Nothing,
-    /// The first command of a motion. A client may read several states before this command, and
-    /// none of them counts as lost.
+    /// The first command of a motion. A client may read several states before it sends this
+    /// command; no command counts as lost.
     First,
-    /// A later command. Without this command the cycle counts as lost.
+    /// A later command. If it does not arrive, the cycle counts as lost.
     Next,
 }
 
-/// Violations that end a motion.
+/// Rules whose violation ends a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
     pub(super) limits: bool,
@@ -91,7 +92,7 @@ impl ActiveMotion {
         }
     }
 
-    /// The `Move` to answer.
+    /// Id of the `Move` request to answer.
     pub(super) fn id(&self) -> CommandId {
         self.id
     }
@@ -113,7 +114,7 @@ impl ActiveMotion {
         self.request.controller == MoveControllerMode::ExternalController
     }
 
-    /// True if the robot itself plans the motion to targets that arrive irregularly.
+    /// True if the robot itself plans the motion to targets that arrive at irregular times.
     pub(super) fn is_asynchronous(&self) -> bool {
         self.asynchronous.is_some()
     }
@@ -128,7 +129,7 @@ impl ActiveMotion {
         &self.torque
     }
 
-    /// True if the setpoint does not move because no command came, although the motion continues.
+    /// True if the motion continues, but its setpoint does not move because no command came.
     pub(super) fn is_paused(&self) -> bool {
         self.paused
     }
@@ -138,14 +139,15 @@ impl ActiveMotion {
         self.success_rate.rate(first)
     }
 
-    /// True if a command counts that answers state `answers`, while `newest` is the last published
-    /// state. A late command does not count, because the robot has already extrapolated its cycle.
+    /// True if the robot accepts a command that answers the state `answers`. `newest` is the last
+    /// published state. The robot accepts no late command, because the robot has already
+    /// extrapolated its cycle.
     pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
         answers >= self.first_state
             && (answers == newest || (self.asynchronous.is_some() && answers < newest))
     }
 
-    /// The command that the states of this motion require.
+    /// Kind of command that the states of this motion require.
     pub(super) fn awaits(&self) -> Awaited {
         match &self.asynchronous {
             Some(_) => Awaited::Nothing,
@@ -154,17 +156,17 @@ impl ActiveMotion {
         }
     }
 
-    /// Records a command that does not count. It answers state `answers`, and `newest` is the last
-    /// state. A late command shows that the client has begun, so that later losses count.
+    /// Records a refused command that answers the state `answers`; `newest` is the last state.
+    /// After a late command, lost commands count, because the client has begun.
     pub(super) fn refuse(&mut self, answers: u64, newest: u64) {
         self.is_answered |= (self.first_state..newest).contains(&answers);
     }
 
-    /// Processes the input of one cycle, and advances `desired`. The joints have the measured
-    /// velocities `dq`, `[rad/s]`.
+    /// Processes the input of one cycle, and advances `desired`. `dq` are the measured joint
+    /// velocities, `[rad/s]`.
     ///
-    /// A lost cycle repeats the torques of the previous cycle (FCI documentation), with or without
-    /// [`Rules::communication`].
+    /// If the command of a cycle is lost, the torques of the previous cycle apply again (FCI
+    /// documentation), with or without [`Rules::communication`].
     pub(super) fn cycle(
         &mut self,
         command: Option<&RobotCommand>,
@@ -178,7 +180,7 @@ impl ActiveMotion {
         }
         let mut errors = Errors::NONE;
         self.paused = false;
-        // The first command is compared with the start without a filter.
+        // The comparison of the first command with the start must not include a filter.
         let filters = rules.filters.filter(|_| self.is_begun);
         let smooth = command
             .zip(filters)
@@ -237,7 +239,8 @@ impl ActiveMotion {
         }
     }
 
-    /// A cycle of an asynchronous motion: the robot itself moves towards the last target.
+    /// Processes a cycle of an asynchronous motion, in which the robot itself plans the path to the
+    /// last target.
     fn plan(
         &mut self,
         command: Option<&RobotCommand>,
@@ -250,7 +253,7 @@ impl ActiveMotion {
         };
         if let Some(command) = command {
             if command.motion_generation_finished {
-                // libfranka's last command contains zeros instead of a position.
+                // The last command of libfranka contains zeros instead of a position.
                 return Verdict::Finished;
             }
             let target = JointVector::from(command.q_c);
@@ -276,7 +279,8 @@ impl ActiveMotion {
     }
 
     /// Checks that a motion finishes at rest. The last command then applies unchanged, and is
-    /// checked like any other command. Under an external controller the arm must also be at rest.
+    /// checked like any other command. Under an external controller, the measured joints must also
+    /// be at rest.
     fn finish(
         &self,
         desired: &mut Desired,
@@ -307,7 +311,7 @@ impl ActiveMotion {
     }
 }
 
-/// Returns the errors that count. An invalid pose always counts.
+/// Returns the errors that the rules enforce. An invalid pose is always an error.
 fn enforced(errors: Errors, rules: Rules) -> Errors {
     if rules.limits {
         return errors;

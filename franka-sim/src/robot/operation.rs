@@ -1,4 +1,5 @@
-//! Controls for a person next to the robot: user stop, brakes, guiding, safety functions, Desk.
+//! The controls that a person at the robot uses: user stop, brakes, guiding, safety functions,
+//! Desk.
 //!
 //! ```text
 //!   Other <── close brakes ── any ── press the stop, safety function ──> User stopped
@@ -30,18 +31,19 @@ pub(super) struct Lock {
     pub(super) brakes_closed: bool,
 }
 
-/// Ways in which an arm ignores its commands. The robot reports the motion and no error meanwhile.
+/// Ways in which an arm ignores its commands. The robot still reports the running motion, and no
+/// error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freeze {
-    /// The joints do not move, as with closed brakes. The robot still accepts torques and
+    /// The joints do not move, as if the brakes were closed. The robot still accepts torques and
     /// setpoints.
     Joints,
-    /// The torques are zero, and setpoints and joints do not move, as if the controllers had
-    /// stopped.
+    /// The torques are zero, and neither the setpoints nor the joints move, as if the controllers
+    /// had stopped.
     Controllers,
 }
 
-/// A frozen arm.
+/// An arm that ignores its commands.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frozen {
     pub(super) freeze: Freeze,
@@ -50,8 +52,8 @@ pub(super) struct Frozen {
 }
 
 impl Robot {
-    /// Makes the arm ignore its commands from now on; `None` makes it obey commands again. No
-    /// manual of the vendor describes this; users have reported robots with this behaviour.
+    /// Makes the arm ignore its commands; `None` makes the arm obey commands again. No manual of
+    /// the vendor describes this behaviour, but users have reported it.
     pub fn freeze(&mut self, freeze: Option<Freeze>) {
         let q = *self.plant.q();
         self.frozen = freeze.map(|freeze| Frozen { freeze, q });
@@ -62,14 +64,14 @@ impl Robot {
         self.frozen.is_some()
     }
 
-    /// True if the robot accepts no torques and setpoints.
+    /// True if the robot accepts neither torques nor setpoints.
     pub(super) fn takes_no_commands(&self) -> bool {
         let frozen = self.frozen.map(|frozen| frozen.freeze);
         frozen == Some(Freeze::Controllers)
     }
 
-    /// Presses or releases the user stop. While pressed, it ends any motion or recovery and permits
-    /// no new one. A person can then guide the arm.
+    /// Presses or releases the user stop. Pressing it ends any motion or recovery. While it is
+    /// pressed, the robot starts no motion or recovery, but a person can guide the arm.
     pub fn press_user_stop(&mut self, pressed: bool) {
         self.lock.user_stop = pressed;
         if pressed {
@@ -81,8 +83,8 @@ impl Robot {
     }
 
     /// Activates or deactivates a safety function that forbids motion, as set up in Desk. A Franka
-    /// Research 3 answers with separate statuses; an FER has no such statuses and acts as if the
-    /// user stop were pressed.
+    /// Research 3 then refuses motions with statuses for safety functions. An FER has no such
+    /// statuses, and acts as if the user stop were pressed.
     pub fn activate_safety_function(&mut self, active: bool) {
         self.lock.safety_function = active;
         if active {
@@ -92,7 +94,7 @@ impl Robot {
         }
     }
 
-    /// Closes the brakes: any motion ends, and the arm stays in place under any push.
+    /// Closes the brakes. Any motion ends, and no push moves the arm.
     pub fn close_brakes(&mut self) {
         self.lock.brakes_closed = true;
         self.end_everything(MoveStatus::Aborted, RecoveryStatus::Aborted);
@@ -107,9 +109,9 @@ impl Robot {
     /// Presses or releases the guiding buttons. Returns true if a person can then guide the arm.
     ///
     /// A guided arm supports itself and its declared load. It moves where a person pushes it, in
-    /// the directions of `SetGuidingMode`. Guiding requires open brakes and an arm without a
-    /// motion. It is also possible after a reflex and with the user stop pressed. After the release
-    /// of the buttons the arm stops and holds its position.
+    /// the directions that `SetGuidingMode` permits. Guiding requires open brakes and no running
+    /// motion. It is also possible after a reflex, and while the user stop is pressed. After the
+    /// buttons are released, the arm stops and holds its position.
     pub fn guide(&mut self, pressed: bool) -> bool {
         match (&self.activity, pressed) {
             (Activity::Guided(_), true) => {}
@@ -134,7 +136,7 @@ impl Robot {
         !self.lock.brakes_closed && !self.lock.safety_function && self.recovery.is_none()
     }
 
-    /// True if a hand has guided a joint further out of its range than before.
+    /// True if a person has guided a joint further out of its range than it was before.
     pub(super) fn is_guided_out(&mut self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;
@@ -164,6 +166,6 @@ impl Robot {
     }
 }
 
-/// Largest distance that a joint may be guided out of its range, `[rad]`: a choice of this
+/// Largest distance that a joint may be guided out of its range, `[rad]`: a choice of the
 /// simulator.
 const GUIDED_OUT: f64 = 0.01;

@@ -1,27 +1,27 @@
-//! Watch of a clearance that may start below its bound. The clearance may grow again, but it must
-//! not shrink further.
+//! Check of a distance (clearance) that may start below its bound. The clearance may then grow, but
+//! it must not shrink further.
 
-/// Watches a clearance. Below `bound`, the clearance must not shrink by more than `allowed` from
-/// its largest value since it fell below.
+/// Checks a clearance. Below `bound`, the clearance must not shrink by more than `allowed` from its
+/// largest value since it fell below.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ratchet {
     best: f64,
 }
 
 impl Ratchet {
-    /// Begins to watch. A clearance that is already below the bound may keep its value.
+    /// Returns a check whose clearance may already be below the bound; it may then keep its value.
     pub(super) fn new() -> Self {
         Self {
             best: f64::NEG_INFINITY,
         }
     }
 
-    /// Begins with a clearance above the bound.
+    /// Returns a check whose clearance was last above `bound`.
     pub(super) fn outside(bound: f64) -> Self {
         Self { best: bound }
     }
 
-    /// True if the clearance, updated to its current value, has shrunk too far.
+    /// Updates the clearance to its current value. Returns true if it has shrunk too far.
     pub(super) fn is_passed(&mut self, clearance: f64, bound: f64, allowed: f64) -> bool {
         self.best = self.best.max(clearance).min(bound);
         clearance < self.best - allowed

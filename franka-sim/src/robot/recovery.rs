@@ -9,15 +9,16 @@ use crate::generator::PointToPoint;
 /// A recovery in progress.
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
-    /// The request to answer, if its client is still connected.
+    /// Id of the request to answer; `None` if its client has disconnected or a person started the
+    /// recovery.
     id: Option<CommandId>,
     since: u64,
-    /// The motion back into the range, if a person requests it.
+    /// Motion of the joints back into their range, if a person requested the recovery.
     way: Option<PointToPoint>,
 }
 
 impl Recovery {
-    /// Continues the recovery without its client.
+    /// Continues the recovery after its client has disconnected.
     pub(super) fn forget_client(&mut self) {
         self.id = None;
     }
@@ -29,7 +30,8 @@ impl Recovery {
 }
 
 impl Robot {
-    /// Answers an `AutomaticErrorRecovery`, immediately or when the recovery is over.
+    /// Begins an automatic recovery, or answers the request at once if no recovery is needed or
+    /// possible.
     pub(super) fn request_recovery(&mut self, id: CommandId) {
         let status = match self.robot_mode() {
             _ if self.lock.safety_function => self.kind.safety.recovery,
@@ -60,9 +62,9 @@ impl Robot {
         })
     }
 
-    /// Performs the recovery that requires a person, as Desk offers it. Joints outside their range
-    /// move slowly back into it; then the robot clears its errors. If no joint is outside its
-    /// range, this acts as the automatic recovery. It has no effect if the robot has no error, is
+    /// Performs the recovery that a person starts in Desk. Joints outside their range move slowly
+    /// back into it, and then the robot clears its errors. If no joint is outside its range, this
+    /// function acts like the automatic recovery. It has no effect if the robot has no error, is
     /// locked, or still moves.
     pub fn recover_manually(&mut self) {
         let at_rest = matches!(self.activity, Activity::Holding);
@@ -88,7 +90,7 @@ impl Robot {
         });
     }
 
-    /// Clears the errors once the arm is at rest. Joints outside their range must be back inside.
+    /// Clears the errors once the arm is at rest and any motion back into the range is over.
     pub(super) fn end_recovery(&mut self) {
         let Some(recovery) = &self.recovery else {
             return;
@@ -116,23 +118,23 @@ impl Robot {
     }
 }
 
-// These constants are choices of this simulator.
+// These constants are choices of the simulator.
 
-/// Tolerance of measured positions outside the range, `[rad]`.
+/// Distance outside its range up to which a joint does not count as outside, `[rad]`.
 const POSITION_MARGIN: f64 = 0.01;
 
-/// Distance from the end of its range at which a returning joint stops, `[rad]`.
+/// Distance inside its range at which a returning joint stops, `[rad]`.
 const INSIDE: f64 = 0.02;
 
-/// Velocity of the return, `[rad/s]`.
+/// Velocity of returning joints, `[rad/s]`.
 const RETURN_VELOCITY: f64 = 0.2;
 
 /// Joint velocity below which the arm is still, `[rad/s]`.
 const STILL: f64 = 0.01;
 
-/// Least number of cycles of a recovery, so that its mode is visible.
+/// Smallest number of cycles of a recovery, because clients must see its mode.
 const RECOVERY_MIN: u64 = 100;
 
-/// Largest number of cycles of a recovery, not counting the cycles of its brake. An external force
-/// might shake the arm forever.
+/// Largest number of cycles of a recovery, without the cycles in which the arm brakes. Without this
+/// limit, an external force could prolong the recovery forever.
 const RECOVERY_MAX: u64 = 2000;

@@ -1,6 +1,6 @@
-//! The robot's session with its client: it accepts one client, answers the client's requests, and
-//! disconnects the client. `connection` handles the handshake, `serve::sessions` a second client on
-//! sockets.
+//! The robot's session with its client: the robot accepts one client, answers the client's
+//! requests, and disconnects the client. `connection` handles the handshake. `serve::sessions`
+//! refuses a second client.
 
 use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};
@@ -11,14 +11,14 @@ use franka_proto::{
 use super::{Activity, ArmModel, Robot};
 use crate::connection::{Connection, SessionError};
 
-/// Cuts the first message off a client's stream.
+/// Splits the first message off a client's stream.
 pub(crate) fn next_request(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_within(received, MAX_REQUEST_SIZE)
 }
 
 impl Robot {
-    /// Connects a client. Returns false if another client is connected: the robot accepts one at a
-    /// time.
+    /// Connects a client. Returns false if another client is connected, because the robot accepts
+    /// only one client at a time.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -28,7 +28,7 @@ impl Robot {
         true
     }
 
-    /// Disconnects the client. The client's motion ends: the arm brakes and holds its position.
+    /// Disconnects the client. If the client runs a motion, the arm brakes and holds its position.
     pub fn disconnect(&mut self) {
         if self.client.is_some() {
             self.forget_client();
@@ -42,12 +42,12 @@ impl Robot {
         self.client.is_some()
     }
 
-    /// Accepts bytes from the client's stream, in any portions.
+    /// Accepts bytes from the client's stream, in pieces of any size.
     ///
     /// # Errors
-    /// [`SessionError`] if the client violated the protocol or speaks another version. The robot
-    /// then has no client. Send the replies that remain in [`take_reply`](Self::take_reply), and
-    /// close the stream.
+    /// Returns [`SessionError`] if the client violated the protocol or uses another version. The
+    /// robot then disconnects the client. Send the remaining replies from
+    /// [`take_reply`](Self::take_reply), and close the stream.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<(), SessionError> {
         let Some(client) = &mut self.client else {
             return Ok(());
@@ -110,7 +110,7 @@ impl Robot {
         }
     }
 
-    /// Recomputes the values that depend on frames and load, which may have changed.
+    /// Recomputes the values that depend on frames and load.
     fn refresh_frames(&mut self) {
         self.refresh_dynamics();
         if !self.is_moving() {
@@ -124,15 +124,14 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // The session refuses a reply without a request, so this sends none.
+        // The session refuses a reply to which no request belongs.
         if let Ok(message) = client.session.reply(id, reply) {
             self.replies
                 .push_back(Bytes::copy_from_slice(message.as_bytes()));
         }
     }
 
-    /// Answers with the wall of this number. The answer is an inactive wall if no such wall was set
-    /// up.
+    /// Answers with the wall of this number, or with an inactive wall if no such wall was set up.
     fn send_wall(&mut self, id: CommandId, number: i32) {
         let known = self.config.walls.iter().find(|(known, _)| *known == number);
         let wall = known.map_or(NO_WALL, |(_, wall)| *wall);
@@ -144,7 +143,7 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // A version without this request never gets here.
+        // Clients of versions without this request cannot reach this line.
         let text = self.description.clone().unwrap_or_default();
         if let Ok(header) = client.session.model_header(id, text.len()) {
             let header = Bytes::copy_from_slice(header.as_bytes());
@@ -159,10 +158,10 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // A library that is longer than a message is not served.
+        // The robot does not serve a library that is longer than a message can be.
         match client.session.library_header(id, library.len()) {
             Ok(header) => {
-                // The bytes are shared, not copied: a library has megabytes.
+                // The library's bytes are shared, not copied, because a library has megabytes.
                 let header = Bytes::copy_from_slice(header.as_bytes());
                 self.replies.extend([header, library.clone()]);
             }
@@ -170,8 +169,8 @@ impl Robot {
         }
     }
 
-    /// Ends a motion with this status and without braking. Used before the arm is placed at another
-    /// position.
+    /// Ends a motion with this status and without braking. The caller then places the arm at
+    /// another position.
     pub(super) fn forget_motion(&mut self, status: MoveStatus) {
         if let Activity::Moving(motion) = &self.activity {
             let id = motion.id();

@@ -1,4 +1,4 @@
-//! Oscillating joints: `instability_detected`.
+//! Detection of oscillating joints, for the error `instability_detected`.
 
 use franka_model::JointVector;
 
@@ -52,7 +52,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the milliseconds after which a joint counts as shaking if it swings with this
+    /// Returns the number of milliseconds until the detection of a joint that swings with this
     /// frequency, `[Hz]`.
     fn swing(frequency: f64, velocity: f64) -> Option<usize> {
         let mut shaking = Shaking::new();

@@ -1,4 +1,4 @@
-//! Touches: external action on the arm by pushes, springs, grips, walls, and blocked joints.
+//! Touches: external actions on the arm, such as pushes, springs, grips, walls, and blocked joints.
 
 mod present;
 
@@ -11,8 +11,8 @@ pub(super) use present::Touches;
 
 /// An external action on the arm, at one place and for a limited time.
 ///
-/// Positive torques push joints towards positive angles; forces, positions and velocities are in
-/// base axes. All touches add up. Springs and dampers are integrated implicitly. Pass a touch to
+/// Positive torques push joints towards positive angles. Forces, positions and velocities are in
+/// base axes. The effects of several touches add up. Pass a touch to
 /// [`Robot::touch`](super::Robot::touch):
 ///
 /// ```
@@ -34,7 +34,7 @@ pub(super) use present::Touches;
 pub struct Touch {
     effort: Effort,
     frame: Frame,
-    /// Offset of the touched point in the axes of the frame.
+    /// Offset of the touched point from the frame's origin, in the axes of the frame, `[m]`.
     offset: Vector3<f64>,
     lasts: Option<u64>,
 }
@@ -51,7 +51,7 @@ enum Effort {
         to: Vector3<f64>,
         spring: Spring,
     },
-    /// A spring to a point that moves.
+    /// A spring between the touched point and a moving point.
     Carry {
         path: Box<dyn FnMut(f64) -> Vector3<f64> + Send>,
         /// Position and velocity of the point at the beginning of this millisecond, `[m]`, `[m/s]`.
@@ -106,8 +106,8 @@ impl Touch {
         Self::new(Effort::OverTime(Box::new(wrench)))
     }
 
-    /// A spring to the point `to`, `[m]`, of this stiffness, `[N/m]`. Its damping is about critical
-    /// for the apparent mass of the end of an arm.
+    /// A spring that pulls the touched point to `to`, `[m]`, with this stiffness, `[N/m]`. The
+    /// damping is nearly critical for the apparent mass of the end of an arm.
     pub fn spring(to: Vector3<f64>, stiffness: f64) -> Self {
         Self::new(Effort::Spring {
             to,
@@ -115,10 +115,10 @@ impl Touch {
         })
     }
 
-    /// A spring of this stiffness, `[N/m]`, to a moving point: a hand that leads the arm, or an
-    /// object that hits the arm and stays in contact. `path` returns the point `[m]` for the time
-    /// since the touch began, `[s]`. The simulator calls it once per millisecond. The damper acts
-    /// on the velocity relative to the point.
+    /// A spring of this stiffness, `[N/m]`, to a moving point. It can represent a hand that leads
+    /// the arm, or an object that hits the arm and stays in contact. `path` returns the point `[m]`
+    /// for the time since the touch began, `[s]`. The simulator calls `path` once per millisecond.
+    /// The damper acts on the velocity relative to the point.
     pub fn carry(path: impl FnMut(f64) -> Vector3<f64> + Send + 'static, stiffness: f64) -> Self {
         Self::new(Effort::Carry {
             path: Box::new(path),
@@ -151,7 +151,8 @@ impl Touch {
 
     /// A wall or table: the touched point cannot move behind the plane through `point`, `[m]`.
     /// `normal` points to the free side. The wall has no friction and yields by a millimetre at 20
-    /// N. An arm that leaves the wall feels an additional 0.1 kg for a quarter of a millisecond.
+    /// N. When an arm leaves the wall, the wall adds 0.1 kg to its apparent mass for a quarter of a
+    /// millisecond.
     ///
     /// # Panics
     /// If the normal has no length.
@@ -165,9 +166,10 @@ impl Touch {
         })
     }
 
-    /// Sets the stiffness, `[N/m]`, and a matching damping of a spring, a wall, or the translation
-    /// of a grip. Other touches have no stiffness. Any stiffness is stable. A touch that begins far
-    /// from its point starts with a force of stiffness times distance.
+    /// Sets the stiffness, `[N/m]`, of a spring, a wall, or the translation of a grip, and the
+    /// damping that matches the stiffness. Other touches have no stiffness. Any stiffness is
+    /// stable. If a touch begins far from its point, its first force is the stiffness times the
+    /// distance.
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         match &mut self.effort {
             Effort::Spring { spring, .. }
@@ -187,13 +189,13 @@ impl Touch {
         self
     }
 
-    /// Moves the touched point by `offset` from the frame's origin, in the frame's axes, `[m]`.
+    /// Sets the touched point to `offset` from the frame's origin, in the frame's axes, `[m]`.
     pub fn offset(mut self, offset: Vector3<f64>) -> Self {
         self.offset = offset;
         self
     }
 
-    /// Limits the touch to this many milliseconds. Default: until
+    /// Limits the duration of the touch, in milliseconds. Default: until
     /// [`Robot::release`](super::Robot::release).
     pub fn lasting(mut self, milliseconds: u64) -> Self {
         self.lasts = Some(milliseconds);
@@ -251,7 +253,7 @@ impl Spring {
     }
 }
 
-// Stiffnesses and masses, choices of this simulator. The plants are also stable with higher
+// These stiffnesses and masses are choices of the simulator. The plants are also stable with higher
 // stiffness (`tests/robot/firm.rs` goes up to 1e8 N/m).
 
 /// Stiffness of a table or a firm grip, `[N/m]`.
@@ -263,7 +265,7 @@ const FIRM_TURN: f64 = 500.0;
 /// Stiffness of a blocked joint, `[N·m/rad]`.
 const FIRM_JOINT: f64 = 20_000.0;
 
-/// Apparent mass of the end of an arm, as felt by a hand, `[kg]`.
+/// Apparent mass of the end of an arm, `[kg]`.
 const FELT_MASS: f64 = 3.0;
 
 /// Apparent inertia of the end of an arm, `[kg·m²]`.

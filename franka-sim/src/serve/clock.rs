@@ -3,19 +3,20 @@
 
 use std::time::{Duration, Instant};
 
-/// Timing record of a simulation's milliseconds.
+/// Record of how punctually the simulator ran its milliseconds.
 ///
 /// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) requests a
-/// higher one. The host therefore delays the thread now and then, which no real robot does. By
-/// default the clock then slips: a state that is late by more than [`Pace::TOLERANCE`] delays all
-/// later states by the same time. Clients thus lose no commands because of the host. `message_id`
-/// advances by one per state in any case, and robot time lags behind the wall clock.
+/// higher one. The host therefore delays the thread now and then; real robots have no such delays.
+/// By default, the clock then *slips*: a state that is late by more than [`Pace::TOLERANCE`] delays
+/// all later states by the same time. A slow host therefore causes no lost commands. `message_id`
+/// still advances by one per state, so that robot time lags behind the wall clock.
 ///
-/// With a [strict clock](super::Sim::strict_clock) the simulator instead publishes the due states
-/// in a burst, as a robot's network does after a stall. If more than [`Pace::BURST`] states are
-/// due, the simulator skips the rest of the lost time.
+/// With a [strict clock](super::Sim::strict_clock), the simulator instead publishes all due states
+/// in a burst, like a robot's network after a stall. If more than [`Pace::BURST`] states are due,
+/// the simulator skips the rest of the lost time.
 ///
-/// In [virtual time](super::Sim::virtual_time) this clock does not exist, and no state is late.
+/// In [virtual time](super::Sim::virtual_time), the simulator does not use this clock, and no state
+/// is late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Pace {
@@ -25,10 +26,10 @@ pub struct Pace {
     pub slips: u64,
     /// Total time of the slips.
     pub slipped: Duration,
-    /// With a strict clock: number of states that directly followed another state in a burst. The
+    /// Number of states that directly followed another state in a burst (strict clock only). The
     /// client had no time to answer the preceding state.
     pub burst: u64,
-    /// With a strict clock: number of milliseconds skipped.
+    /// Number of skipped milliseconds (strict clock only).
     pub skipped: u64,
 }
 
@@ -36,13 +37,13 @@ impl Pace {
     /// Largest number of states that a strict clock publishes at once.
     pub const BURST: u32 = 4;
 
-    /// Lateness of a state up to which the next state keeps to the schedule. It is half a period,
-    /// which ordinary wake-ups do not exceed. Clients never receive two states less than half a
-    /// period apart, unless they have answered the first.
+    /// Largest delay of a state that does not delay the next state. It is half a period; ordinary
+    /// delays of wake-ups are shorter. Two states are never less than half a period apart, unless
+    /// the client has answered the first of them.
     pub const TOLERANCE: Duration = Duration::from_micros(500);
 
-    /// Number of cycles in which the host, not the client, was late: slips, bursts and skipped
-    /// states.
+    /// Returns the number of cycles in which the host, not the client, was late: slips, states in
+    /// bursts, and skipped milliseconds.
     pub fn late(&self) -> u64 {
         self.slips + self.burst + self.skipped
     }
@@ -72,8 +73,8 @@ impl Pace {
 /// Time from one state to the next.
 pub(super) const PERIOD: Duration = Duration::from_millis(1);
 
-/// A clock that runs with the wall clock, minus the time of its slips. Instants named `wall` are on
-/// the wall clock; all others are on this clock.
+/// A clock that lags behind the wall clock by the total time of its slips. Instants named `wall`
+/// are on the wall clock; all others are on this clock.
 #[derive(Debug)]
 pub(super) struct Clock {
     strict: bool,
@@ -85,7 +86,7 @@ pub(super) struct Clock {
 }
 
 impl Clock {
-    /// A clock whose first state is due one period after `wall`.
+    /// Returns a clock whose first state is due one period after `wall`.
     pub(super) fn new(wall: Instant, strict: bool) -> Self {
         Self {
             strict,
@@ -99,12 +100,12 @@ impl Clock {
         self.pace
     }
 
-    /// The time of this clock at `wall`.
+    /// Returns the time of this clock at `wall`.
     pub(super) fn at(&self, wall: Instant) -> Instant {
         wall - self.pace.slipped
     }
 
-    /// Time at which the next state is due.
+    /// Returns the time at which the next state is due.
     pub(super) fn due(&self) -> Instant {
         self.due
     }
@@ -164,11 +165,11 @@ mod tests {
     use super::*;
     use crate::noise::Random;
 
-    /// A wall clock, read by a thread that the host may delay.
+    /// A wall clock, read by a thread that the host sometimes delays.
     struct Host {
         wall: Instant,
         random: Random,
-        /// Probability of a delay at each moment at which the host could delay the thread.
+        /// Probability that the host delays the thread when it has an opportunity.
         likelihood: f64,
     }
 

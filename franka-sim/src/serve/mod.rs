@@ -5,21 +5,22 @@
 //!            └──────── replies <───── queue <──────┘           (and Hand, VacuumGripper)
 //! ```
 //!
-//! The thread owns robot and UDP socket and runs one cycle per millisecond. A blocked Tokio runtime
-//! delays requests and replies, but no state. A hand and a vacuum gripper have separate listeners,
-//! queues and sockets, and share the thread and the clock with the robot.
+//! The cycle thread owns the robot and the UDP socket, and runs one cycle per millisecond. A
+//! blocked Tokio runtime delays requests and replies, but it delays no state. The hand and the
+//! vacuum gripper have separate listeners, queues and sockets. They use the robot's thread and
+//! clock.
 //!
 //! | module | content |
 //! |---|---|
 //! | `clock` | the schedule of states, and the handling of a late host: [`Pace`] |
 //! | `cycle` | the loop of the thread |
-//! | `device_server` | a device on its sockets: commands, orders and jobs in, states and replies out |
+//! | `device_server` | a device on its sockets, which receives commands, orders and jobs, and sends states and replies |
 //! | `device` | the interface of a device to the server |
 //! | `relay` | the simulated network between sockets and device |
 //! | `sessions` | one client at a time, and the refusal of a second client |
 //! | `pending` | connections before their handshake |
-//! | `stream` | messages of a stream, and bounds on their slowness |
-//! | `service` | the handle on a device from other tasks |
+//! | `stream` | messages of a stream, and time limits for slow clients |
+//! | `service` | the handle with which other tasks access a device |
 //! | `priority` | the priority of the thread |
 
 mod clock;
@@ -72,8 +73,8 @@ use speed::Speed;
 /// ```
 #[derive(Debug)]
 pub struct Sim {
-    /// On the heap, because builds without optimisation copy moved values, and stacks of threads
-    /// are small.
+    /// The configuration is on the heap, because builds without optimisation copy moved values, and
+    /// stacks of threads are small.
     config: Box<Config>,
     /// The physics; `None` for the rigid-body plant.
     plant: Option<Box<dyn Plant>>,
@@ -84,9 +85,10 @@ pub struct Sim {
     strict_clock: bool,
     /// True if the client's answers drive the clock.
     virtual_time: bool,
-    /// Longest wait for a late command.
+    /// Longest time for which the robot waits for a late command.
     patience: Duration,
-    /// Network between socket and robot; `None` is the network of the host.
+    /// Simulated network between socket and robot; `None` if only the host's network carries
+    /// datagrams.
     network: Option<Network>,
     every_millisecond: Option<Hook>,
     after_each_state: Option<Hook>,
@@ -103,14 +105,15 @@ impl fmt::Debug for Hook {
 }
 
 impl Sim {
-    /// A Franka Research 3 with a [realistic](Arm::realistic) arm and a bare flange in the ready
-    /// pose, on a free port of 127.0.0.1.
+    /// Returns a builder of a Franka Research 3 with a [realistic](Arm::realistic) arm and a bare
+    /// flange in the ready pose, on a free port of 127.0.0.1.
     pub fn fr3() -> Self {
         Self::realistic(RobotKind::Fr3)
     }
 
-    /// A Franka Emika Robot (Panda) with a [realistic](Arm::realistic) arm and a bare flange in the
-    /// ready pose, on a free port of 127.0.0.1. Its states arrive with the delays of a real Panda.
+    /// Returns a builder of a Franka Emika Robot (Panda) with a [realistic](Arm::realistic) arm and
+    /// a bare flange in the ready pose, on a free port of 127.0.0.1. Its states arrive with the
+    /// delays of a real Panda.
     pub fn fer() -> Self {
         Self::realistic(RobotKind::Fer)
     }
@@ -123,8 +126,8 @@ impl Sim {
         })
     }
 
-    /// A robot of this configuration, on a free port of 127.0.0.1. The arm is ideal if the
-    /// configuration names no arm.
+    /// Returns a builder of a robot with this configuration, on a free port of 127.0.0.1. The arm
+    /// is ideal if [`Config::arm`] is `None`.
     pub fn new(config: Config) -> Self {
         Self {
             config: Box::new(config),
@@ -157,13 +160,14 @@ impl Sim {
         self
     }
 
-    /// Listens on `address`, IPv4 or IPv6; port 0 takes a free one. Robots listen on 1337.
+    /// Listens on `address` (IPv4 or IPv6). Port 0 selects a free port. Real robots listen on port
+    /// 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
         self
     }
 
-    /// Uses this plant instead of the rigid-body plant (the physics): see [`Robot::with_plant`].
+    /// Uses this plant (the physics) instead of the rigid-body plant: see [`Robot::with_plant`].
     pub fn plant(mut self, plant: impl Plant) -> Self {
         self.plant = Some(Box::new(plant));
         self
@@ -183,13 +187,13 @@ impl Sim {
     }
 
     /// Simulates the [ideal](Arm::ideal) arm, for tests that need exact results. No real arm is
-    /// like this.
+    /// ideal.
     pub fn ideal(self) -> Self {
         let kind = self.config.kind;
         self.arm(Arm::ideal(kind))
     }
 
-    /// Enforces and serves the joint limits of this system version, in place of the arm's own
+    /// Enforces and serves the joint limits of this system version instead of the limits of the arm
     /// (Franka Research 3 only).
     pub fn limits(mut self, limits: SystemLimits) -> Self {
         let mut arm = self.config.chosen_arm();
@@ -199,7 +203,7 @@ impl Sim {
     }
 
     /// Computes the reported poses, the inverse kinematics and the served description with this
-    /// geometry, in place of the arm's own.
+    /// geometry instead of the geometry of the arm.
     pub fn state_geometry(mut self, geometry: StateGeometry) -> Self {
         let mut arm = self.config.chosen_arm();
         arm.body.state_geometry = geometry;
@@ -213,71 +217,73 @@ impl Sim {
         self
     }
 
-    /// Serves a Franka Hand in addition to the robot, on this TCP port; 0 takes a free one.
+    /// Serves a Franka Hand in addition to the robot, on this TCP port. Port 0 selects a free port.
     ///
-    /// Hands listen on 1338. [`Tool::hand`] has the mass and frame of the hand; mount it with
-    /// [`tool`](Self::tool). If the [plant](Self::plant) has fingers, the hand moves them.
+    /// Real hands listen on port 1338. To add the mass and the frame of the hand, mount
+    /// [`Tool::hand`] with [`tool`](Self::tool). If the [plant](Self::plant) has fingers, the hand
+    /// moves them.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self
     }
 
-    /// Serves a vacuum gripper in addition to the robot, on this TCP port; 0 takes a free one.
-    /// Vacuum grippers listen on 1339.
+    /// Serves a vacuum gripper in addition to the robot, on this TCP port. Port 0 selects a free
+    /// port. Real vacuum grippers listen on port 1339.
     pub fn vacuum_gripper(mut self, suction: Suction, port: u16) -> Self {
         self.vacuum_gripper = Some((suction, port));
         self
     }
 
-    /// Requests a real-time priority (SCHED_FIFO) for the simulator's thread. If the user has no
-    /// right to it, or on systems other than Linux, the thread logs a warning and continues
-    /// without.
+    /// Requests a real-time priority (SCHED_FIFO) for the simulator's thread. If the user lacks the
+    /// right, or on systems other than Linux, the thread logs a warning and keeps its ordinary
+    /// priority.
     pub fn realtime(mut self, realtime: bool) -> Self {
         self.realtime = realtime;
         self
     }
 
     /// Follows the wall clock even if the host delays the simulator. Due states then arrive in a
-    /// burst, and answers that come too late count as lost. By default the clock slips instead: see
-    /// [`Pace`].
+    /// burst, and late answers count as lost. By default, the clock instead falls behind the wall
+    /// clock: see [`Pace`].
     pub fn strict_clock(mut self, strict: bool) -> Self {
         self.strict_clock = strict;
         self
     }
 
-    /// Advances robot time as fast as the client answers, instead of by the wall clock. Use it for
-    /// tests and for programs that learn.
+    /// Advances robot time as fast as the client answers, instead of with the wall clock. Use this
+    /// method for tests and for programs that learn.
     ///
     /// * In a motion in which every state requires an answer, the next millisecond begins as soon
-    ///   as the answer to the last state arrives. No command is late, up to `patience`. After
-    ///   `patience`, the cycle counts as lost; a silent client is thus detected after 20 times
-    ///   `patience`. Time for which the host delays the simulator hardly counts, unless the client
-    ///   has received nothing for half a second. Half a second is a good choice for `patience`. A
-    ///   client that skips an answer and reads a second state waits for `patience`. libfranka
-    ///   considers a connection lost after a second without a state.
-    /// * Otherwise up to ten states come per millisecond on the wall clock: at rest, while braking,
-    ///   in a recovery, while a hand grasps, and in an asynchronous motion. A client that is too
-    ///   slow misses some of them.
+    ///   as the answer to the last state arrives. The robot waits for each command for up to
+    ///   `patience`, and then counts it as lost. It therefore detects a silent client after 20
+    ///   times `patience`. If the host delays the simulator, the delay hardly counts, unless the
+    ///   client has received nothing for half a second. Half a second is a good choice for
+    ///   `patience`: libfranka considers a connection lost after a second without a state. A client
+    ///   that skips an answer waits for `patience` until it receives the next state.
+    /// * Otherwise the robot sends up to ten states per millisecond of the wall clock: at rest,
+    ///   while it brakes, in a recovery, while a hand grasps, and in an asynchronous motion. A
+    ///   client that is too slow misses some of these states.
     ///
-    /// The times of a [`network`](Self::network) are in robot time, in which the client needs no
-    /// time to answer. A client that measures time by another clock than the states sees other
-    /// times than the robot. [`Running::set_speed`] slows robot time down, and pauses it.
+    /// The delays of a [`network`](Self::network) are in robot time, in which the client needs no
+    /// time to answer. If a client measures time with its own clock instead of the time in the
+    /// states, it measures other durations than the robot. [`Running::set_speed`] slows down or
+    /// pauses robot time.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;
         self
     }
 
-    /// Waits for late commands, each up to `patience`, and stops the clock meanwhile. Use it for
-    /// clients on a busy machine, or on the simulator's machine. Devices that require no command
-    /// follow the wall clock, and no device runs faster.
+    /// Waits up to `patience` for each late command, and stops the clock during the wait. Use this
+    /// method for clients on a busy machine, or on the simulator's machine. A device that requires
+    /// no command follows the wall clock, and no device runs faster than the wall clock.
     pub fn wait_for_commands(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
     }
 
-    /// Passes states and commands through this network, in addition to the network between the
-    /// sockets. The network's time begins with the robot's start.
+    /// Passes states and commands through this network, in addition to the real network between the
+    /// sockets. The time of `network` begins when the robot starts.
     ///
     /// Datagrams arrive up to 0.2 ms later than the network prescribes, because the host's sleep is
     /// not exact. The thread checks the network ten times a millisecond. [Virtual
@@ -288,27 +294,28 @@ impl Sim {
         self
     }
 
-    /// Runs `job` on the robot before each of the robot's milliseconds, including the first. Use it
-    /// to observe or disturb the robot in robot time, with any clock. The simulator's thread runs
-    /// `job`, so `job` must be short.
+    /// Runs `job` on the robot before each millisecond of the robot, including the first. Use this
+    /// method to observe or disturb the robot in robot time; it works with every clock. The
+    /// simulator's thread runs `job`, so `job` must be short.
     pub fn every_millisecond(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.every_millisecond = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Runs `job` on the robot each time that a state has been passed to the kernel, or would have
-    /// been with a client. Use it to record the time. `job` runs on the same thread as in
-    /// [`Self::every_millisecond`].
+    /// Runs `job` on the robot each time a state has been passed to the kernel. Without a client,
+    /// `job` runs at the time at which the state would be sent. Use this method to record the time.
+    /// `job` runs on the same thread as in [`Self::every_millisecond`].
     pub fn after_each_state(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.after_each_state = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Makes these robots begin each of their milliseconds together, with any clock. If one robot
-    /// waits for a command, all wait. Use it for arms in one world, and for programs that compare
-    /// robots. The robots do not wait for a robot that has stopped, or whose `Sim` was dropped.
+    /// Makes these robots begin each millisecond together; this works with every clock. If one
+    /// robot waits for a command, all robots wait. Use this function for arms in one world, and for
+    /// programs that compare robots. The robots do not wait for a robot that has stopped, or whose
+    /// `Sim` was dropped.
     ///
-    /// Start all robots before you connect to one or stop one. Their time does not advance before
+    /// Start all robots before you connect to one or stop one. Their time does not advance until
     /// all have started.
     pub fn in_step<const N: usize>(mut sims: [Self; N]) -> [Self; N] {
         for (sim, part) in sims.iter_mut().zip(in_step::in_step::<N>()) {
@@ -321,8 +328,8 @@ impl Sim {
     /// robots may run in one process.
     ///
     /// # Errors
-    /// An error if a socket cannot be bound or the thread cannot be started. Virtual time with a
-    /// `patience` of zero is also an error, because every command would be late.
+    /// Returns an error if a socket cannot be bound or the thread cannot be started. Also returns
+    /// an error for virtual time with a `patience` of zero, because every command would be late.
     ///
     /// # Cancel safety
     /// Dropping the future before it completes closes all sockets and starts no robot.
@@ -391,8 +398,8 @@ impl Sim {
     }
 }
 
-/// Builds the robot of this configuration, with the rigid-body plant by default. This is not an
-/// async function, because that would hold the robot in its future.
+/// Builds the robot of this configuration, with the rigid-body plant by default. This function is
+/// not async, because the future of an async function would hold the robot.
 fn robot(config: Box<Config>, plant: Option<Box<dyn Plant>>) -> Box<Robot> {
     Box::new(match plant {
         Some(plant) => Robot::with_plant(*config, plant),

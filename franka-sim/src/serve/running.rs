@@ -28,17 +28,17 @@ pub struct Running {
 }
 
 impl Running {
-    /// Address for the robot's clients.
+    /// Returns the address to which clients of the robot connect.
     pub fn addr(&self) -> SocketAddr {
         self.robot.addr()
     }
 
-    /// The hand, if any: see [`Sim::hand`].
+    /// Returns the hand, if any: see [`Sim::hand`].
     pub fn hand(&self) -> Option<&Service<Hand>> {
         self.hand.as_ref()
     }
 
-    /// The vacuum gripper, if any: see [`Sim::vacuum_gripper`].
+    /// Returns the vacuum gripper, if any: see [`Sim::vacuum_gripper`].
     pub fn vacuum_gripper(&self) -> Option<&Service<VacuumGripper>> {
         self.vacuum_gripper.as_ref()
     }
@@ -69,10 +69,10 @@ impl Running {
         self.robot.with(job).await
     }
 
-    /// Runs `job` between two milliseconds on the simulated network that states and commands pass:
-    /// see [`Sim::network`]. `None` means no simulated network, only the host's own. `job` also
-    /// receives the network's time. This time begins with the robot's start, or with the first
-    /// network. Replacing a network loses the datagrams in transit.
+    /// Runs `job` between two milliseconds on the simulated network between the robot and its
+    /// client: see [`Sim::network`]. The network is `None` if datagrams pass only the host's
+    /// network. `job` also receives the network's time, which begins when the robot starts or when
+    /// the first network is set. If `job` replaces the network, the datagrams in transit are lost.
     ///
     /// ```
     /// # use std::time::Duration;
@@ -103,7 +103,7 @@ impl Running {
         self.robot.with_network(job).await
     }
 
-    /// The newest state, in full precision.
+    /// Returns the newest state, in double precision.
     ///
     /// # Errors
     /// See [`with`](Self::with).
@@ -114,7 +114,7 @@ impl Running {
         self.with(|robot| *robot.state()).await
     }
 
-    /// Timing record of the simulator's thread so far.
+    /// Returns the timing record of the simulator's thread so far.
     ///
     /// # Errors
     /// See [`with`](Self::with).
@@ -125,8 +125,9 @@ impl Running {
         self.robot.pace().await
     }
 
-    /// Completes when the simulation has ended without a request. Only a panic causes this, in the
-    /// simulator or in a function passed to [`with`](Self::with) or [`Sim::every_millisecond`].
+    /// Completes when the simulation has ended, although no caller stopped it. Only a panic causes
+    /// such an end: a panic in the simulator, or in a function passed to [`with`](Self::with) or
+    /// [`Sim::every_millisecond`].
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.
@@ -135,8 +136,8 @@ impl Running {
         let _ = self.finished.clone().changed().await;
     }
 
-    /// Stops the simulation, disconnects its client, and returns once thread and sockets are
-    /// closed.
+    /// Stops the simulation, disconnects its client, and returns once the thread has ended and the
+    /// sockets are closed.
     ///
     /// # Cancel safety
     /// Dropping the future still stops the simulation, without waiting for it.

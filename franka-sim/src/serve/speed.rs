@@ -14,7 +14,7 @@ const PAUSED_PERIOD: Duration = Duration::from_millis(400);
 /// Longest sleep. A new speed takes effect at the latest after this time.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Largest lag of robot time that the simulator still makes up for.
+/// Longest delay of robot time that the simulator still makes up for.
 const BEHIND_MAX: Duration = Duration::from_millis(20);
 
 /// Reason why the speed of robot time was not set.
@@ -40,20 +40,22 @@ pub enum SpeedError {
 }
 
 impl Running {
-    /// Slowest speed of robot time except a pause, as a factor of the wall clock.
+    /// Slowest speed of robot time except a pause, as a multiple of the wall clock's speed.
     pub const SPEED_MIN: f64 = 0.01;
 
-    /// Fastest speed of robot time that can be set, as a factor of the wall clock. `None` may be
-    /// faster.
+    /// Fastest speed of robot time that can be set, as a multiple of the wall clock's speed.
+    /// Without a set speed, robot time may be faster.
     pub const SPEED_MAX: f64 = 10.0;
 
-    /// Sets the speed of robot time in [virtual time](super::Sim::virtual_time), as a factor of the
-    /// wall clock. Host and client may be slower. With `None`, the default, robot time advances as
-    /// fast as the client answers. 0 is a pause: a millisecond of the robot lasts 400 ms, so no
-    /// client considers the connection lost.
+    /// Sets the speed of robot time in [virtual time](super::Sim::virtual_time), as a multiple of
+    /// the wall clock's speed. A slow host or client may prevent this speed. With `None`, the
+    /// default, robot time advances as fast as the client answers. A speed of 0 is a pause: each
+    /// millisecond of the robot then lasts 400 ms, because clients would consider a silent
+    /// connection lost.
     ///
     /// # Errors
-    /// [`SpeedError`]: the speed is unchanged.
+    /// Returns [`SpeedError`] without virtual time, or if `speed` is out of range. The speed is
+    /// then unchanged.
     pub fn set_speed(&self, speed: Option<f64>) -> Result<(), SpeedError> {
         let set = self.speed.as_ref().ok_or(SpeedError::WallClock)?;
         let possible = Self::SPEED_MIN..=Self::SPEED_MAX;
@@ -64,19 +66,19 @@ impl Running {
         Ok(())
     }
 
-    /// The speed that was [set](Self::set_speed).
+    /// Returns the speed that was [set](Self::set_speed), if any.
     pub fn speed(&self) -> Option<f64> {
         self.speed.as_ref().and_then(Speed::get)
     }
 
-    /// True if the robot runs in [virtual time](super::Sim::virtual_time), in which
+    /// Returns true if the robot runs in [virtual time](super::Sim::virtual_time), in which
     /// [`Self::set_speed`] can be called.
     pub fn is_in_virtual_time(&self) -> bool {
         self.speed.is_some()
     }
 }
 
-/// Bits of the speed; infinity stands for the speed of the client. Clones share the value.
+/// Bits of the speed. Infinity means as fast as the client answers. Clones share the value.
 #[derive(Clone, Debug)]
 pub(super) struct Speed(Arc<AtomicU64>);
 
@@ -98,7 +100,8 @@ impl Speed {
         speed.is_finite().then_some(speed)
     }
 
-    /// Duration of a millisecond of the robot on the wall clock; `None` for no bound.
+    /// Returns how long a millisecond of the robot lasts on the wall clock; `None` for no lower
+    /// bound.
     fn period(&self) -> Option<Duration> {
         self.get().map(|speed| match speed {
             0.0 => PAUSED_PERIOD,
@@ -107,7 +110,7 @@ impl Speed {
     }
 }
 
-/// Keeps robot time to its speed.
+/// Makes robot time advance at its set speed.
 pub(super) struct Pacer {
     speed: Speed,
     /// Time at which the current millisecond of the robot began, or should have begun.
@@ -120,8 +123,8 @@ impl Pacer {
         Self { speed, begun }
     }
 
-    /// Sleeps until the next millisecond of the robot is due. Returns false immediately if the next
-    /// millisecond begins as soon as the client has answered.
+    /// Sleeps until the next millisecond of the robot is due. Returns false immediately if no speed
+    /// is set, because the next millisecond then begins when the client has answered.
     pub(super) fn wait(&mut self) -> bool {
         loop {
             let now = Instant::now();
@@ -158,13 +161,15 @@ mod tests {
             for (speed, period) in [(0.1, 10), (0.0, 400)] {
                 sim.set_speed(Some(speed)).expect("virtual time");
                 assert_eq!(sim.speed(), Some(speed));
-                // A request during a sleep may still run at the previous speed.
+                // The robot may still run at the previous speed if the request comes during a
+                // sleep.
                 robot_time(&sim, 1).await;
                 let begun = Instant::now();
                 let first = sim.state().await.expect("running").message_id;
                 tokio::time::sleep(Duration::from_millis(300)).await;
                 let passed = sim.state().await.expect("running").message_id - first;
-                // On a busy machine less time passes. The simulator makes up for part of it.
+                // On a busy machine, less robot time passes. The simulator makes up for part of the
+                // lost time.
                 let most = begun.elapsed().as_millis() / period + 5;
                 assert!(u128::from(passed) <= most, "{speed}: {passed} > {most}");
             }

@@ -1,10 +1,10 @@
-//! The families that come with the simulator. The documentation of each field of an arm names the
+//! The built-in families of the simulator. The documentation of each field of an arm names the
 //! source of its figures.
 
 use super::{Distribution, Elastic, Family, SystemLimits, Values};
 
 impl Family {
-    /// Good arms, better than those that were measured: little friction, rigid joints.
+    /// Good arms, better than the arms that were measured: little friction, rigid joints.
     pub fn nominal() -> Self {
         Self {
             static_friction: constant([0.33, 0.53, 0.39, 0.77, 0.5, 0.18, 0.34]),
@@ -46,7 +46,7 @@ impl Family {
         }
     }
 
-    /// Arms like those that were measured.
+    /// Arms like the arms that were measured.
     pub fn realistic() -> Self {
         Self {
             static_friction: uniform(

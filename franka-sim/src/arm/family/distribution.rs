@@ -1,4 +1,4 @@
-//! Distribution of one parameter: reading it, and the bounds of its values.
+//! Distribution of one parameter, and the bounds of its values.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ pub enum Distribution {
 pub enum Values {
     /// The same number for all joints.
     One(f64),
-    /// For joints 1 to 7.
+    /// One number per joint, for joints 1 to 7.
     Seven([f64; 7]),
 }
 
@@ -122,7 +122,7 @@ impl Distribution {
         Ok(())
     }
 
-    /// Refuses a distribution per joint for a parameter that an arm has only once.
+    /// Refuses a distribution with seven numbers for a parameter that is not per joint.
     pub(super) fn check_single(&self, field: &'static str) -> Result<(), FamilyError> {
         let seven = |values: &Values| matches!(values, Values::Seven(_));
         match self.numbers().iter().any(seven) {

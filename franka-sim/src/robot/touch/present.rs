@@ -22,10 +22,10 @@ struct Present {
     id: TouchId,
     touch: Touch,
     since: u64,
-    /// Wrench of a touch as a function of time, in this millisecond.
+    /// Wrench in this millisecond, for a touch whose wrench is a function of time.
     wrench: Wrench,
-    /// Wrench in the newest step, about the touched point, in base axes; and the reduction of this
-    /// wrench per unit of joint acceleration.
+    /// Wrench in the newest step, about the touched point and in base axes, and the reduction of
+    /// this wrench per unit of joint acceleration.
     step: (Wrench, Option<Jacobian>),
     /// Wrench on the arm in this millisecond: the mean of the last `steps` steps, about the touched
     /// point, in base axes.
@@ -95,8 +95,8 @@ impl Touches {
         }
     }
 
-    /// Effect on the joints over the step of `dt` seconds that begins with this state of the arm,
-    /// `into` seconds into the millisecond.
+    /// Effect of all touches on the joints over a step of `dt` seconds. The step begins with this
+    /// state of the arm, `into` seconds after the beginning of the millisecond.
     pub(in crate::robot) fn act(
         &mut self,
         model: &AsBuilt,
@@ -111,7 +111,7 @@ impl Touches {
         touches.map(acts).fold(none, |sum, one| sum.and(&one))
     }
 
-    /// Records the acceleration of the step.
+    /// Computes the wrenches of the last step from its joint acceleration.
     pub(in crate::robot) fn feel(&mut self, ddq: &JointVector) {
         for present in &mut self.touches {
             present.steps += 1;
@@ -198,10 +198,10 @@ impl Present {
                 let across = *normal * normal.transpose();
                 let depth = across * (*point - position);
                 let push = spring.pull(depth, &(across * velocity), dt);
-                // Nothing sticks to a wall. The wall does not act on a point outside, or on a
+                // The wall must not pull. It therefore acts neither on a point outside nor on a
                 // point that leaves faster than the wall follows. The arm's acceleration is not
-                // known yet. Therefore the wall pulls a leaving point for one step, with the slope
-                // times the acceleration.
+                // known yet. For one step, the wall may therefore pull a leaving point with the
+                // slope times the acceleration.
                 let is_behind = (depth - across * velocity * dt).dot(normal) > 0.0;
                 if !is_behind || push.dot(normal) <= 0.0 {
                     (none, none, None)
@@ -226,7 +226,7 @@ impl Present {
     }
 }
 
-/// Holds the joint of this index at the angle that is `ahead` of its current angle.
+/// Holds the joint of this index at its current angle plus `ahead`.
 fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
     let mut torque = JointVector::zeros();
@@ -239,7 +239,7 @@ fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     }
 }
 
-/// The Jacobian of the point that is displaced by `arm` from the point of the given Jacobian.
+/// Jacobian of the point at `arm` from the point to which `jacobian` belongs.
 fn displaced(mut jacobian: Jacobian, arm: &Vector3<f64>) -> Jacobian {
     for mut joint in jacobian.column_iter_mut() {
         let turning = joint.fixed_rows::<3>(3).cross(arm);
@@ -282,7 +282,7 @@ mod tests {
             let mut touches = Touches::default();
             let id = touches.add(touch.offset(offset), 0);
             let mut most = 0.0_f64;
-            // Releases the joint before the end stops also act.
+            // The loop ends before the end stops act.
             for step in 1..=100 {
                 // Each step counts as a millisecond, so that the felt wrench belongs to the step.
                 touches.advance(step);
