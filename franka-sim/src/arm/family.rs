@@ -187,7 +187,7 @@ impl Family {
     /// Checks that every arm of the family has valid parameters.
     ///
     /// # Errors
-    /// [`FamilyError::Invalid`] for the first field that is wrong.
+    /// Returns [`FamilyError::Invalid`] with the first field that is invalid.
     pub fn check(&self) -> Result<(), FamilyError> {
         use distribution::Bounds::{Any, Between, NotNegative, Positive, Whole};
         let once = [

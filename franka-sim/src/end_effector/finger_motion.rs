@@ -1,4 +1,4 @@
-//! The motion of the fingers: by built-in kinematics, or by a plant that has fingers.
+//! The motion of the fingers, computed by built-in kinematics or by a plant that has fingers.
 
 use franka_model::CYCLE;
 
@@ -32,7 +32,7 @@ pub(super) enum Progress {
 }
 
 impl FingerMotion {
-    /// Fingers of this width, with nothing between them.
+    /// Fingers with this distance between them, and no object.
     pub(super) fn new(width: f64) -> Self {
         Self {
             width,
@@ -44,7 +44,7 @@ impl FingerMotion {
         self.width
     }
 
-    /// The object between the fingers, unless it belongs to a plant.
+    /// The object between the fingers; `None` if a plant simulates objects.
     pub(super) fn object(&mut self) -> Option<&mut Option<f64>> {
         match &mut self.means {
             Means::Kinematic { object } => Some(object),
@@ -52,7 +52,8 @@ impl FingerMotion {
         }
     }
 
-    /// The command for the plant's fingers. They stay until their width has been read once.
+    /// Command for the plant's fingers. The fingers do not move until their width has been read
+    /// once.
     pub(super) fn drive(&self) -> FingerDrive {
         match &self.means {
             Means::Driven { drive, .. } => *drive,
@@ -60,7 +61,8 @@ impl FingerMotion {
         }
     }
 
-    /// Reads the width between the plant's fingers; from now on the plant moves them.
+    /// Sets the width between the plant's fingers. After the first call, the plant moves the
+    /// fingers.
     pub(super) fn feel(&mut self, width: f64) {
         self.width = width;
         if matches!(self.means, Means::Kinematic { .. }) {
@@ -71,7 +73,8 @@ impl FingerMotion {
         }
     }
 
-    /// One millisecond towards `target` `[m]`, at `speed` `[m/s]` and with up to `force` `[N]`.
+    /// Moves the fingers for one millisecond towards `target` `[m]`, at `speed` `[m/s]` and with up
+    /// to `force` `[N]`.
     pub(super) fn approach(&mut self, target: f64, speed: f64, force: f64) -> Progress {
         match &mut self.means {
             Means::Kinematic { object } => {
@@ -104,10 +107,10 @@ impl FingerMotion {
         }
     }
 
-    /// Releases the held object; the fingers stay in their position.
+    /// Releases the held object. The fingers keep their position.
     pub(super) fn rest(&mut self) {
         if let Means::Driven { drive, .. } = &mut self.means {
-            // Fingers at their target keep exactly this width.
+            // Fingers at their target must keep exactly the target width.
             let is_there = (self.width - drive.width).abs() < NEAR;
             *drive = resting(if is_there { drive.width } else { self.width });
         }
@@ -138,10 +141,10 @@ fn resting(width: f64) -> FingerDrive {
     }
 }
 
-/// Detects fingers that do not move.
+/// Detection of blocked fingers.
 #[derive(Debug, Clone, Copy)]
 struct Stall {
-    /// Width at the start of the window, and milliseconds since.
+    /// Width at the start of the window, and number of milliseconds since then.
     mark: f64,
     age: u32,
     is_stalled: bool,
@@ -156,7 +159,7 @@ impl Stall {
         }
     }
 
-    /// Processes a millisecond at `speed`.
+    /// Processes a millisecond at `speed`. Returns true if the fingers are blocked.
     fn watch(&mut self, width: f64, speed: f64) -> bool {
         self.age += 1;
         if self.age == STALL_WINDOW_MS {
@@ -172,18 +175,19 @@ impl Stall {
 }
 
 /// Tolerance `[m]` within which a plant's fingers have reached a width. This constant and the
-/// constants below are choices of this simulator.
+/// constants below are choices of the simulator.
 const NEAR: f64 = 5e-4;
 
-/// Fingers have lost an object once they have closed by this much `[m]`. The value exceeds the
+/// If grasping fingers close by this distance `[m]`, the object is lost. The distance exceeds the
 /// compliance of a contact.
 const SLIP: f64 = 2e-3;
 
 /// Time after which fingers count as blocked if they have covered too little of the distance. The
-/// motor needs less time to build up the force of a grasp.
+/// motor needs less time than this to build up the force of a grasp.
 const STALL_WINDOW_MS: u32 = 200;
 const STALLED: f64 = 0.05;
 
-/// Command for idle fingers: speed `[m/s]` and force `[N]` that hold them in any posture.
+/// Command for idle fingers: a speed `[m/s]` and a force `[N]` that hold them in any pose of the
+/// hand.
 const REST_SPEED: f64 = 0.02;
 const REST_FORCE: f64 = 2.0;

@@ -7,18 +7,19 @@ use super::Mechanism;
 use super::finger_motion::{FingerMotion, Progress};
 use crate::plant::FingerDrive;
 
-/// Two fingers that move at the commanded speed and stop at an object. Either they have built-in
-/// kinematics and an object of a given width. Or they belong to a plant (physics) with its own
+/// Two fingers that move at the commanded speed and stop at an object. They have built-in
+/// kinematics and an object of a given width, unless they belong to a plant (physics) with its own
 /// fingers and objects: see [`Robot::couple`](crate::Robot::couple).
 ///
-/// libfranka documents the known behaviour of real hands. This simulator chooses the rest and marks
-/// each choice; none has been measured.
+/// libfranka documents the known behaviour of real hands. All other behaviour is a choice of the
+/// simulator, and has not been measured. Each choice is marked.
 ///
 /// * Before the first homing, `max_width` is 0, and the hand refuses every larger width.
-/// * A move that an object blocks continues to try, and fails after [`Fingers::BLOCKED_MS`].
-/// * A grasp closes until something stops the fingers. It then squeezes, even at another width than
-///   the requested one. A grasp that begins while an object is held is unsuccessful.
-/// * After the loss of an object, the fingers close further.
+/// * If an object blocks a move, the hand continues to push, and the move fails after
+///   [`Fingers::BLOCKED_MS`].
+/// * A grasp closes the fingers until something stops them. The fingers then squeeze, even if their
+///   width differs from the requested width. If an object is already held, a grasp is unsuccessful.
+/// * If the object is lost, the fingers continue to close.
 #[derive(Debug, Clone)]
 pub struct Fingers {
     finger_motion: FingerMotion,
@@ -32,15 +33,16 @@ pub struct Fingers {
 enum Activity {
     /// The fingers rest, and exert no force.
     Idle,
-    /// Homing, closing until something stops the fingers.
+    /// First part of a homing: the fingers close until something stops them.
     HomingClosed,
-    /// Homing, opening again.
+    /// Second part of a homing: the fingers open.
     HomingOpen,
-    /// `since` counts the milliseconds for which an object has blocked the fingers.
+    /// A move. `blocked` counts the milliseconds for which an object has blocked the fingers.
     Moving { motion: Move, blocked: u32 },
-    /// Closing until something stops the fingers.
+    /// A grasp: the fingers close until something stops them.
     Grasping(Grasp),
-    /// After a grasp: closing with this speed and force, from this width.
+    /// After a grasp: the fingers push with this speed and force. `held` is their width at the end
+    /// of the grasp.
     Squeezing { speed: f64, force: f64, held: f64 },
 }
 
@@ -48,17 +50,17 @@ impl Fingers {
     /// Largest width, [`FingerDrive::STROKE`].
     pub const STROKE: f64 = FingerDrive::STROKE;
 
-    /// Highest speed, [`FingerDrive::MAX_SPEED`]. The hand executes faster requests at this speed,
-    /// which is a choice of this simulator.
+    /// Highest speed, [`FingerDrive::MAX_SPEED`]. The hand executes faster requests at this speed
+    /// (a choice of the simulator).
     pub const MAX_SPEED: f64 = FingerDrive::MAX_SPEED;
 
-    /// Speed of the width during a homing `[m/s]`, a choice of this simulator.
+    /// Speed of the width during a homing `[m/s]`, a choice of the simulator.
     pub const HOMING_SPEED: f64 = 0.05;
 
     /// Range of the force, [`FingerDrive::FORCE`].
     pub const FORCE: [f64; 2] = FingerDrive::FORCE;
 
-    /// Time after which a move that an object blocks fails `[ms]`. Users report 100 s to 120 s.
+    /// Time after which a blocked move fails `[ms]`. Users report 100 s to 120 s.
     pub const BLOCKED_MS: u32 = 110_000;
 
     /// Open fingers with nothing between them, before their first homing.
@@ -75,7 +77,7 @@ impl Fingers {
     /// Puts an object of this width `[m]` between the fingers.
     ///
     /// # Panics
-    /// If the object does not fit: see [`place_object`](Self::place_object).
+    /// Panics if the object does not fit: see [`place_object`](Self::place_object).
     #[must_use]
     pub fn with_object(mut self, width: f64) -> Self {
         assert!(
@@ -92,7 +94,7 @@ impl Fingers {
         self
     }
 
-    /// Puts an object of this width `[m]` between the fingers, in place of the current object.
+    /// Puts an object of this width `[m]` between the fingers, which replaces the current object.
     /// Returns false and changes nothing if the width is not positive or exceeds the opening, or if
     /// the fingers belong to a plant.
     pub fn place_object(&mut self, width: f64) -> bool {
@@ -106,8 +108,8 @@ impl Fingers {
         }
     }
 
-    /// Removes the object and returns its width `[m]`; `None` without an object, or if the object
-    /// belongs to a plant. A grasp of the object is lost.
+    /// Removes the object and returns its width `[m]`; `None` if there is no object, or if the
+    /// object belongs to a plant. If the object was grasped, the grasp is lost.
     pub fn take_object(&mut self) -> Option<f64> {
         self.finger_motion.object()?.take()
     }
@@ -117,13 +119,13 @@ impl Fingers {
         self.finger_motion.drive()
     }
 
-    /// Reads the width between the fingers of a plant, `[m]`. From then on the plant's fingers are
-    /// used.
+    /// Sets the width between the fingers of a plant, `[m]`. After the first call, the hand uses
+    /// the plant's fingers.
     pub(crate) fn feel(&mut self, width: f64) {
         self.finger_motion.feel(width);
     }
 
-    /// The force that the fingers exert on the object between them `[N]`.
+    /// Force of the fingers on the object between them `[N]`.
     pub fn force(&self) -> f64 {
         match self.activity {
             Activity::Squeezing { force, .. } if self.finger_motion.is_held() => {
@@ -133,7 +135,7 @@ impl Fingers {
         }
     }
 
-    /// One millisecond towards `target`, with the force of a motion.
+    /// Moves the fingers for one millisecond towards `target`, with the force of a motion.
     fn approach(&mut self, target: f64, speed: f64) -> Progress {
         self.squeeze(target, speed, Self::FORCE[0])
     }

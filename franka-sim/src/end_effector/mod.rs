@@ -1,5 +1,5 @@
-//! End effectors that have a separate server, as values: bytes go in, bytes come out, and each
-//! [`EndEffector::tick`] is one millisecond.
+//! End effectors with a separate server, as values without sockets. Bytes go in, bytes come out,
+//! and each [`EndEffector::tick`] is one millisecond.
 //!
 //! ```text
 //! TCP bytes ── receive() ──> session ──> requests ──> Mechanism ──> take_reply(): when it is done
@@ -9,8 +9,9 @@
 //! This module has no clock, socket or thread. [`Hand`] and [`VacuumGripper`] differ only in their
 //! [`Mechanism`].
 //!
-//! One action runs at a time. A new action or a stop aborts it; its request is then answered as
-//! aborted. The end effector stops an action when its client disconnects; a held object stays held.
+//! One action runs at a time. A new action or a stop aborts the running action, and the end
+//! effector answers its request as aborted. When its client disconnects, the end effector stops the
+//! action, but keeps holding its object.
 
 mod finger_motion;
 mod fingers;
@@ -35,11 +36,11 @@ pub type Hand = EndEffector<Fingers>;
 /// A vacuum gripper and its server.
 pub type VacuumGripper = EndEffector<Suction>;
 
-/// Default time between two states `[ms]`. The vendor publishes no rate; clients wait for at most a
-/// second.
+/// Default time between two states `[ms]`. The vendor publishes no rate. Clients wait for a state
+/// for at most a second.
 pub const STATE_PERIOD: u32 = 20;
 
-/// The mechanism behind an end effector's requests, independent of messages.
+/// The mechanism that executes the requests of an end effector, independent of messages.
 pub trait Mechanism {
     /// Protocol of the end effector's server.
     type Protocol: for<'a> Protocol<Reply<'a> = Reply> + Default;
@@ -49,7 +50,7 @@ pub trait Mechanism {
     /// True if a request only ends the running action, without a new action.
     fn is_stop(request: &<Self::Protocol as Protocol>::Request) -> bool;
 
-    /// Begins the requested action, in place of the running action. Returns the answer if the
+    /// Begins the requested action, which replaces the running action. Returns the answer if the
     /// action is already complete.
     fn begin(&mut self, request: &<Self::Protocol as Protocol>::Request) -> Option<Status>;
 
@@ -59,14 +60,14 @@ pub trait Mechanism {
     /// Advances by one millisecond. Returns the answer if the action ends in this millisecond.
     fn tick(&mut self) -> Option<Status>;
 
-    /// State to report with the number `message_id`, in milliseconds.
+    /// State to report, with `message_id` in milliseconds.
     fn state(&self, message_id: u32) -> Self::State;
 
     /// Encodes a state as a datagram.
     fn encode(state: &Self::State) -> Bytes;
 }
 
-/// A mechanism and its server; see the [module](self).
+/// A mechanism and its server. See the [module](self).
 pub struct EndEffector<M: Mechanism> {
     mechanism: M,
     client: Option<Connection<M::Protocol>>,
@@ -102,8 +103,8 @@ impl<M: Mechanism> EndEffector<M> {
         self
     }
 
-    /// Connects a client. Returns false if another client is connected: the server permits only
-    /// one.
+    /// Connects a client. Returns false if another client is connected, because the server permits
+    /// only one client.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -113,7 +114,7 @@ impl<M: Mechanism> EndEffector<M> {
         true
     }
 
-    /// Disconnects the client. The client's action ends. The end effector continues to hold its
+    /// Disconnects the client. The running action ends, but the end effector continues to hold its
     /// object.
     pub fn disconnect(&mut self) {
         if self.running.take().is_some() {
@@ -128,16 +129,16 @@ impl<M: Mechanism> EndEffector<M> {
         self.client.is_some()
     }
 
-    /// The UDP port for states, as announced by the client.
+    /// UDP port that the client announced for states.
     pub fn udp_port(&self) -> Option<u16> {
         self.client.as_ref()?.udp_port()
     }
 
-    /// Accepts bytes of the client's stream, in any portions.
+    /// Accepts bytes of the client's stream, in pieces of any size.
     ///
     /// # Errors
-    /// [`SessionError`] if the client violated the protocol or speaks another version. Send the
-    /// remaining replies, then close the connection.
+    /// Returns [`SessionError`] if the client violated the protocol or uses another version. Send
+    /// the remaining replies, and then close the connection.
     pub fn receive(
         &mut self,
         bytes: &[u8],
@@ -192,7 +193,7 @@ impl<M: Mechanism> EndEffector<M> {
         &self.mechanism
     }
 
-    /// Returns the mechanism behind the server, mutable, for example to put an object in place.
+    /// Returns a mutable reference to the mechanism, for example to add an object.
     pub fn mechanism_mut(&mut self) -> &mut M {
         &mut self.mechanism
     }
@@ -226,7 +227,7 @@ impl<M: Mechanism> EndEffector<M> {
             return;
         };
         self.ended = true;
-        // The session refuses a reply without a request, so this sends none.
+        // The session refuses a reply to which no request belongs.
         if let Ok(message) = client.session.reply(id, Reply::Done(status)) {
             let message = Bytes::copy_from_slice(message.as_bytes());
             self.replies.push_back(message);

@@ -1,4 +1,4 @@
-//! The pump, valve and cup of a vacuum gripper.
+//! The pump, the valve and the cup of a vacuum gripper.
 
 use bytes::Bytes;
 use franka_model::CYCLE;
@@ -6,15 +6,15 @@ use franka_proto::vacuum::{DeviceStatus, Request, State, Status, Vacuum, Version
 
 use super::{Mechanism, towards};
 
-/// Pump that builds up a vacuum on an object, and valve that lets air in again.
+/// A pump that builds up a vacuum on an object, and a valve that ends the vacuum.
 ///
-/// All figures are choices of this simulator; none has been measured. The four profiles of the
-/// device have the same effect here.
+/// All figures are choices of the simulator; none has been measured. The four profiles of the real
+/// device have the same effect in the simulator.
 ///
-/// * A vacuum requires an object and reaches at most [`Suction::MAX_VACUUM`]. A request that does
-///   not reach its vacuum in time is unsuccessful.
-/// * The pump holds a vacuum once it is reached. A stop turns the pump off; the vacuum then leaks
-///   away.
+/// * A vacuum requires an object, and is at most [`Suction::MAX_VACUUM`]. A request is unsuccessful
+///   if the vacuum is not reached in time.
+/// * The pump holds a vacuum once it is reached. A stop turns the pump off, and the vacuum slowly
+///   leaks away.
 /// * The loss of the object ends the vacuum.
 #[derive(Debug, Clone)]
 pub struct Suction {
@@ -27,13 +27,13 @@ pub struct Suction {
 
 #[derive(Debug, Clone, Copy)]
 enum Activity {
-    /// The pump is off and the valve is shut.
+    /// The pump is off, and the valve is closed.
     Idle,
-    /// Pumping up to `target`; `left` milliseconds to go.
+    /// The pump builds up the vacuum `target`, for at most `left` more milliseconds.
     Pumping { target: f64, left: i64 },
     /// The pump holds the vacuum.
     Holding { target: f64 },
-    /// The valve is open; `left` milliseconds to go.
+    /// The valve is open, for `left` more milliseconds.
     Venting { left: i64 },
 }
 
@@ -44,10 +44,11 @@ impl Suction {
     /// Rate at which the pump builds up the vacuum `[mbar/s]`.
     pub const PUMP_RATE: f64 = 1000.0;
 
-    /// Rate at which the open valve, or a cup without an object, loses the vacuum `[mbar/s]`.
+    /// Rate at which the vacuum is lost through the open valve, or through a cup without an object
+    /// `[mbar/s]`.
     pub const VENT_RATE: f64 = 4000.0;
 
-    /// Leak rate on an object while the pump is off `[mbar/s]`.
+    /// Rate at which the vacuum on an object leaks away while the pump is off `[mbar/s]`.
     pub const LEAK_RATE: f64 = 20.0;
 
     /// Vacuum above which the gripper reports that it holds an object `[mbar]`.

@@ -1,4 +1,5 @@
-//! Tests of both end effectors in virtual time, through the sessions of client and device.
+//! Tests of both end effectors in virtual time, with the protocol sessions of the client and the
+//! device.
 
 use franka_proto::client;
 use franka_proto::gripper::{self, Grasp, Move, Reply, Request, Status};
@@ -6,7 +7,7 @@ use franka_proto::vacuum::{self, Profile, Vacuum};
 
 use super::*;
 
-/// An end effector and its client. Time is a counter.
+/// An end effector and its client. A counter represents time.
 struct Pair<M: Mechanism> {
     device: EndEffector<M>,
     client: Session<M>,
@@ -31,7 +32,7 @@ impl<M: Mechanism> Pair<M> {
 
     fn connect(&mut self) {
         assert!(self.device.connect());
-        // Ids start again.
+        // The ids of a new session start again.
         self.answers.clear();
         let hello = self.client.connect(4711);
         self.device.receive(hello.as_bytes()).expect("a handshake");
@@ -107,7 +108,7 @@ fn widths_are_refused_until_homing_has_found_the_largest() {
     assert_eq!(hand.device.state().max_width, 0.0);
     assert_eq!(hand.complete(&move_to(0.04, 0.1)), (Status::Fail, 0));
     assert_eq!(hand.complete(&grasp(0.04)), (Status::Fail, 0));
-    // 80 mm in both directions at 50 mm/s.
+    // The fingers move 80 mm in both directions at 50 mm/s.
     let (status, elapsed) = hand.complete(&Request::Homing);
     assert_eq!(status, Status::Success);
     assert!(elapsed.abs_diff(3200) <= 2, "{elapsed}");
@@ -157,7 +158,7 @@ fn senseless_request_fails_at_once_and_moves_nothing() {
 
 #[test]
 fn an_object_is_grasped_if_its_width_is_within_the_tolerances() {
-    // Tolerances of 5 mm; neither bound is included.
+    // The tolerances are 5 mm, and neither bound is included.
     for (asked, object, grasped) in [
         (0.04, Some(0.04), true),
         (0.04, Some(0.0449), true),
@@ -180,7 +181,7 @@ fn an_object_is_grasped_if_its_width_is_within_the_tolerances() {
         assert_eq!(state.width, object.unwrap_or(0.0));
         let way = 0.08 - state.width;
         assert!((f64::from(elapsed) - way / 0.1 * 1e3).abs() <= 1.0);
-        // The hand squeezes either way.
+        // The hand squeezes in both cases.
         assert_eq!(hand.device.mechanism().force(), 40.0);
     }
 }
@@ -225,7 +226,7 @@ fn a_blocked_move_keeps_trying_until_it_fails() {
         elapsed.abs_diff(Fingers::BLOCKED_MS + 300) <= 2,
         "{elapsed}"
     );
-    // Removed in time, the object no longer blocks the move.
+    // If the object is removed in time, it no longer blocks the move.
     hand.complete(&move_to(0.08, 0.1));
     hand.ask(&move_to(0.02, 0.1));
     hand.run(50_000);

@@ -24,8 +24,8 @@ fn plants(kind: RobotKind, arm: &Arm, load: Load) -> Vec<Box<dyn Plant>> {
     ]
 }
 
-/// Every kind of arm on every plant, without and with a Hand; `test` also gets a description of the
-/// case.
+/// Every kind of arm on every plant, without and with a Hand. `test` also receives a description of
+/// the case.
 fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
     for kind in RobotKind::ALL {
         let mut arm = Arm::ideal(kind);
@@ -58,7 +58,7 @@ struct Book {
     load: Load,
     train: DriveTrain,
     plant: Box<dyn Plant>,
-    /// Change of the potential energy since the beginning, when the arm was at rest.
+    /// Change of the potential energy since the start, at which the arm was at rest.
     potential: f64,
     /// Work that the motors have done.
     work: f64,
@@ -87,7 +87,7 @@ impl Book {
         0.5 * (links + rotors)
     }
 
-    /// Torques that support the arm in its position, `[N·m]`.
+    /// Torques that support the arm against gravity in its position, `[N·m]`.
     fn weight(&self) -> JointVector {
         self.model
             .gravity(self.plant.q(), &self.load, &GRAVITY_EARTH)
@@ -105,14 +105,14 @@ impl Book {
         false
     }
 
-    /// Energy that the arm has in addition to the energy that it received.
+    /// Energy of the arm minus the energy that it received.
     fn surplus(&self) -> f64 {
         self.kinetic() + self.potential - self.work
     }
 }
 
-/// Returns torques that support the arm and swing every joint about the ready pose, each joint a
-/// little faster than the joint before.
+/// Returns torques that support the arm and swing every joint about the ready pose. Each joint
+/// swings a little faster than the previous joint.
 fn swing(book: &Book, time: f64) -> JointVector {
     let strength = JointVector::from([6.0, 6.0, 6.0, 6.0, 1.0, 1.0, 0.5]);
     let phase = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).cos());
@@ -125,7 +125,7 @@ fn swing(book: &Book, time: f64) -> JointVector {
 fn a_fall_turns_potential_into_kinetic_energy_and_loses_none() {
     for_each(Some(Friction::NONE), |name, book| {
         let (mut worst, mut steps) = (0.0_f64, 0);
-        // For two seconds, or until the arm hits itself if it can.
+        // The loop runs for two seconds, or until the arm hits itself.
         while steps < 8000 && !book.is_touching() {
             worst = worst.max(book.surplus().abs());
             book.step(&JointVector::zeros(), STEP);
@@ -156,10 +156,10 @@ fn energy_surplus_shrinks_with_the_steps() {
         });
         let turnover = book.turnover;
         println!("{name}: {errors:?} J of {turnover} J");
-        // In the five seconds, the motors supply and absorb several times this energy.
+        // The motors supply and absorb several times this energy in the five seconds.
         assert!(turnover > 0.3, "{name}: {turnover} J");
         assert!(errors[0] < 0.03 * turnover, "{name}: {errors:?} J");
-        // The integration rule is of first order.
+        // The integration rule has first order.
         let ratio = errors[0] / errors[1];
         assert!((1.5..2.5).contains(&ratio), "{name}: {errors:?} J");
     });
@@ -178,7 +178,7 @@ fn friction_takes_energy_and_gives_none() {
             let weight = book.weight();
             book.step(&weight, STEP);
             let surplus = book.surplus();
-            // Except for the integration error of one step.
+            // The tolerance is the integration error of one step.
             assert!(
                 surplus < least + 1e-4 * book.turnover,
                 "{name}: {surplus} J after {least} J"

@@ -1,15 +1,14 @@
-//! External action on the links.
+//! External torques on the links.
 
 use franka_model::{JointVector, MassMatrix};
 
-/// External action on the links over one step: `torque − slope · q̈`.
+/// Torques that external objects exert on the links over one step: `torque − slope · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct External {
     /// Torques on the joints, `[N·m]`. Positive torques push the joint towards positive angles.
     pub torque: JointVector,
-    /// Resistance of springs and dampers to the displacement and velocity that the links gain in
-    /// the step, `[kg·m²]`. The matrix is symmetric and positive semidefinite; `None` for no
-    /// resistance.
+    /// Resistance of springs and dampers to the change of position and velocity in the step,
+    /// `[kg·m²]`. The matrix is symmetric and positive semidefinite. `None` means no resistance.
     pub slope: Option<MassMatrix>,
 }
 
@@ -26,11 +25,11 @@ impl External {
         let Some(slope) = self.slope else {
             return JointVector::zeros();
         };
-        // Adding this matrix makes the difference diagonally dominant.
+        // The matrix minus the slope is diagonally dominant.
         JointVector::from_fn(|i, _| slope.row(i).iter().map(|s| s.abs()).sum())
     }
 
-    /// Adds another external action.
+    /// Sum of two external actions.
     pub(crate) fn and(self, other: &Self) -> Self {
         let slope = match (self.slope, other.slope) {
             (Some(one), Some(another)) => Some(one + another),

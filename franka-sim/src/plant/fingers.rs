@@ -19,7 +19,7 @@ impl FingerDrive {
     /// data.
     pub const MAX_SPEED: f64 = 0.1;
 
-    /// Least and largest force of a grasp `[N]`. Users report that real hands apply the least force
-    /// for every smaller request. The largest force is from the technical data.
+    /// Smallest and largest force of a grasp `[N]`. Users report that real hands apply the smallest
+    /// force if a request is below it. The largest force is from the technical data.
     pub const FORCE: [f64; 2] = [30.0, 140.0];
 }

@@ -2,9 +2,9 @@
 //!
 //! A [`DriveTrain`] turns commanded torques into torques on the links, and a [`Plant`] turns
 //! torques on the links into motion. Both are independent of the protocol, of desired values and of
-//! the controllers' model. The plant may carry an undeclared load.
+//! the controllers' model. The plant's load may differ from the declared load.
 //!
-//! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
+//! [`RigidArm`] simulates the arm alone, with the equations of `franka-model`. `MujocoArm` (feature
 //! `mujoco`) adds fingers, and surroundings that the arm can touch. Without contact, both plants
 //! move in the same way.
 
@@ -37,8 +37,7 @@ pub(crate) const STEPS: u32 = 4;
 /// The links of an arm of seven joints, and their surroundings.
 ///
 /// The robot calls [`step`](Self::step) several times per millisecond, through a [`DriveTrain`].
-/// Each step gets the torques that its controllers compute from the newest positions and
-/// velocities.
+/// For each step, the robot's controllers compute torques from the newest positions and velocities.
 ///
 /// The plant of a robot can be downcast through [`Any`]: see
 /// [`Robot::plant`](crate::Robot::plant).
@@ -49,11 +48,11 @@ pub trait Plant: Any + Debug + Send {
     /// Joint velocities, `[rad/s]`.
     fn dq(&self) -> &JointVector;
 
-    /// Copies links, axes, gravity and end stops from `arm`.
+    /// Sets links, axes, gravity and end stops to the values of `arm`.
     fn fit(&mut self, kind: RobotKind, arm: &Arm);
 
-    /// Advances by `dt` seconds under the torques of the drives and external torques. The plant
-    /// adds contact with its own objects.
+    /// Advances by `dt` seconds under the torques of the drives and the external torques. The plant
+    /// adds the contact forces of its own objects.
     fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64);
 
     /// Puts the arm at rest at `q`, `[rad]`. Returns the torques that hold the arm there against
@@ -63,8 +62,8 @@ pub trait Plant: Any + Debug + Send {
     /// Replaces the true load of the flange.
     fn attach(&mut self, load: Load);
 
-    /// Drives the fingers on the flange from the next step on, and returns the distance between
-    /// them, `[m]`; `None` if the plant has no fingers.
+    /// Sets the command of the fingers on the flange for the next steps. Returns the distance
+    /// between the fingers, `[m]`, or `None` if the plant has no fingers.
     fn drive_fingers(&mut self, _drive: &FingerDrive) -> Option<f64> {
         None
     }

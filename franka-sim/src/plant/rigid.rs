@@ -1,4 +1,4 @@
-//! The rigid-body arm.
+//! An arm of rigid links.
 
 use franka_model::{AsBuilt, JointVector, Load, MassMatrix, RobotKind};
 use nalgebra::Vector3;
@@ -14,12 +14,11 @@ use crate::arm::{Arm, EndStops};
 /// (M + inertia + slope + h·D + h²·K) a = torque + external − C dq − g − stops(q + h·dq, dq)
 /// ```
 ///
-/// The first torque and the inertia come from the drives. The second torque and the slope come from
-/// external action. `D` is the damping of drives and stops, and `K` the stops' stiffness. The
-/// velocity advances before the position. Stiff parts (friction at rest, end stops, springs of
-/// touches) thus follow the implicit Euler rule, and the rest follows the symplectic rule. The step
-/// stays stable for any stiffness, and a free arm keeps its energy (see the tests in
-/// `plant::energy`).
+/// `torque` and the inertia come from the drives. `external` and the slope come from external
+/// torques. `D` is the damping of drives and stops, and `K` the stops' stiffness. The velocity
+/// advances before the position. Stiff parts (friction at rest, end stops, springs of touches) thus
+/// follow the implicit Euler rule, and the rest follows the symplectic rule. The step stays stable
+/// for any stiffness, and a free arm keeps its energy (see the tests in `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: AsBuilt,
@@ -31,7 +30,7 @@ pub struct RigidArm {
 }
 
 impl RigidArm {
-    /// The links of `arm` at rest at `q`, `[rad]`, carrying `load`.
+    /// The links of `arm` at rest at `q`, `[rad]`, with `load` on the flange.
     pub fn new(kind: RobotKind, arm: &Arm, q: JointVector, load: Load) -> Self {
         Self {
             model: arm.body.as_built(kind),
@@ -76,7 +75,8 @@ impl Plant for RigidArm {
                 &self.gravity_earth,
                 &armature,
             )
-            // No acceleration solves the equation. The robot detects non-finite values and stops.
+            // If no acceleration solves the equation, the robot detects the non-finite values and
+            // stops.
             .unwrap_or_else(|| JointVector::repeat(f64::NAN));
         self.dq += ddq * dt;
         self.q += self.dq * dt;

@@ -53,9 +53,9 @@ impl Measurement {
 impl Robot {
     /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
     ///
-    /// If control or physics diverges, this function puts the arm back at rest in its last
-    /// position, with `instability_detected`. Otherwise a non-finite number would remain for all
-    /// later clients.
+    /// If control or physics diverges, this function puts the arm at rest in its last position and
+    /// raises `instability_detected`. Otherwise a non-finite number would also affect all later
+    /// clients.
     pub(super) fn control(&mut self) -> JointVector {
         let before = *self.plant.q();
         let torque = self.drive();

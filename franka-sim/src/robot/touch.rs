@@ -140,7 +140,7 @@ impl Touch {
     /// Blocks a joint, 1 to 7, in both directions.
     ///
     /// # Panics
-    /// If no joint has this number.
+    /// Panics if no joint has this number.
     pub fn block(joint: usize) -> Self {
         assert!((1..=7).contains(&joint), "joint {joint}, expected 1 to 7");
         Self::new(Effort::Block {
@@ -155,7 +155,7 @@ impl Touch {
     /// millisecond.
     ///
     /// # Panics
-    /// If the normal has no length.
+    /// Panics if the length of the normal is zero.
     pub fn wall(point: Vector3<f64>, normal: Vector3<f64>) -> Self {
         let length = normal.norm();
         assert!(length > 0.0, "a plane without a normal");

@@ -1,4 +1,4 @@
-//! The drive train of an arm: from motor torques to the torques on its links.
+//! The drive train of an arm. It converts motor torques to the torques on the links.
 //!
 //! ```text
 //!  command ── − offset ──> torque loop, rotor ──> spring, damper ──┬──> link (the plant)
@@ -9,20 +9,22 @@
 //! the torque, inertia and damping of [`LinkTorque`], and the torque and slope of [`External`].
 //!
 //! With rigid joints, the apparent rotor inertia `B` and all friction act on the link. With elastic
-//! joints of stiffness `K` and damping `D`, the step is implicit. Over `h` seconds, with `s = h·D +
-//! h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and link is
+//! joints of stiffness `K` and damping `D`, the step is implicit. Over a step of `h` seconds, with
+//! `s = h·D + h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and
+//! link is
 //!
 //! ```text
 //! T = T0 + s (τ − f − T0)/(B + s) − (s B/(B + s)) q̈
 //! ```
 //!
-//! for a motor torque `τ` minus its friction `f`. The plant thus sees a known torque and an
-//! inertia, which is `B` for a stiff spring. The plant's acceleration then determines the rotor's
-//! acceleration.
+//! for a motor torque `τ` minus its friction `f`. For the plant, the drive is therefore a known
+//! torque and an inertia, which is `B` for a stiff spring. The acceleration of the plant then
+//! determines the acceleration of the rotor.
 //!
-//! The torque loop makes `T` follow the command with a proportional gain `k` from a sensor without
-//! delay. The apparent rotor inertia is then `B/(1 + k)`, and disturbances of the rotor shrink by
-//! the same factor. The parameters of friction and ripple already include this reduction.
+//! The torque loop makes `T` follow the command. It has a proportional gain `k` and a sensor
+//! without delay. The apparent rotor inertia is then `B/(1 + k)`, and the loop reduces disturbances
+//! of the rotor by the same factor. The parameters of friction and ripple already include this
+//! reduction.
 
 mod friction;
 #[cfg(test)]
@@ -41,7 +43,7 @@ pub struct LinkTorque {
     pub torque: JointVector,
     /// Inertia that turns with the links, `[kg·m²]`.
     pub inertia: JointVector,
-    /// Resistance to the velocity that the links gain in the step, `[N·m·s/rad]`.
+    /// Resistance to the change of the links' velocities in the step, `[N·m·s/rad]`.
     pub damping: JointVector,
 }
 
@@ -53,8 +55,8 @@ pub struct DriveTrain {
     torque_offset: JointVector,
     motor_contacts: [Option<Contact>; 7],
     link_contacts: [Option<Contact>; 7],
-    /// Angle and velocity of the motors, as angles of the joints. With rigid joints they equal the
-    /// values of the links.
+    /// Angle and velocity of the motors, as angles of the joints. For rigid joints, they equal the
+    /// angle and velocity of the links.
     theta: JointVector,
     dtheta: JointVector,
     /// Torques between gears and links over the last step.
@@ -101,8 +103,8 @@ impl DriveTrain {
         &self.torque
     }
 
-    /// Angles of the motors as angles of the joints, `[rad]`: the angles of the links plus the
-    /// deflection of elastic joints.
+    /// Angles of the motors after the gears, `[rad]`: the angles of the links plus the deflections
+    /// of elastic joints.
     pub fn theta(&self) -> &JointVector {
         &self.theta
     }
@@ -131,7 +133,7 @@ impl DriveTrain {
     }
 
     /// Advances drives and plant (the physics of the links) by `dt` seconds. The commanded torques,
-    /// `[N·m]`, include gravity; external torques act in addition.
+    /// `[N·m]`, include gravity. External torques are added.
     pub fn step(
         &mut self,
         plant: &mut dyn Plant,
@@ -172,8 +174,8 @@ impl DriveTrain {
         }
     }
 
-    /// The step of joint `i` under the motor torque `motor`, to the extent known before the plant's
-    /// step.
+    /// The values for the step of joint `i` that do not depend on the acceleration, under the motor
+    /// torque `motor`.
     fn joint(&self, i: usize, motor: f64, q: f64, dq: f64, dt: f64) -> JointStep {
         let rotor = self.felt_inertia[i];
         let tangent = |contact: &Option<Contact>, v: f64, inertia: f64| {

@@ -1,4 +1,4 @@
-//! Tests of drive train and plants together.
+//! Tests of the drive train together with plants.
 
 use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, READY, RobotKind};
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use crate::plant::{External, Plant, RigidArm};
 const STEP: f64 = 0.000_25;
 const KIND: RobotKind = RobotKind::Fer;
 
-/// An arm of the realistic family, without the disturbances that would affect a measurement of its
+/// An arm of the realistic family, without disturbances that would affect measurements of its
 /// drives.
 fn steady(friction: Friction) -> Arm {
     let realistic = Arm::realistic(KIND);
@@ -94,7 +94,7 @@ fn every_joint_breaks_away_at_its_static_torque_and_not_below() {
                     "{joints}, {name}: {joint} slips"
                 );
                 let mut torque = least;
-                // Slow enough to make the inertia negligible.
+                // The torque rises slowly enough to make the inertia negligible.
                 while bench.plant.dq()[joint] < 4e-4 {
                     torque += 0.05 * STEP;
                     bench.push(joint, torque);
@@ -158,7 +158,7 @@ fn sensed_torque_shows_friction_of_the_link_side_only() {
     }
 }
 
-/// Returns the frequency at which the measured torque of a joint oscillates after a blow, `[Hz]`.
+/// Returns the frequency of the measured torque of a joint after an impact, `[Hz]`.
 fn ringing(bench: &mut Bench, joint: usize) -> f64 {
     let holding = bench.plant.place(&READY);
     bench.train.rest(&READY, &holding);
@@ -194,16 +194,16 @@ fn ringing(bench: &mut Bench, joint: usize) -> f64 {
 fn elastic_joints_ring_at_the_published_resonances() {
     let mut free = steady(Friction::NONE);
     free.drive.torque_loop_gain = 0.0;
-    // Rotor against link, with a Hand, from the rotor inertias and stiffnesses of this family. The
-    // published 105 Hz of joint 5 is about its frequency while the neighbouring joints are free
-    // too. Alone it has 91 Hz, by its inertia in the model.
+    // These are the frequencies of rotor against link, with a Hand, computed from the rotor
+    // inertias and stiffnesses of this family. The published 105 Hz of joint 5 is close to its
+    // frequency with free neighbouring joints. With blocked neighbours, its frequency is 91 Hz.
     let published = [36.0, 29.0, 34.0, 34.0, 91.0, 79.0];
     for (joint, expected) in published.into_iter().enumerate() {
         let mut arm = free.clone();
         let elasticity = arm.drive.elasticity.as_mut().expect("elastic joints");
         elasticity.damping /= 10.0;
         for other in (0..7).filter(|other| *other != joint) {
-            // Held.
+            // A huge rotor inertia blocks the other joints.
             arm.drive.rotor_inertia[other] = 1e6;
             elasticity.stiffness[other] = 1e9;
         }
@@ -245,7 +245,7 @@ fn an_arm_that_only_its_joints_damp_loses_energy_and_gains_none() {
         for _ in 0..4000 {
             bench.step(&JointVector::zeros());
             let now = energy(&bench);
-            // Except for the error of a step, which moves the links by less than a degree.
+            // The tolerance is the error of a step, which moves the links by less than a degree.
             assert!(
                 now < least + 1e-4 * start,
                 "{name}: {now} J after {least} J"

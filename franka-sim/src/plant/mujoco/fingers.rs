@@ -1,5 +1,5 @@
-//! The Franka Hand in the scene: its shapes, the joints of its fingers and the motor that drives
-//! both.
+//! The Franka Hand in the scene: its shapes, the joints of its fingers, and the motor that drives
+//! both fingers.
 
 use franka_model::collision::{Body, Capsule};
 use mujoco_rs::prelude::{MjData, MjModel};
@@ -9,9 +9,8 @@ use super::mjcf::{add, geom, quaternion, write_capsule};
 use super::scene::{SceneError, joint};
 use crate::plant::FingerDrive;
 
-/// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh
-/// (`franka_description` 1.0.1, `hand`). The mesh protrudes by up to 15 mm. The capsule does not
-/// include this, because the fingers leave the body closer to it.
+/// The body of the Hand, in the frame of the Hand. Source: a fit to the vendor's collision mesh
+/// (`franka_description` 1.0.1, `hand`). The mesh protrudes by up to 15 mm from this capsule.
 pub(super) const HAND: Capsule =
     Capsule::new([-0.0007, -0.0702, 0.0228], [0.0001, 0.0673, 0.0254], 0.0363);
 
@@ -21,8 +20,8 @@ pub(super) fn write_hand(text: &mut String) {
     let turn = quaternion(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn));
     add(text, format_args!("<body name='hand' quat='{turn}'>"));
     write_capsule(text, &geom(Body::Tool, 0), &HAND);
-    // The right finger is the left finger, turned about the axis of the Hand. Both thus open in
-    // the positive direction.
+    // The right finger is the left finger, turned about the axis of the Hand. The positive
+    // direction therefore opens both fingers.
     for (name, turn) in JOINTS.into_iter().zip(["1 0 0 0", "0 0 0 1"]) {
         let stroke = FingerDrive::STROKE / 2.0;
         add(
@@ -38,7 +37,7 @@ pub(super) fn write_hand(text: &mut String) {
     text.push_str("</body>");
 }
 
-/// Couples both fingers, which one motor drives: they are always equally far open.
+/// Couples both fingers, because one motor opens both by the same distance.
 pub(super) fn write_coupling(text: &mut String) {
     let [left, right] = JOINTS;
     add(
@@ -56,7 +55,7 @@ pub(super) struct FingerJoints {
     qpos: [usize; 2],
     dof: [usize; 2],
     drive: FingerDrive,
-    /// Integrated force of the controller, on each finger, `[N]`.
+    /// Integral part of the controller's force on each finger, `[N]`.
     push: f64,
 }
 
@@ -100,7 +99,7 @@ impl FingerJoints {
             speed,
             force,
         } = self.drive;
-        // Each finger moves half of the distance.
+        // Each finger covers half of the distance.
         let way = (width - self.width(data)) / 2.0;
         let wanted = (way * APPROACH).clamp(-speed / 2.0, speed / 2.0);
         let rate = self
@@ -124,17 +123,17 @@ const JOINTS: [&str; 2] = ["finger_left", "finger_right"];
 /// `franka_description` 1.0.1, `franka_hand.xacro`.
 const FINGER_HEIGHT: f64 = 0.0584;
 
-/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: the least that MuJoCo
-/// accepts. The load of [`Tool::hand`](crate::Tool::hand) includes the fingers' weight, and nearly
-/// all the inertia against their sliding comes from the motor.
+/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: the smallest values that
+/// MuJoCo accepts. The load of [`Tool::hand`](crate::Tool::hand) includes the weight of the
+/// fingers. Nearly all inertia of the sliding fingers comes from the motor.
 const NEXT_TO_NOTHING: f64 = 1e-12;
 
-/// Inertia of the motor at each finger, `[kg]`. A choice of this simulator, without a source.
+/// Inertia of the motor at each finger, `[kg]`. A choice of the simulator, without a source.
 const FINGER_ARMATURE: f64 = 0.5;
 
 /// The four boxes of a finger: screw mount, carriage, diagonal, rubber tip. Source:
 /// `franka_description` 1.0.1, `franka_hand.xacro`. The tip is stiffer than MuJoCo's default
-/// contacts, so that 100 N press it in by 0.2 mm.
+/// contacts: a force of 100 N compresses it by 0.2 mm.
 const BOXES: &str = "\
     <geom type='box' size='0.011 0.0075 0.01' pos='0 0.0185 0.011'/>\
     <geom type='box' size='0.011 0.0044 0.0019' pos='0 0.0068 0.0022'/>\
@@ -143,9 +142,9 @@ const BOXES: &str = "\
     <geom type='box' size='0.00875 0.0076 0.00925' pos='0 0.00758 0.04525' condim='4' \
     friction='0 0.005 0.0001' solref='0.005 1' solimp='0.95 0.99 0.001' solmix='100'/>";
 
-/// Gains of the motor's speed controller, chosen for this simulator. They are the desired speed per
-/// remaining distance, `[1/s]`, and the force per speed error, `[N·s/m]`, and per position error,
-/// `[N/m]`. The force on a blocked finger reaches 70 N after 0.2 s.
+/// Gains of the motor's speed controller, chosen for the simulator: desired speed per remaining
+/// distance, `[1/s]`; force per speed error, `[N·s/m]`; force per position error, `[N/m]`. The
+/// force on a blocked finger reaches 70 N after 0.2 s.
 const APPROACH: f64 = 30.0;
 const PROPORTIONAL: f64 = 100.0;
 const INTEGRAL: f64 = 6000.0;

@@ -1,4 +1,4 @@
-//! The arm as MJCF, from the numbers of [`franka_model`].
+//! MJCF text of an arm, with the parameters of [`franka_model`].
 
 use std::collections::BTreeSet;
 use std::fmt::{Display, Write as _};
@@ -11,7 +11,7 @@ use nalgebra::{Isometry3, Matrix3, UnitQuaternion, Vector3};
 use super::{fingers, joint_name};
 use crate::arm;
 
-/// The MJCF text of an arm whose base frame is `base` in the world and that carries `load`.
+/// MJCF text of an arm with the base frame `base` in the world and with `load` on the flange.
 pub(super) fn arm(
     kind: RobotKind,
     body: &arm::Body,
@@ -23,7 +23,8 @@ pub(super) fn arm(
     let built = body.as_built(kind);
     let shapes = Shapes::of(kind, has_hand);
     let mut text = String::new();
-    // A load may have any moments of inertia; MuJoCo uses the nearest that are physically possible.
+    // The moments of inertia of a load may be impossible; MuJoCo then uses the nearest possible
+    // moments.
     text.push_str(
         "<mujoco><compiler angle='radian' balanceinertia='true'/><default>\
          <geom contype='2' conaffinity='1' mass='0'/></default><worldbody>",
@@ -173,8 +174,8 @@ pub(super) fn write_capsule(text: &mut String, name: &str, capsule: &Capsule) {
     );
 }
 
-/// Writes mass and principal moments. MuJoCo's own search for the principal axes is accurate to
-/// eight digits only.
+/// Writes the mass and the principal moments, because MuJoCo itself finds the principal axes with
+/// only eight accurate digits.
 fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>) {
     let symmetric = (inertia + inertia.transpose()) / 2.0;
     let principal = symmetric.symmetric_eigen();
@@ -194,7 +195,7 @@ fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<
     );
 }
 
-/// Numbers in MJCF format. Rust prints as many digits as are needed to read the same number again.
+/// Numbers in MJCF format, with all digits that are needed to read the same number again.
 pub(super) fn numbers(vector: &Vector3<f64>) -> impl Display + use<> {
     let Vector3 { data, .. } = vector;
     let [[x, y, z]] = data.0;

@@ -24,15 +24,15 @@ use scene::{JOINT, Places};
 /// MuJoCo, with the end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a
 /// [`Scene`].
 ///
-/// Without contact, this arm moves as a `RigidArm`. Each step solves the same equation in the same
-/// way, with MuJoCo's own inertia and bias forces. Drives and end stops enter as forces, and their
-/// slopes enter as dampers that the integrator treats implicitly. External action enters in the
-/// same way, but a larger diagonal matrix replaces its slope. While something firm touches the arm,
-/// the inertia of the joints is therefore up to 0.2 kg·m² higher.
+/// Without contact, this arm moves like a `RigidArm`. Each step solves the same equation in the
+/// same way, with MuJoCo's own inertia and bias forces. Drives and end stops act as forces, and
+/// their slopes act as dampers that the integrator treats implicitly. External torques act in the
+/// same way, but a larger diagonal matrix replaces their slope. While something firm touches the
+/// arm, the inertia of the joints is therefore up to 0.2 kg·m² higher.
 ///
-/// Links touch their surroundings, and outer links touch inner links, with the capsules of
-/// [`Shape::covering`](franka_model::collision::Shape::covering). These capsules are up to 3.5 cm
-/// thicker than the links. The Hand and its fingers have separate shapes (see
+/// For contact with the surroundings and between outer and inner links, the links have the capsules
+/// of [`Shape::covering`](franka_model::collision::Shape::covering). These capsules are up to 3.5
+/// cm thicker than the links. The Hand and its fingers have separate shapes (see
 /// [`Scene::with_hand`]).
 #[derive(Debug)]
 pub struct MujocoArm {
@@ -53,7 +53,7 @@ impl MujocoArm {
     /// this plant [fits](Plant::fit) it with the parameters of the robot's arm.
     ///
     /// # Errors
-    /// [`SceneError`] if MuJoCo cannot make the scene.
+    /// Returns [`SceneError`] if MuJoCo cannot build the scene.
     pub fn new(kind: RobotKind, scene: Scene) -> Result<Self, SceneError> {
         let (arm, load) = (Arm::ideal(kind), Load::NONE);
         let armature = link_inertia(&arm);
@@ -84,9 +84,8 @@ impl MujocoArm {
         body_pose(&self.data, name)
     }
 
-    /// Moves a body of the scene to this pose in the base frame, at rest. The body must have a free
-    /// joint. Returns false if no such body exists. Objects that overlap the body at its new pose
-    /// push it away.
+    /// Moves a body of the scene to this pose in the base frame, at rest. Returns false if no body
+    /// with a free joint has this name. Objects that overlap the body at its new pose push it away.
     ///
     /// ```no_run
     /// # use std::any::Any;
@@ -118,7 +117,7 @@ impl MujocoArm {
         self.places.dof.map(|dof| force[dof]).into()
     }
 
-    /// Compiles the scene again and continues in the same state.
+    /// Compiles the scene again, and keeps the state.
     fn remake(&mut self) {
         let load = &self.load;
         let (model, _) = self
@@ -197,8 +196,8 @@ impl Plant for MujocoArm {
     /// Replaces the load and rebuilds the scene, which takes milliseconds.
     ///
     /// # Panics
-    /// If no body can have this load (a non-finite number, a negative mass), or if the file of the
-    /// scene has changed.
+    /// Panics if the load is impossible (a non-finite number, a negative mass), or if the scene's
+    /// file has changed.
     fn attach(&mut self, load: Load) {
         if load != self.load {
             self.load = load;
@@ -241,8 +240,8 @@ fn apply(
 ) {
     let (q, dq) = read(data, places);
     let (stop, stop_slope) = arm.body.stops.resistance(&q, &dq, dt);
-    // The model contains the drives' least inertia. The remaining inertia acts like a damper over
-    // one step.
+    // The model contains only the smallest inertia of the drives. The remaining inertia acts like a
+    // damper over one step.
     let rest = (drive.inertia - armature).map(|inertia| inertia.max(0.0));
     let rest = (rest + external.diagonal()) / dt;
     // The dampers subtract slope · dq at the start of the step; the remainder is a force.
@@ -254,7 +253,7 @@ fn apply(
     }
 }
 
-/// Least inertia that the drives add to the links, `[kg·m²]`.
+/// Smallest inertia that the drives add to the links, `[kg·m²]`.
 fn link_inertia(arm: &Arm) -> JointVector {
     arm.drive.link_inertia(CYCLE / f64::from(STEPS))
 }

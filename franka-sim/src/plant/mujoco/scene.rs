@@ -1,4 +1,4 @@
-//! The surroundings of the arm, and the MuJoCo model of both.
+//! The surroundings of the arm, and the MuJoCo model of the arm and its surroundings.
 
 use std::path::{Path, PathBuf};
 
@@ -16,9 +16,9 @@ use crate::arm;
 ///
 /// Surroundings are written in MJCF, the format of MuJoCo's models. The world of the MJCF is the
 /// robot's base frame: x forwards, z up, in metres. Bodies with a free joint are objects that the
-/// arm can push and grasp. All of MJCF is available. In `<option>`, the simulator overrides
-/// `timestep`, `integrator`, `gravity`, `cone` and `impratio`. Names that begin with `franka_` are
-/// reserved for the robot.
+/// arm can push and grasp. All elements of MJCF are available. In `<option>`, the simulator
+/// overrides `timestep`, `integrator`, `gravity`, `cone` and `impratio`. Names that begin with
+/// `franka_` are reserved for the robot.
 ///
 /// ```xml
 /// <mujoco>
@@ -45,7 +45,8 @@ enum Surroundings {
     File(PathBuf),
 }
 
-/// Reason why a scene cannot be built. The text comes from MuJoCo and names the line of the error.
+/// Reason why a scene cannot be built. The contained text comes from MuJoCo and names the line of
+/// the error.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
@@ -58,14 +59,14 @@ pub enum SceneError {
     /// MuJoCo cannot simulate the surroundings.
     #[error("cannot make the scene: {0}")]
     Impossible(String),
-    /// A part of the robot is missing. Surroundings cannot cause this error.
+    /// A part of the robot is missing from the model. Surroundings cannot cause this error.
     #[error("the scene lacks {0}")]
     Lacks(String),
 }
 
 impl Scene {
-    /// A table of two by two metres with the robot in the middle: its top is the plane z = 0. This
-    /// is the default.
+    /// A table of two by two metres with the robot in the middle. The top of the table is the plane
+    /// z = 0. This scene is the default.
     pub fn table() -> Self {
         Self::default()
     }
@@ -95,15 +96,16 @@ impl Scene {
     /// then moves the fingers. The mass of the Hand is not included, because
     /// [`Tool::hand`](crate::Tool::hand) contains it.
     ///
-    /// MuJoCo uses the larger friction of two surfaces, and the fingers have no friction. Therefore
-    /// only the `friction` of an object decides how firmly the fingers hold it.
+    /// MuJoCo uses the larger friction of two surfaces, and the fingers have no friction. The
+    /// `friction` of the object alone therefore decides how firmly the fingers hold it.
     #[must_use]
     pub fn with_hand(mut self) -> Self {
         self.has_hand = true;
         self
     }
 
-    /// Compiles surroundings and arm as one model, and returns the arm's indices in it.
+    /// Compiles the surroundings and the arm as one model, and returns the arm's indices in the
+    /// model.
     pub(super) fn compile(
         &self,
         kind: RobotKind,
@@ -118,8 +120,8 @@ impl Scene {
         Ok((model, places))
     }
 
-    /// Compiles surroundings and these arms as one model. Each arm is given as an MJCF text and the
-    /// prefix of its names.
+    /// Compiles the surroundings and these arms as one model. Each arm consists of its MJCF text
+    /// and the prefix of its names.
     pub(super) fn compile_around(
         &self,
         arms: &[(&str, String)],
@@ -146,12 +148,11 @@ impl Scene {
         options.gravity = gravity_earth;
         // With this integrator, MuJoCo treats the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
-        // Without these two options a grasp creeps: friction is as soft as contact, and weaker
-        // along diagonals.
+        // Without these two options, grasped objects creep: friction is as soft as the contact, and
+        // weaker along diagonals.
         options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
         options.impratio = 10.0;
-        // Without this option, MuJoCo resets an unstable simulation, which then looks like a new
-        // one.
+        // Without this option, MuJoCo resets an unstable simulation to its initial state.
         options.disableflags |= mjtDisableBit::mjDSBL_AUTORESET as i32;
         Ok(model)
     }
@@ -203,7 +204,7 @@ fn joint_of(model: &MjModel, prefix: &str, name: &str) -> Result<(usize, usize),
     Ok((place(model.jnt_qposadr()), place(model.jnt_dofadr())))
 }
 
-/// Indices of a free body in `qpos` and `qvel`.
+/// Indices of a body with a free joint in `qpos` and `qvel`.
 pub(super) fn free_body(model: &MjModel, name: &str) -> Option<(usize, usize)> {
     let first = model.body_jntadr()[body(model, name)?];
     let joint = usize::try_from(first).ok()?;
@@ -212,7 +213,7 @@ pub(super) fn free_body(model: &MjModel, name: &str) -> Option<(usize, usize)> {
         .then(|| (place(model.jnt_qposadr()), place(model.jnt_dofadr())))
 }
 
-/// The number of a body.
+/// MuJoCo's index of a body.
 pub(super) fn body(model: &MjModel, name: &str) -> Option<usize> {
     model.name_to_id(MjtObjBase::mjOBJ_BODY, name)
 }

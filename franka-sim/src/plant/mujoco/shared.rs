@@ -1,11 +1,11 @@
 //! Several arms in one world. A separate robot moves each arm, and all arms share the same objects.
 //!
 //! The world takes a step once the drives of all arms have reported their torques. Robots advance
-//! one after the other, a millisecond at a time. An arm whose robot comes first runs ahead of the
-//! world, on a copy in which the other arms keep their last torques. After the last robot, the
-//! world catches up with the true torques of all arms, and every arm takes its position from the
-//! world. If the robots are in step, the first robot sees the other arms with a delay of a
-//! millisecond at most.
+//! one after the other, by a millisecond each. The arm of the first robot runs ahead of the world,
+//! on a copy in which the other arms keep their last torques. When the last robot advances, the
+//! world takes the missing steps with the true torques of all arms, and every arm reads its
+//! position from the world. If the robots are in step, the first robot sees the other arms with a
+//! delay of a millisecond at most.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -27,16 +27,16 @@ pub struct Mount {
     pub kind: RobotKind,
     /// Prefix of the names of the arm's bodies. The arm's flange is the body `{name}_flange`.
     pub name: String,
-    /// Base frame of the arm in the world. The world uses the gravity of the first arm, in the axes
-    /// of the world.
+    /// Base frame of the arm in the world. The gravity of the first arm, converted to the axes of
+    /// the world, applies to all arms.
     pub base: Isometry3<f64>,
 }
 
 /// One of several arms in one world of MuJoCo; see [`shared_world`]. It is a plant like
 /// [`MujocoArm`](super::MujocoArm), without a hand.
 ///
-/// The robots that move the arms must be in step to within 10 ms. A robot that is later misses
-/// milliseconds of the world; its drives keep their last torques meanwhile.
+/// The robots that move the arms must not differ by more than 10 ms. If a robot is later, the world
+/// advances without it, and its drives keep their last torques.
 /// [`Sim::in_step`](crate::Sim::in_step) keeps the robots in step.
 pub struct SharedArm {
     world: Arc<Mutex<World>>,
@@ -46,11 +46,11 @@ pub struct SharedArm {
 }
 
 /// Returns `N` arms in one world. They are ideal arms at rest in the ready pose until their robots
-/// fit and place them. Names in the MJCF of the scene may refer to the bodies of the arms: a
-/// `<weld>` between a flange and an object is a grasp.
+/// fit and place them. The MJCF of the scene may name the bodies of the arms. For example, a
+/// `<weld>` between a flange and an object represents a grasp.
 ///
 /// # Errors
-/// [`SceneError`] if MuJoCo cannot make the scene, or if the scene has a hand.
+/// Returns [`SceneError`] if MuJoCo cannot build the scene, or if the scene has a hand.
 pub fn shared_world<const N: usize>(
     scene: Scene,
     mounts: [Mount; N],
@@ -97,7 +97,7 @@ impl SharedArm {
     }
 
     fn world(&self) -> MutexGuard<'_, World> {
-        // A panic in MuJoCo ends the process. Nothing else can leave the world incomplete.
+        // The world is complete even after a panic, because a panic in MuJoCo ends the process.
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -172,7 +172,7 @@ struct World {
     data: MjData<Box<MjModel>>,
     /// A copy that runs ahead of `data`.
     ahead: MjData<Box<MjModel>>,
-    /// Number of the arm to which the copy belongs, if the copy is up to date.
+    /// Index of the arm to which the copy belongs; `None` if the copy is out of date.
     ahead_is_of: Option<usize>,
 }
 
@@ -188,7 +188,7 @@ struct Standing {
     pending: VecDeque<Push>,
     /// Torques of the arm's drives in the newest known step.
     newest: Push,
-    /// Steps that the world has taken without this arm.
+    /// Number of steps that the world has taken without this arm.
     missed: usize,
 }
 
@@ -287,7 +287,7 @@ impl World {
         places.dof.map(|dof| bias[dof]).into()
     }
 
-    /// Compiles the world again and continues in the same state.
+    /// Compiles the world again, and keeps the state.
     fn remake(&mut self) {
         let (data, _) = compile(&self.scene, &self.arms)
             .unwrap_or_else(|error| panic!("the world with other arms: {error}"));
@@ -346,7 +346,7 @@ fn copy(data: &MjData<Box<MjModel>>) -> MjData<Box<MjModel>> {
     MjData::new(Box::new(data.model().clone()))
 }
 
-/// Parts of MuJoCo's state that are inputs of a step.
+/// Flags of the parts of MuJoCo's state that are inputs of a step.
 const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;
 
 /// Number of steps by which an arm may be ahead of the world: 10 ms.

@@ -32,8 +32,8 @@ fn arm_in(scene: Scene, kind: RobotKind, load: Load) -> MujocoArm {
     arm
 }
 
-/// Returns an arm of every kind with every load, without a Hand and with the Hand's body and
-/// fingers in the scene. The text describes the case.
+/// Returns arms of every kind with every load, each without a Hand and with a Hand in the scene.
+/// The text describes the case.
 fn arms() -> impl Iterator<Item = (String, RobotKind, Load, MujocoArm)> {
     let scenes = [Scene::empty(), Scene::empty().with_hand()];
     RobotKind::ALL.into_iter().flat_map(move |kind| {
@@ -52,7 +52,7 @@ fn arms() -> impl Iterator<Item = (String, RobotKind, Load, MujocoArm)> {
     })
 }
 
-/// Mass matrix, rotors included, and bias torques.
+/// Returns the mass matrix, including the rotors, and the bias torques.
 fn dynamics(arm: &MujocoArm) -> (SMatrix<f64, 7, 7>, JointVector) {
     let count = arm.data.qvel().len();
     let mut whole = vec![0.0; count * count];
