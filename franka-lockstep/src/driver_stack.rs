@@ -1,5 +1,5 @@
-//! The client's half of a connection, on virtual time: driver, command session and motion state
-//! machine.
+//! The client's half of a connection, in virtual time: the driver, the command session and the
+//! motion state machine.
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::time::Duration;
@@ -28,14 +28,14 @@ pub struct DriverStack {
     pub state: RobotState,
     /// Time from the previous state to the newest state, `[ms]` of the robot's clock.
     step: u64,
-    /// Current time, since any fixed moment.
+    /// Current time, counted from any fixed moment.
     pub now: Duration,
     /// Arrival time of the newest state.
     pub(crate) heard: Duration,
-    /// Time from a state to its answer. The client is ready for the next state after this time.
+    /// Time between a state and its answer. The client can read the next state after this time.
     pub turnaround: Duration,
-    /// True if the driver's events do not reach the lifecycle (the motion state machine), as if its
-    /// task did not run.
+    /// True if the driver's events do not reach the lifecycle (the motion state machine), as if the
+    /// task of the lifecycle did not run.
     pub lifecycle_is_paused: bool,
     /// Time at which the client answers the newest state.
     pub(super) free: Duration,
@@ -55,7 +55,7 @@ pub struct DriverStack {
 }
 
 impl DriverStack {
-    /// Returns a client that is not connected, for a robot of this model that speaks `version`.
+    /// Returns a client that is not connected, for a robot with this model and protocol version.
     pub fn new(model: &Model, version: Version) -> Self {
         Self {
             driver: Driver::new(version),
@@ -102,7 +102,7 @@ impl DriverStack {
         self.session.pending()
     }
 
-    /// Begins the handshake. It announces `udp_port` as the port for states.
+    /// Begins the handshake, which announces `udp_port` as the port for states.
     pub fn connect(&mut self, udp_port: u16) {
         let hello = self.session.connect(udp_port);
         self.to_robot.push_back(hello.as_bytes().to_vec());
@@ -111,7 +111,7 @@ impl DriverStack {
     /// Sends a request that is not a motion, and ignores its answer.
     ///
     /// # Panics
-    /// If the session refuses the request.
+    /// Panics if the session refuses the request.
     pub fn request(&mut self, request: &Request) {
         let outgoing = self
             .session
@@ -125,9 +125,9 @@ impl DriverStack {
         self.to_robot.pop_front()
     }
 
-    /// Processes bytes of the robot's stream, in any portions. If a reply to a motion violates the
-    /// protocol, this motion ends. Any other violation closes the connection, and later bytes are
-    /// ignored.
+    /// Processes bytes of the robot's stream, in pieces of any size. If a reply to a motion
+    /// violates the protocol, this motion ends. Any other violation closes the connection, and the
+    /// client ignores later bytes.
     pub fn on_bytes(&mut self, bytes: &[u8]) {
         let mut received = std::mem::take(&mut self.from_robot);
         received.extend_from_slice(bytes);
@@ -178,12 +178,12 @@ impl DriverStack {
         }
     }
 
-    /// The control thread's work between a state and its command: decodes the datagram, and returns
-    /// the size of the command that answers it, if any. It is never inlined, because benchmarks
-    /// count instructions by this function's name.
+    /// Performs the control thread's work between a state and its command. Decodes the datagram,
+    /// and returns the size of the command that answers it, if any. This function is never inlined,
+    /// because benchmarks count instructions by its name.
     ///
     /// # Panics
-    /// If the datagram is not a state.
+    /// Panics if the datagram is not a state.
     #[inline(never)]
     pub fn answer(&mut self, datagram: &[u8], command: &mut [u8]) -> Option<usize> {
         let version = self.session.version();
@@ -195,8 +195,8 @@ impl DriverStack {
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
     }
 
-    /// The control thread's work after [`Self::answer`]. States arrive when they are due, and
-    /// answers take no time.
+    /// Performs the control thread's work after [`Self::answer`]. In its records, states arrive
+    /// when they are due, and answers take no time.
     pub fn conclude(&mut self, answered: bool) {
         let state = &self.state;
         let arrival = Arrival {
@@ -212,12 +212,12 @@ impl DriverStack {
         }
     }
 
-    /// Prepares the next state, as the control thread does before the state arrives. It is never
-    /// inlined, for the same reason as [`Self::answer`].
+    /// Prepares the next state, as the control thread does before the state arrives. This function
+    /// is never inlined, for the same reason as [`Self::answer`].
     #[inline(never)]
     pub fn prepare(&mut self) {
         self.driver.prepare();
-        // Keeps a return to this function. A tail call would not be counted.
+        // Prevents a tail call, which would not be counted.
         core::hint::black_box(&self.step);
     }
 
@@ -246,7 +246,7 @@ impl DriverStack {
     /// Starts a motion that a program of the test controls.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn control(
         &mut self,
         program: Program,
@@ -261,10 +261,10 @@ impl DriverStack {
         })
     }
 
-    /// Begins a motion and returns its goal id. A goal that is a pose gets its planned path first.
+    /// Begins a motion and returns its goal id. If the goal is a pose, its path is planned first.
     ///
     /// # Errors
-    /// The errors of [`Goal::plan_line`] and of the lifecycle.
+    /// Returns the errors of [`Goal::plan_line`] and of the lifecycle.
     ///
     /// [`Goal::plan_line`]: franka_rt::session::Goal::plan_line
     pub fn begin(&mut self, mut motion: NewMotion) -> Result<GoalId, MotionError> {
@@ -281,11 +281,11 @@ impl DriverStack {
         begun.map(|()| id)
     }
 
-    /// Begins a motion along `waypoints` to the last waypoint, and returns its goal id. The motion
-    /// starts at the reference if target control runs.
+    /// Begins a motion along `waypoints` to the last waypoint, and returns its goal id. If target
+    /// control runs, the motion starts at its reference.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn begin_along(
         &mut self,
         waypoints: &[Waypoint],
@@ -309,7 +309,7 @@ impl DriverStack {
         }
     }
 
-    /// Brakes. Returns the id of the stop; `None` if nothing moves.
+    /// Brakes the arm. Returns the id of the stop, or `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         let id = self.next_goal();
         let stopping = self.lifecycle.stop(id, &self.state, self.now);
@@ -317,7 +317,7 @@ impl DriverStack {
         stopping.then_some(id)
     }
 
-    /// Cancels a goal or a program, as dropping its future does.
+    /// Cancels a goal or a program, like dropping its future.
     pub fn cancel(&mut self, id: GoalId) {
         self.lifecycle.cancel(id, self.now);
         self.carry_out();
@@ -326,7 +326,7 @@ impl DriverStack {
     /// Returns the newest motion and the request that began it.
     ///
     /// # Panics
-    /// If no motion has begun yet.
+    /// Panics if no motion has begun yet.
     pub fn newest_motion(&self) -> (CommandId, MotionId) {
         let newest = self.motions.iter().max_by_key(|(_, motion)| **motion);
         let (&id, &motion) = newest.expect("a motion has begun");
@@ -336,7 +336,7 @@ impl DriverStack {
     /// Simulates an unreadable reply to the newest motion.
     ///
     /// # Panics
-    /// If no motion has begun yet.
+    /// Panics if no motion has begun yet.
     pub fn violate(&mut self) {
         let (id, motion) = self.newest_motion();
         let violation = Violation::SecondMotionStarted { id };
@@ -362,8 +362,8 @@ impl DriverStack {
         self.outcomes.get(&id)
     }
 
-    /// Forgets the replies that earlier motions still expect, because the lifecycle runs one motion
-    /// at a time.
+    /// Discards the pending replies of earlier motions, because the lifecycle runs one motion at a
+    /// time.
     fn forget_motions(&mut self) {
         for (id, _) in self.motions.drain() {
             self.session.abandon(id);

@@ -7,10 +7,10 @@ use super::Lockstep;
 use super::guard::CommandGuard;
 
 impl Lockstep {
-    /// Begins a session with default options, and runs until the session holds the arm.
+    /// Begins a session with default options, and advances until the session holds the arm.
     ///
     /// # Panics
-    /// If the session is refused, or does not begin within a second.
+    /// Panics if the session is refused, or does not begin within a second.
     pub fn engage(&mut self) -> GoalId {
         self.engage_with(Engagement::default())
     }
@@ -18,7 +18,7 @@ impl Lockstep {
     /// Like [`Self::engage`], with the given options, for example a deadman timeout.
     ///
     /// # Panics
-    /// The panics of [`Self::engage`].
+    /// Panics like [`Self::engage`].
     pub fn engage_with(&mut self, engagement: Engagement) -> GoalId {
         let id = self.begin_session(engagement);
         for _ in 0..1000 {
@@ -33,9 +33,9 @@ impl Lockstep {
     /// Requests a session, without waiting until it holds the arm.
     ///
     /// # Panics
-    /// If the session is refused immediately.
+    /// Panics if the session is refused immediately.
     pub fn begin_session(&mut self, engagement: Engagement) -> GoalId {
-        // The robot checks the setpoints itself.
+        // The robot itself checks setpoints, so only torques need a check here.
         self.guard = (engagement.backend == Backend::Torques)
             .then(|| CommandGuard::new(*self.model.joint_limits()));
         self.try_engage(engagement).expect("nothing else moves")
@@ -44,7 +44,7 @@ impl Lockstep {
     /// Requests a session.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
         let goal = self.goal(Target::Rest, OnArrival::Hold);
         self.client.begin(NewMotion::Session {
@@ -57,7 +57,7 @@ impl Lockstep {
     /// arrival, or holds the target until the next goal.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn within(
         &mut self,
         engaged: GoalId,
@@ -71,7 +71,7 @@ impl Lockstep {
     /// Submits this goal to the session `engaged`.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::Goal {
             goal: Box::new(goal),
@@ -81,10 +81,10 @@ impl Lockstep {
         })
     }
 
-    /// Moves through `waypoints`, in a separate motion or within the session `engaged`.
+    /// Moves through `waypoints`, in a separate motion, or within the session `engaged` if given.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn through(
         &mut self,
         engaged: Option<GoalId>,
@@ -107,17 +107,17 @@ impl Lockstep {
     /// Sends a chunk (a series of timed points) to the session.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
         let goal = self.goal(chunk.target(), OnArrival::Hold);
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
     }
 
     /// Sends a chunk with this goal. The id of the goal identifies the chunk, unless the chunk
-    /// continues another chunk.
+    /// continues an earlier chunk.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn submit_chunk(
         &mut self,
         engaged: GoalId,
@@ -130,10 +130,10 @@ impl Lockstep {
         sent.map(|()| goal.id)
     }
 
-    /// Changes gains, budget or force cap of the session.
+    /// Changes the gains, the budget or the force limit of the session.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn tune(&mut self, engaged: GoalId, tuning: Tuning) -> Result<(), MotionError> {
         let client = &mut self.client;
         client.lifecycle.tune(engaged, tuning, &client.state)

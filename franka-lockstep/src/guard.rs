@@ -1,4 +1,4 @@
-//! Checks every command against the limits of the robot, independently of the code under test.
+//! Check of every command against the robot's limits, independent of the code under test.
 
 use franka_model::CYCLE;
 use franka_model::limits::JointLimits;
@@ -6,7 +6,7 @@ use franka_proto::{RobotCommand, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
 
-/// A check of commands. It keeps the previous command to compute rates.
+/// A check of commands, which keeps the previous command to compute rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
     limits: JointLimits,
@@ -34,7 +34,7 @@ impl CommandGuard {
     /// Checks a command, and the reference from which it was computed.
     ///
     /// # Panics
-    /// If the command violates a limit of the robot, or the reference is not continuous.
+    /// Panics if the command violates a limit of the robot, or the reference is not continuous.
     pub(super) fn check(&mut self, command: &RobotCommand, state: &RobotState, record: &Record) {
         let leashed = record.bindings.contains(Guard::Leash);
         assert_eq!(
@@ -75,7 +75,7 @@ impl CommandGuard {
         {
             for i in 0..7 {
                 let joint = i + 1;
-                // Compares with the unrounded command if no command was lost in between.
+                // If no command was lost in between, compares with the unrounded command.
                 let sent = last.tau[i];
                 if [sent, f64::from(sent as f32)].contains(&state.tau_J_d[i]) {
                     let rate = (command.tau_J_d[i] - sent).abs() / CYCLE;
@@ -85,7 +85,7 @@ impl CommandGuard {
                     );
                 }
                 if record.goal == 0 {
-                    continue; // A finishing command that is repeated has no reference behind it.
+                    continue; // No reference belongs to a repeated finishing command.
                 }
                 let step = (record.dq_ref[i] - last.dq_ref[i]).abs() / CYCLE;
                 let most = limits.acceleration[i] * 1.001;
@@ -94,7 +94,7 @@ impl CommandGuard {
                     "{at}: reference of joint {joint} steps by {step} rad/s^2"
                 );
                 // The leash (the limit on the distance between reference and arm) moves the
-                // reference with the arm, and a push may move the arm.
+                // reference with the arm when a push moves the arm.
                 let step = record.q_ref[i] - last.q_ref[i];
                 let with_arm = step - (state.q[i] - last.q[i]);
                 let step = if leashed || last.leashed {

@@ -1,6 +1,6 @@
-//! Endless target control with every guard on, for several workloads. Each guard has to intervene
-//! from time to time, because of missing updates, deadman timeouts, pushes, conditions, regions in
-//! the way and targets far ahead.
+//! Endless target control with every guard enabled, for several workloads. Missing updates, deadman
+//! timeouts, pushes, conditions, regions in the way and distant targets make each guard intervene
+//! from time to time.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -23,7 +23,7 @@ use rand::{Rng, SeedableRng};
 
 use super::{Lockstep, Part, set_in_motion};
 
-/// Kind of goals for a session.
+/// Kind of goals that a session receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Workload {
     /// Poses, as single goals and as streams.
@@ -32,10 +32,10 @@ pub enum Workload {
     Joints,
     /// Chunks of joints and of poses, most of them replaced before their end.
     Chunks,
-    /// Guiding by hand, with occasional poses.
+    /// Guiding by hand, interrupted by occasional poses.
     Guide,
     /// Joint positions and poses for one of the robot's own controllers. The seed selects the
-    /// controller and the kind of setpoints. Cartesian setpoints get only poses.
+    /// controller and the kind of setpoints. With Cartesian setpoints, all goals are poses.
     RobotController,
 }
 
@@ -60,16 +60,16 @@ impl Workload {
     }
 }
 
-/// A session with every guard on. A seed determines its goals and disturbances.
+/// A session with every guard enabled. A seed determines its goals and disturbances.
 pub struct Guarded {
     /// The system in which the session runs.
     pub lockstep: Lockstep,
     /// Guards that have intervened so far.
     pub bound: HashSet<Guard>,
-    /// The end of each chunk so far.
+    /// Outcome of each chunk so far.
     pub fates: Vec<Fate>,
-    /// Number of times that the robot has stopped the arm, because a hard push can drive the arm to
-    /// a limit. The arm then starts again from the ready pose.
+    /// Number of times that the robot itself has stopped the arm. A hard push can drive the arm to
+    /// a limit. After a stop, the arm starts again from the ready pose.
     pub stops: u32,
     workload: Workload,
     backend: Backend,
@@ -89,7 +89,7 @@ impl Guarded {
     /// Returns an arm in the ready pose with a running session.
     ///
     /// # Panics
-    /// If the motion does not begin.
+    /// Panics if the motion does not begin.
     pub fn new(workload: Workload, seed: u64) -> Self {
         Self::begin(
             workload,
@@ -102,7 +102,7 @@ impl Guarded {
     /// [`Workload::RobotController`].
     ///
     /// # Panics
-    /// If the motion does not begin.
+    /// Panics if the motion does not begin.
     pub fn with_backend(backend: Backend, seed: u64) -> Self {
         let random = SmallRng::seed_from_u64(seed);
         Self::begin(Workload::RobotController, backend, random)
@@ -154,10 +154,10 @@ impl Guarded {
         this
     }
 
-    /// Advances by one millisecond; see [`Lockstep::tick_around`].
+    /// Advances by one millisecond, like [`Lockstep::tick_around`].
     ///
     /// # Panics
-    /// If the session does not begin again after the robot has stopped the arm.
+    /// Panics if the session does not begin again after the robot has stopped the arm.
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         let now = self.lockstep.now();
         if now >= self.beat {
@@ -308,7 +308,7 @@ impl Guarded {
         self.goals.write(self.goal);
     }
 
-    /// Sometimes returns a condition that soon becomes true, and what then follows: rest or another
+    /// Sometimes returns a reaction: a condition that soon becomes true, and a stop or another
     /// target.
     fn reaction(&mut self) -> Option<Reaction> {
         if self.random.random_bool(0.75) {
@@ -348,8 +348,8 @@ impl Guarded {
         if self.random.random_bool(0.25) {
             chunk = chunk.replace();
         }
-        // Sends two chunks at once. The second supersedes the first. Unused chunks return in the
-        // next cycle, so the queue has space.
+        // Sometimes sends two chunks at once, of which the second replaces the first. The queue has
+        // room for them, because unused chunks return in the next cycle.
         let times = if self.random.random_bool(0.1) { 2 } else { 1 };
         for chunk in std::iter::repeat_n(chunk, times) {
             let sent = self.chunks.send(self.goal.id, chunk);
@@ -378,7 +378,7 @@ fn limits() -> &'static JointLimits {
     Model::fr3().joint_limits()
 }
 
-/// A floor, a wall, a table and a shelf. The last three are within the arm's reach.
+/// A floor, a wall, a table and a shelf. The arm can reach the wall, the table and the shelf.
 fn regions(home: &Isometry3<f64>) -> KeepOut {
     let at = home.translation;
     let (x, y, z) = (at.x, at.y, at.z);
@@ -401,10 +401,10 @@ fn regions(home: &Isometry3<f64>) -> KeepOut {
 const SILENCE: Duration = Duration::from_millis(100);
 const SILENT_STREAM: Duration = Duration::from_millis(300);
 
-/// Force limit, low enough to intervene, `[N]`.
+/// Force limit, `[N]`, so low that the guard intervenes.
 const FORCE_CAP: f64 = 20.0;
 
-/// Limit on the distance between reference and arm, small enough to intervene.
+/// Limit on the distance between reference and arm, so small that the guard intervenes.
 const LEAD: Lead = Lead {
     translation: 0.05,
     rotation: 0.2,

@@ -1,5 +1,5 @@
-//! Driver, command session and simulated robot in one thread on virtual time: exact, instant,
-//! replayable.
+//! The driver, the command session and the simulated robot in one thread, in virtual time. Runs
+//! need no waiting and can be repeated exactly.
 //!
 //! ```text
 //!   Lifecycle --requests--> client::Session ~~bytes~~> Robot (simulated)
@@ -9,11 +9,11 @@
 //!   '-------------- DriverStack -------------'
 //! ```
 //!
-//! Everything that crosses `~~` is encoded to the wire and decoded again, and passes a [`Link`].
-//! Datagrams pass the simulator's network; its seed determines delays and losses. One call of
-//! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next. Datagrams arrive
-//! at their own times within it. In every test, the harness checks each command of target control
-//! against the robot's limits. Tests can also run a [`DriverStack`] with a scripted robot.
+//! All data that crosses `~~` is encoded for the wire, passes a [`Link`], and is decoded again.
+//! Datagrams pass the simulator's network, whose seed determines delays and losses. One call of
+//! [`Lockstep::tick`] is one millisecond, from one cycle of the robot to the next cycle. Datagrams
+//! may arrive at any time within this millisecond. The harness checks each command of target
+//! control against the robot's limits. Tests can also run a [`DriverStack`] with a scripted robot.
 
 mod driver_stack;
 mod engaged;
@@ -49,7 +49,7 @@ use guard::CommandGuard;
 /// A part of the control cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// The time from the datagram of a state to the datagram of its command.
+    /// The driver's work from the datagram of a state to the datagram of its command.
     Answer,
     /// The driver's work after the command has been sent.
     Aftermath,
@@ -57,9 +57,9 @@ pub enum Part {
     Preparation,
 }
 
-/// The whole system, one millisecond at a time.
+/// The whole system, which advances by one millisecond at a time.
 pub struct Lockstep {
-    /// The simulated robot, which a test can push and trip.
+    /// The simulated robot. A test can push it or raise its errors.
     pub robot: Robot,
     /// The network between robot and client.
     pub link: Link,
@@ -80,7 +80,7 @@ impl Lockstep {
     /// Returns a robot with this configuration, connected over a perfect link.
     ///
     /// # Panics
-    /// If the handshake fails or no state arrives.
+    /// Panics if the handshake fails or no state arrives.
     pub fn new(config: Config) -> Self {
         Self::with_robot(Robot::new(config))
     }
@@ -88,7 +88,7 @@ impl Lockstep {
     /// Returns this robot, connected over a perfect link. The robot may have any plant (physics).
     ///
     /// # Panics
-    /// The panics of [`Self::new`].
+    /// Panics like [`Self::new`].
     pub fn with_robot(robot: Robot) -> Self {
         let robots = robot.model();
         let (lengths, limits) = (*robots.lengths(), *robots.joint_limits());
@@ -137,7 +137,7 @@ impl Lockstep {
         Self { client, ..self }
     }
 
-    /// Time since the beginning, `[ms]`.
+    /// Time since the start, `[ms]`.
     pub fn now(&self) -> u64 {
         self.milliseconds
     }
@@ -145,17 +145,17 @@ impl Lockstep {
     /// Advances the whole system by one millisecond.
     ///
     /// # Panics
-    /// If a command violates a limit of the robot, or if the client's session cannot read a
+    /// Panics if a command violates a limit of the robot, or if the client's session cannot read a
     /// message.
     pub fn tick(&mut self) {
         self.tick_around(|_, work| work());
     }
 
-    /// Like [`Self::tick`], but `around` runs each part of the control cycle. It can measure time
-    /// or count allocations.
+    /// Like [`Self::tick`], but `around` runs each part of the control cycle. `around` can measure
+    /// time or count allocations.
     ///
     /// # Panics
-    /// The panics of [`Self::tick`]. Also if `around` does not run the function that it receives.
+    /// Panics like [`Self::tick`], or if `around` does not run the function that it receives.
     pub fn tick_around(&mut self, mut around: impl FnMut(Part, &mut dyn FnMut())) {
         self.milliseconds += 1;
         self.client.now = Duration::from_millis(self.milliseconds);
@@ -190,7 +190,7 @@ impl Lockstep {
         self.client.settle();
     }
 
-    /// Passes the client the states that arrive before the robot's next cycle. Returns true if a
+    /// Passes the states that arrive before the robot's next cycle to the client. Returns true if a
     /// state arrived.
     fn take_states(&mut self, around: &mut impl FnMut(Part, &mut dyn FnMut())) -> bool {
         let end = self.next_cycle();
@@ -227,7 +227,7 @@ impl Lockstep {
         heard
     }
 
-    /// Passes the robot the commands that arrive before its next cycle.
+    /// Passes the commands that arrive before the robot's next cycle to the robot.
     fn deliver_commands(&mut self) {
         let end = self.next_cycle();
         while let Some(command) = self.link.command(end) {
@@ -251,7 +251,7 @@ impl Lockstep {
         }
     }
 
-    /// Makes the client's clock jump, as on a host that was suspended. The client misses no state.
+    /// Makes the client's clock jump, as on a host that was suspended. The client loses no state.
     pub fn jump(&mut self, milliseconds: u64) {
         self.milliseconds += milliseconds;
         self.heard += milliseconds;
@@ -263,7 +263,7 @@ impl Lockstep {
     /// Writes a command for the newest state of a motion under active control.
     ///
     /// # Errors
-    /// The errors of the driver.
+    /// Returns the errors of the driver.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteError> {
         let sent = self.client.driver.write(command, finished)?;
         let mut bytes = [0; RobotCommand::MAX_SIZE];
@@ -277,7 +277,7 @@ impl Lockstep {
     /// Closes the connection, if open, and connects to the same robot again over a perfect link.
     ///
     /// # Panics
-    /// If the handshake fails.
+    /// Panics if the handshake fails.
     pub fn reconnect(&mut self) {
         self.robot.disconnect();
         self.link = Link::perfect();

@@ -1,4 +1,4 @@
-//! The link between client and robot: the simulator's network, and faults for tests only.
+//! The link between client and robot: the simulator's network, and additional faults for tests.
 
 use std::time::Duration;
 
@@ -10,11 +10,11 @@ use franka_sim::network::{Conditions, Loss};
 pub struct Link {
     /// The network for states and commands.
     pub network: Network,
-    /// Number of finishing commands (the last commands of a motion) to lose next.
+    /// Number of finishing commands (last commands of a motion) that the link still loses.
     drop_finishing: u64,
-    /// True if requests reach the robot; otherwise they are lost.
+    /// True if requests reach the robot, false if they are lost.
     pub requests: bool,
-    /// True if the robot's replies reach the client; otherwise they are lost.
+    /// True if the robot's replies reach the client, false if they are lost.
     pub replies: bool,
     /// True if requests and replies are delayed until the network is back, because the command
     /// connection repeats them.
@@ -43,8 +43,8 @@ impl Link {
         Self::over(Network::new(seed, states, commands))
     }
 
-    /// Returns a link over this network. The network's time is
-    /// [`Lockstep::now`](super::Lockstep::now).
+    /// Returns a link over this network. [`Lockstep::now`](super::Lockstep::now) is the network's
+    /// time.
     pub fn over(network: Network) -> Self {
         Self {
             network,
@@ -70,8 +70,8 @@ impl Link {
         self.drop_finishing = count;
     }
 
-    /// Returns the state that a client reads if it is ready from `free` on, and before `end`. This
-    /// is the newest state that has arrived, if it is newer than `last`.
+    /// Returns the state that a client reads if it is ready at `free` or later, but before `end`.
+    /// The client reads the newest state that has arrived, if this state is newer than `last`.
     pub(super) fn receive(
         &mut self,
         free: Duration,

@@ -1,4 +1,4 @@
-//! Motions of the client: how tests begin, change, end and await them in virtual time.
+//! Motions of the client: functions that begin, change, end and await motions in virtual time.
 
 use franka_proto::{MoveControllerMode, MoveRequest, Request};
 use franka_rt::control::Callback;
@@ -20,7 +20,7 @@ impl Lockstep {
     /// Submits a goal.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::to(goal))
     }
@@ -28,7 +28,7 @@ impl Lockstep {
     /// Submits a goal that begins together with the goals of other robots.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn submit_together(
         &mut self,
         goal: Goal,
@@ -42,11 +42,11 @@ impl Lockstep {
         })
     }
 
-    /// Starts a control function that begins together with the motions of other robots; see
+    /// Starts a control function that begins together with the motions of other robots. See
     /// [`Self::control`].
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn control_together(
         &mut self,
         callback: Callback,
@@ -66,17 +66,17 @@ impl Lockstep {
     /// Submits a motion that ends at `target`.
     ///
     /// # Panics
-    /// If the goal is not accepted.
+    /// Panics if the goal is not accepted.
     pub fn begin(&mut self, target: Target) -> GoalId {
         let goal = self.goal(target, OnArrival::ReportAndFinish);
         self.submit(goal).expect("the goal is accepted")
     }
 
-    /// Starts a motion that a program of the test controls. From then on, the harness checks no
-    /// commands; only the simulated robot does.
+    /// Starts a motion that a program of the test controls. After this call, the harness no longer
+    /// checks commands; only the simulated robot does.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn control(
         &mut self,
         program: Program,
@@ -87,7 +87,7 @@ impl Lockstep {
     }
 
     /// Starts a control function. If the function commands no torques, the robot's joint impedance
-    /// controller follows it. See [`Self::control`].
+    /// controller follows its setpoints. See [`Self::control`].
     ///
     /// # Errors
     /// The errors of the lifecycle.
@@ -97,20 +97,21 @@ impl Lockstep {
         self.control(Program::Callback(Box::new(function)), request)
     }
 
-    /// Brakes. Returns the id of the stop; `None` if nothing moves.
+    /// Brakes the arm. Returns the id of the stop, or `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         self.client.stop()
     }
 
-    /// Cancels a goal, as dropping its future does.
+    /// Cancels a goal, like dropping its future.
     pub fn cancel(&mut self, goal: GoalId) {
         self.client.cancel(goal);
     }
 
-    /// Moves the target of a goal that holds its target. Returns true if the goal still holds it.
+    /// Replaces the target of a goal that holds its target. Returns false if the goal no longer
+    /// holds its target.
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of the lifecycle.
     pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
         let DriverStack {
             lifecycle, state, ..
@@ -121,7 +122,7 @@ impl Lockstep {
     /// Runs until the goal has an outcome, and returns the outcome.
     ///
     /// # Panics
-    /// If this takes longer than `most` milliseconds.
+    /// Panics if the goal takes longer than `most` milliseconds.
     pub fn until_resolved(&mut self, goal: GoalId, most: u64) -> Outcome {
         for _ in 0..most {
             if let Some(outcome) = self.client.outcome(goal) {
@@ -139,7 +140,7 @@ impl Lockstep {
     /// effector and its reference during the motion, `[m]`.
     ///
     /// # Panics
-    /// If the goal is refused or not reached.
+    /// Panics if the goal is refused or not reached.
     pub fn lag_to(&mut self, target: Isometry3<f64>) -> f64 {
         let goal = self.goal(target.into(), OnArrival::ReportAndFinish);
         let goal = self.submit(goal).expect("within reach");
@@ -159,7 +160,7 @@ impl Lockstep {
     /// Runs until no motion is active.
     ///
     /// # Panics
-    /// If this takes longer than `most` milliseconds.
+    /// Panics if the motions take longer than `most` milliseconds.
     pub fn until_idle(&mut self, most: u64) {
         for _ in 0..most {
             if self.client.lifecycle.is_idle() {
@@ -173,7 +174,7 @@ impl Lockstep {
     /// Sends a request that is not a motion, without waiting for its answer.
     ///
     /// # Panics
-    /// If the session refuses the request.
+    /// Panics if the session refuses the request.
     pub fn request(&mut self, request: &Request) {
         self.client.request(request);
     }

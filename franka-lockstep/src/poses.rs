@@ -39,11 +39,11 @@ pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     transform::isometry(&pose).expect("a rigid end effector")
 }
 
-/// Force on the flange that corresponds to these joint torques, in base axes, `[N]`. It belongs to
-/// the smallest wrench that explains the torques.
+/// Force on the flange that corresponds to these joint torques, in base axes, `[N]`. It is the
+/// force of the smallest wrench that explains the torques.
 ///
 /// # Panics
-/// At a singularity.
+/// Panics at a singularity.
 pub fn force_of(q: &JointVector, torques: &JointVector) -> Vector3<f64> {
     let flange = EndEffector::default();
     let (_, jacobian) = Model::fr3().pose_and_jacobian(Frame::EndEffector, q, &flange);
@@ -64,8 +64,8 @@ pub fn self_distance(q: &JointVector) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Gives a pose or joint target a random velocity, which sometimes exceeds every limit. Other
-/// targets stay unchanged.
+/// Adds a random velocity, which sometimes exceeds every limit, to a pose or joint target. Returns
+/// other targets unchanged.
 pub fn set_in_motion(target: Target, random: &mut impl Rng) -> Target {
     let mut number = |most: f64| most * random.random_range(-1.0..1.0_f64).powi(3);
     match target {

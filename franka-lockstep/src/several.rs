@@ -6,8 +6,8 @@ use franka_rt::session::{GoalId, Target};
 
 use super::Lockstep;
 
-/// Returns the outcomes of one goal of each robot, without their reports; `None` while a goal has
-/// no outcome.
+/// Returns the outcome of one goal per robot, without the report. An entry is `None` while its goal
+/// has no outcome.
 pub fn outcomes_of<const N: usize>(
     robots: [&Lockstep; N],
     goals: [GoalId; N],

@@ -1,7 +1,7 @@
-//! A supervised robot in one thread on virtual time: the decisions of `franka_rt::supervision`, and
-//! connections that end and are established again.
+//! A supervised robot in one thread, in virtual time: the decisions of `franka_rt::supervision`,
+//! and connections that end and begin again.
 //!
-//! This module stands in for the corresponding parts of `franka-async`: tasks, sockets and futures.
+//! This module replaces the tasks, sockets and futures of `franka-async`.
 
 mod setting;
 
@@ -25,7 +25,7 @@ use setting::Sender;
 
 pub use setting::shows;
 
-/// A supervised robot, one millisecond at a time.
+/// A supervised robot, which advances by one millisecond at a time.
 pub struct Supervised {
     lockstep: Lockstep,
     /// Configuration with which the robot restarts.
@@ -45,21 +45,21 @@ pub struct Supervised {
     pub events: Vec<Event>,
     /// Requests of the supervision. The test may clear them.
     pub requests: Vec<Asked>,
-    /// Settings of the program and the answers to them. The test may clear them.
+    /// Settings that the program requested, and the answers to them. The test may clear them.
     pub answers: Vec<(Request, Answer)>,
     /// Outcome of each submitted motion.
     pub outcomes: BTreeMap<GoalId, Outcome>,
 }
 
-/// A request of the supervision to its surroundings.
+/// A request of the supervision to the program around it.
 #[derive(Debug)]
 pub enum Asked {
     /// Connect to the robot.
     Connect,
-    /// Recover the robot from the reflex with this number. The robot shows this mode and these
+    /// Recover the robot from the reflex with this number. The state contains this mode and these
     /// errors.
     Recover(u64, RobotMode, Errors),
-    /// Ask a person whether the robot may recover from this reflex.
+    /// Ask a person if the robot may recover from this reflex.
     Agreement(Reflex),
     /// Begin a motion that was waiting.
     Begin(GoalId),
@@ -87,10 +87,10 @@ const BRAKING: u64 = 3000;
 const CONNECTING: u64 = 50;
 
 impl Supervised {
-    /// Returns a connected robot, supervised under this policy.
+    /// Returns a connected robot under supervision with this policy.
     ///
     /// # Panics
-    /// The panics of [`Lockstep::new`].
+    /// Panics like [`Lockstep::new`].
     pub fn new(config: Config, policy: Policy) -> Self {
         let lockstep = Lockstep::new(config.clone());
         let mut this = Self {
@@ -113,7 +113,7 @@ impl Supervised {
         this
     }
 
-    /// Time since the beginning, `[ms]`.
+    /// Time since the start, `[ms]`.
     pub fn now(&self) -> u64 {
         self.lockstep.now()
     }
@@ -169,7 +169,7 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// Processes the changes of the connection in this millisecond.
+    /// Processes changes of the connection.
     fn look(&mut self) {
         let now = self.time();
         match self.connection {
@@ -179,7 +179,8 @@ impl Supervised {
                 if state.message_id != self.seen {
                     self.seen = state.message_id;
                     self.supervision.on_state(&state, now);
-                    // This runs before the outcomes are read, because nothing may depend on them.
+                    // This call precedes the reading of the outcomes, because nothing may depend on
+                    // them.
                     self.carry_out();
                 } else if silence == LINK_TIMEOUT {
                     self.supervision.on_silence(silence, now);
@@ -332,8 +333,8 @@ impl Supervised {
         self.lockstep.link.drop_commands(u64::MAX);
     }
 
-    /// Repairs the network. If `gave_up` is true, both ends have closed the command connection in
-    /// the meantime.
+    /// Repairs the network. If `gave_up` is true, both ends have closed the command connection
+    /// during the outage.
     pub fn mend(&mut self, gave_up: bool) {
         self.lockstep.link = Link::perfect();
         if gave_up {
@@ -356,7 +357,7 @@ impl Supervised {
         }
     }
 
-    /// Answers, for a person, whether the robot may recover from this reflex.
+    /// Gives a person's answer to the question if the robot may recover from this reflex.
     pub fn agree(&mut self, reflex: u64, agreed: bool) -> bool {
         let now = self.time();
         let awaited = self.supervision.agree(reflex, agreed, now);
@@ -385,7 +386,7 @@ impl Supervised {
         goal.id
     }
 
-    /// Cancels a motion, as dropping its future does.
+    /// Cancels a motion, like dropping its future.
     pub fn cancel(&mut self, goal: GoalId) {
         if self.supervision.withdraw(goal) {
             self.waiting = None;

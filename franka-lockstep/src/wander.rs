@@ -1,5 +1,5 @@
-//! Endless target control: joint and pose targets, single and streamed, at irregular times, with
-//! each control law in turn.
+//! Endless target control: single and streamed joint and pose targets at irregular times, with each
+//! control law in turn.
 
 use franka_model::READY;
 use franka_rt::law::{Gains, Law};
@@ -27,7 +27,7 @@ impl Wander {
         Self::of(Lockstep::ready(), seed)
     }
 
-    /// Returns the arm of this system with its first goal, starting at its current position.
+    /// Returns the arm of this system with its first goal. The arm starts at its current position.
     pub fn of(mut lockstep: Lockstep, seed: u64) -> Self {
         let home = lockstep.arm_pose();
         let goal = lockstep.goal(Target::Pose(home), OnArrival::Hold);
@@ -44,7 +44,7 @@ impl Wander {
         this
     }
 
-    /// Advances by one millisecond; see [`Lockstep::tick_around`].
+    /// Advances by one millisecond, like [`Lockstep::tick_around`].
     pub fn tick_around(&mut self, around: impl FnMut(Part, &mut dyn FnMut())) {
         if self.lockstep.now() >= self.next {
             self.next = self.lockstep.now() + self.random.random_range(5..400);

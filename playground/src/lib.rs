@@ -5,8 +5,8 @@
 //!      <-- view, message, guard_name
 //! ```
 //!
-//! One module of WebAssembly is one arm. The module has no thread, no socket and no clock: the page
-//! decides how much time passes.
+//! Each WebAssembly module is one arm. The module has no thread, no socket and no clock, because
+//! the page decides how much time passes.
 
 mod playground;
 
@@ -19,7 +19,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 pub use playground::{Playground, State};
 
-/// Size of the view for the page, in numbers.
+/// Number of values in the view for the page.
 const NUMBERS: usize = 36;
 
 /// An arm, and its view for the page.
@@ -34,9 +34,9 @@ thread_local! {
     static GUARDS: Vec<CString> = Guard::ALL.iter().map(guard_text).collect();
 }
 
-/// Begins with a new arm at rest in the ready pose, in place of the previous one. The arm is a
-/// Franka Research 3 or, if `kind` is 1, a Franka Emika Robot. It is ideal or, if `realistic` is
-/// not 0, drawn from `seed`.
+/// Replaces the arm by a new arm at rest in the ready pose. The arm is a Franka Emika Robot if
+/// `kind` is 1, otherwise a Franka Research 3. It is ideal if `realistic` is 0, otherwise realistic
+/// and drawn from `seed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(kind: u32, realistic: u32, seed: u32) {
     let kind = match kind {
@@ -51,14 +51,14 @@ pub extern "C" fn start(kind: u32, realistic: u32, seed: u32) {
     SHOWN.set(Some(shown));
 }
 
-/// Lets time pass, `[ms]`.
+/// Advances time by `milliseconds`.
 #[unsafe(no_mangle)]
 pub extern "C" fn advance(milliseconds: u32) {
     with(|shown| shown.playground.advance(milliseconds));
 }
 
-/// Sets the target of the end effector in the base frame: metres, and a quaternion, which need not
-/// have length 1. An invalid pose changes nothing.
+/// Sets the target of the end effector in the base frame: a position, `[m]`, and a quaternion of
+/// any length except 0. An invalid pose changes nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn target(x: f64, y: f64, z: f64, qx: f64, qy: f64, qz: f64, qw: f64) {
     let turn = UnitQuaternion::try_new(Quaternion::new(qw, qx, qy, qz), 1e-6);
@@ -70,7 +70,7 @@ pub extern "C" fn target(x: f64, y: f64, z: f64, qx: f64, qy: f64, qz: f64, qw: 
     }
 }
 
-/// Pushes the end effector with this force until the next call, base frame, `[N]`.
+/// Pushes the end effector with this force in the base frame, `[N]`, until the next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn push(x: f64, y: f64, z: f64) {
     with(|shown| shown.playground.push(Vector3::new(x, y, z)));
@@ -82,26 +82,27 @@ pub extern "C" fn block(on: u32) {
     with(|shown| shown.playground.block(on != 0));
 }
 
-/// Makes the robot recover from its stop, and continues.
+/// Makes the robot recover from its stop. The arm then holds its position until the next target.
 #[unsafe(no_mangle)]
 pub extern "C" fn recover() {
     with(|shown| shown.playground.recover());
 }
 
-/// The arm as numbers, at an address that holds until the next call of this module:
+/// Returns the address of the arm's view, an array of numbers. The address is valid until the next
+/// call of this module.
 ///
 /// | index | content |
 /// |---|---|
 /// | 0 | time since the start, `[s]` |
 /// | 1 | [`State`] |
 /// | 2 to 8 | measured joint positions, `[rad]` |
-/// | 9 to 15 | the reference's, `[rad]` |
+/// | 9 to 15 | joint positions of the reference, `[rad]` |
 /// | 16 to 22 | target, as `x y z qx qy qz qw`, base frame, `[m]` |
-/// | 23 to 29 | measured pose of the end effector, likewise |
-/// | 30 to 32 | force on it as the robot estimates it, base frame, `[N]` |
+/// | 23 to 29 | measured pose of the end effector, in the same form |
+/// | 30 to 32 | force on the end effector that the robot estimates, base frame, `[N]` |
 /// | 33 | speed of the fastest point of the arm, `[m/s]` |
-/// | 34 | guards that bound the newest command, a bit each in the order of [`guard_name`] |
-/// | 35 | distance of the end effector to its target, `[m]` |
+/// | 34 | guards that bound the newest command, one bit per guard in the order of [`guard_name`] |
+/// | 35 | distance between the end effector and its target, `[m]` |
 #[unsafe(no_mangle)]
 pub extern "C" fn view() -> *const f64 {
     with(|shown| {
@@ -132,8 +133,8 @@ pub extern "C" fn view() -> *const f64 {
     .unwrap_or(std::ptr::null())
 }
 
-/// The newest message, as UTF-8 that ends with a zero; empty without one. Its address holds until
-/// the next call of this module.
+/// Returns the address of the newest message, as UTF-8 text that ends with a zero. The text is
+/// empty if there is no message. The address is valid until the next call of this module.
 #[unsafe(no_mangle)]
 pub extern "C" fn message() -> *const u8 {
     with(|shown| {
@@ -143,7 +144,8 @@ pub extern "C" fn message() -> *const u8 {
     .unwrap_or(std::ptr::null())
 }
 
-/// Name of a guard for users, as UTF-8 that ends with a zero; null past the last one.
+/// Returns the address of a guard's name, as UTF-8 text that ends with a zero; null after the last
+/// guard.
 #[unsafe(no_mangle)]
 pub extern "C" fn guard_name(index: u32) -> *const u8 {
     GUARDS.with(|guards| {

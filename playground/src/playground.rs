@@ -9,13 +9,13 @@ use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch, TouchId};
 use nalgebra::{Isometry3, Vector3};
 
-/// The speed of manual reduced speed, `[m/s]`.
+/// Speed limit of the operating mode "manual reduced speed", `[m/s]`.
 const SPEED_CAP: f64 = 0.25;
 
-/// Largest force of a person's push, `[N]`.
+/// Largest force with which a person pushes, `[N]`.
 const PUSH_MAX: f64 = 200.0;
 
-/// An arm that goes to a target, and can be pushed, stopped and recovered.
+/// An arm that moves to a target, and that can be pushed, stopped and recovered.
 pub struct Playground {
     lockstep: Lockstep,
     seconds: f64,
@@ -33,11 +33,11 @@ pub struct Playground {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum State {
-    /// Goes to its target, or holds it.
+    /// The arm moves to its target, or holds it.
     Following,
-    /// Begins to, or recovers.
+    /// The session begins, or the robot recovers.
     Starting,
-    /// Stopped; [`Playground::recover`] continues.
+    /// The arm has stopped. Call [`Playground::recover`] to continue.
     Stopped,
 }
 
@@ -50,7 +50,7 @@ enum Phase {
     Recovering,
 }
 
-/// Current state of an arm; base frame, SI units.
+/// Current state of an arm, in the base frame and SI units.
 pub struct View {
     /// Time since the start.
     pub seconds: f64,
@@ -73,8 +73,8 @@ pub struct View {
 }
 
 impl Playground {
-    /// Returns an arm at rest in the ready pose with a running session: a realistic arm of this
-    /// seed, or an ideal one.
+    /// Returns an arm at rest in the ready pose with a running session. The arm is realistic and
+    /// drawn from `seed`, or ideal if `seed` is `None`.
     pub fn new(kind: RobotKind, seed: Option<u64>) -> Self {
         let mut lockstep = Lockstep::new(Config {
             arm: Some(match seed {
@@ -101,7 +101,7 @@ impl Playground {
         this
     }
 
-    /// Lets time pass.
+    /// Advances time by `milliseconds`.
     pub fn advance(&mut self, milliseconds: u32) {
         for _ in 0..milliseconds {
             self.lockstep.tick();
@@ -115,7 +115,7 @@ impl Playground {
         (self.target, self.is_new) = (pose, true);
     }
 
-    /// Pushes the end effector until the next call, `[N]`, base frame.
+    /// Pushes the end effector with this force in the base frame, `[N]`, until the next call.
     pub fn push(&mut self, force: Vector3<f64>) {
         self.push
             .take()
@@ -136,8 +136,8 @@ impl Playground {
         }
     }
 
-    /// Makes the robot recover, and begins a session that holds the arm in its position. Does
-    /// nothing unless the arm was stopped.
+    /// Makes the robot recover, and begins a session that holds the arm in its position. Has no
+    /// effect unless the arm has stopped.
     pub fn recover(&mut self) {
         if matches!(self.phase, Phase::Stopped) {
             self.lockstep.request(&Request::AutomaticErrorRecovery);
@@ -179,7 +179,7 @@ impl Playground {
             },
             target: self.target,
             end_effector: self.lockstep.pose_at(&q),
-            // The estimate is the force that the arm exerts.
+            // The robot estimates the force that the arm exerts, so the sign changes.
             force: -Vector3::new(x, y, z),
             speed: model.fastest_point(&q, &dq, &end_effector),
             guards: record.bindings,
@@ -213,7 +213,7 @@ impl Playground {
         }
     }
 
-    /// Passes a new target on, and reports a target that was given up.
+    /// Sends a new target to the session, and reports a target that the session has abandoned.
     fn follow(&mut self, session: GoalId) {
         let ended = self
             .goal
@@ -238,7 +238,7 @@ impl Playground {
     }
 }
 
-/// Begins a session under the cap.
+/// Begins a session with the speed limit.
 fn begin(lockstep: &mut Lockstep) -> Phase {
     let engagement = Engagement {
         speed_cap: Some(SPEED_CAP),

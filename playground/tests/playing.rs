@@ -1,10 +1,10 @@
-//! Actions of a visitor of the page.
+//! Tests of the actions that a visitor of the page can perform.
 
 use franka_model::RobotKind;
 use franka_playground::{Playground, State};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-/// Advances until `is_so`; panics after a minute.
+/// Advances until `is_so` returns true. Panics after a minute.
 fn until(playground: &mut Playground, is_so: impl Fn(&Playground) -> bool) -> f64 {
     let begin = playground.view().seconds;
     for _ in 0..6000 {
@@ -68,7 +68,7 @@ fn a_pushed_arm_gives_way_and_comes_back() {
         assert!((8.0..20.0).contains(&now.force.y), "{}", now.force);
         assert_eq!(now.state, State::Following, "{}", playground.message());
         playground.push(Vector3::zeros());
-        // Friction holds it slightly off the target.
+        // Because of friction, the arm stops slightly off the target.
         until(&mut playground, |now| {
             distance(now) < 5e-3 && now.view().speed < 1e-3
         });
@@ -110,7 +110,7 @@ fn held_arm_stops_or_waits_and_goes_on_when_released() {
             until(&mut playground, |now| now.view().state == State::Following);
         }
         playground.advance(500);
-        // An arm that is released may be faster than the cap, and then abandons its target.
+        // A released arm may be faster than the speed limit, and then abandons its target.
         playground.target(target);
         until(&mut playground, |now| distance(now) < 2e-3);
     });

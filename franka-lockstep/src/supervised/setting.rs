@@ -1,4 +1,4 @@
-//! Settings of a supervised robot's program, sent one at a time.
+//! Settings that a program sends to a supervised robot, one at a time.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -10,15 +10,14 @@ use super::Supervised;
 /// Longest wait for an answer, as in `franka-async`, `[ms]`.
 const ANSWER: u64 = 5000;
 
-/// Number of states after which a setting that no state shows counts as not shown, as in
-/// `franka-async`.
+/// Number of states to wait until a state shows a setting, as in `franka-async`.
 const SHOWN: u64 = 200;
 
-/// Sends settings to the robot, and keeps those that it must send.
+/// Sends settings to the robot, and keeps the settings that are still to be sent.
 #[derive(Debug, Default)]
 pub(super) struct Sender {
     queue: VecDeque<Request>,
-    /// True if the supervision requires that all settings are sent again.
+    /// True if the supervision requires all settings to be sent again.
     is_due: bool,
     sent: Option<Sent>,
     /// The valid setting of each kind: the newest setting that the robot has not refused.
@@ -29,7 +28,7 @@ pub(super) struct Sender {
 struct Sent {
     id: SettingId,
     request: Request,
-    /// True if the program set it, false if the supervision sends it again.
+    /// True if the program sends the setting, false if the supervision sends it again.
     is_program: bool,
     /// Time at which the setting was sent, `[ms]`.
     at: u64,
@@ -82,8 +81,8 @@ impl Supervised {
         while self.sender.sent.is_none() && self.send_next() {}
     }
 
-    /// Returns the answer to a setting, once the answer has arrived and a state shows the setting
-    /// or no state will.
+    /// Returns the final answer to a setting: refused, shown by a state, not shown in time, or
+    /// unknown.
     fn answer_to(&self, sent: &Sent) -> Option<Answer> {
         let text = String::new();
         if !self.is_up_or_silent() {
@@ -162,7 +161,7 @@ impl Supervised {
         self.mend(true);
     }
 
-    /// Makes the robot answer no more requests, until the client connects again.
+    /// Stops all answers of the robot until the client connects again.
     pub fn lose_replies(&mut self) {
         self.lockstep.link.replies = false;
     }

@@ -1,11 +1,11 @@
-//! The command line of the simulator, for programs that start one: the binary `franka-sim`, and
-//! the subcommand of another (feature `command-line`).
+//! The command line of the simulator, for programs that start a simulator: the binary `franka-sim`,
+//! and programs with a subcommand for it (feature `command-line`).
 //!
 //! | module | content |
 //! |---|---|
 //! | `arguments` | the options |
 //! | `values` | checked values of options |
-//! | `setup` | options to a robot, a plant, grippers and a network |
+//! | `setup` | creates the robot, plant, grippers and network that the options describe |
 
 mod arguments;
 mod setup;
@@ -26,8 +26,8 @@ impl Arguments {
     /// with one line of text per address on which the robot listens.
     ///
     /// # Errors
-    /// An error if the options describe no valid robot, an address is in use, or the simulation has
-    /// ended.
+    /// Returns an error if the options describe no valid robot, if an address is in use, or if the
+    /// simulation has ended by itself.
     pub async fn run(
         &self,
         ready: impl AsyncFnOnce(&Arc<Running>, &str) -> io::Result<()>,
@@ -53,7 +53,7 @@ impl Arguments {
             _ = terminate.recv() => {}
             () = sim.ended() => return Err(io::Error::other("the simulation has ended")),
         }
-        // Otherwise, the last owner stops the simulation by dropping it.
+        // Otherwise, the simulation stops when its last owner drops it.
         if let Some(sim) = Arc::into_inner(sim) {
             sim.stop().await;
         }

@@ -1,4 +1,5 @@
-//! Turns options into a robot, a plant (the physics), grippers and a network.
+//! Creates the robot, the plant (the physics), the grippers and the network that the options
+//! describe.
 
 use std::fmt::Display;
 use std::fs;
@@ -92,10 +93,10 @@ impl Arguments {
         })
     }
 
-    /// Returns the robot that the options describe; the caller starts it.
+    /// Returns the robot that the options describe. The caller must start it.
     ///
     /// # Errors
-    /// A text that names the invalid option and the reason.
+    /// Returns a text that names the invalid option and the reason.
     pub fn sim(&self) -> Result<Sim, String> {
         let mut config = self.config()?;
         config.model_library = self.library()?;
@@ -123,8 +124,7 @@ impl Arguments {
             ),
             None => (Fingers::new(), Suction::new()),
         };
-        // Port 0 takes a free port. If the number would exceed the last port, also take a free
-        // port.
+        // Port 0 selects a free port. If the number exceeds the last port, use a free port, too.
         let beside = |n| match self.port {
             0 => 0,
             port => port.checked_add(n).unwrap_or(0),
@@ -207,10 +207,10 @@ impl NetworkKind {
     }
 }
 
-/// The longest model library: the capacity of a message.
+/// Size of the longest model library that fits into a message.
 const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
-/// Returns the joint positions if the joints can reach them.
+/// Returns the joint positions, or an error if the joints cannot reach them.
 fn possible(limits: &JointLimits, q: JointVector) -> Result<JointVector, String> {
     match limits.outside_hard(&q) {
         None => Ok(q),

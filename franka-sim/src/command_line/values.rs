@@ -7,7 +7,7 @@ use crate::Fingers;
 /// Returns `N` finite numbers from comma-separated text.
 ///
 /// # Errors
-/// A text that describes the error.
+/// Returns a text that describes the error.
 pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let values = text
         .split(',')
@@ -22,7 +22,7 @@ pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
         .map_err(|_| format!("got {count} numbers, expected {N}"))
 }
 
-/// The width of an object that fits between the fingers.
+/// Returns the width of an object that fits between the fingers.
 pub(crate) fn object_width(text: &str) -> Result<f64, String> {
     let [width] = numbers::<1>(text)?;
     if Fingers::new().place_object(width) {
@@ -32,7 +32,7 @@ pub(crate) fn object_width(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A positive factor.
+/// Returns a positive factor.
 pub(crate) fn factor(text: &str) -> Result<f64, String> {
     let [factor] = numbers::<1>(text)?;
     if factor <= 0.0 {
@@ -41,7 +41,7 @@ pub(crate) fn factor(text: &str) -> Result<f64, String> {
     Ok(factor)
 }
 
-/// A possible mass of a load.
+/// Returns a possible mass of a load.
 pub(crate) fn mass(text: &str) -> Result<f64, String> {
     let [mass] = numbers::<1>(text)?;
     if mass < 0.0 {
@@ -50,7 +50,7 @@ pub(crate) fn mass(text: &str) -> Result<f64, String> {
     Ok(mass)
 }
 
-/// Time in seconds that a robot may wait.
+/// Returns the time for which a robot may wait, from text in seconds.
 pub(crate) fn patience(text: &str) -> Result<Duration, String> {
     let [seconds] = numbers::<1>(text)?;
     match Duration::try_from_secs_f64(seconds) {

@@ -8,7 +8,7 @@ use franka_proto::{Errors, RobotError};
 use super::ArmModel;
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal, halves};
 
-/// Derivatives of a command that are too large.
+/// Flags for the derivatives of a command that are too large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Broken {
     pub(super) velocity: bool,
@@ -22,7 +22,7 @@ impl Broken {
         self.velocity || self.acceleration || self.jerk
     }
 
-    /// Derivatives that both `self` and `other` mark.
+    /// Flags that are set in both `self` and `other`.
     fn and(self, other: Self) -> Self {
         Self {
             velocity: self.velocity && other.velocity,
@@ -31,7 +31,7 @@ impl Broken {
         }
     }
 
-    /// Derivatives that `self` or `other` marks.
+    /// Flags that are set in `self` or `other`.
     fn or(self, other: Self) -> Self {
         Self {
             velocity: self.velocity || other.velocity,
@@ -58,12 +58,13 @@ impl Broken {
     }
 }
 
-/// Checks a step against the exact history and, if that fails, against the published one.
+/// Checks a step against the exact history and, if that check fails, against the published history.
 ///
 /// Some kinds of robot publish the history in single precision. A client may limit its commands
-/// relative to the published state; at 3 rad its jerk is up to 240 rad/s³ off from the exact
-/// history. A client with its own generator is exact relative to the exact history. Robots refuse
-/// neither client, so a bound counts as violated only if both histories violate it.
+/// relative to the published state. At 3 rad, this rounding changes the jerk by up to 240 rad/s³.
+/// Another client may compute its commands without the state, relative to the exact history. Robots
+/// refuse neither client. A bound therefore counts as violated only if the step violates it
+/// relative to both histories.
 fn judge<S: Copy>(
     exact: &S,
     published: impl Fn(S) -> S,
@@ -77,7 +78,8 @@ fn judge<S: Copy>(
     (next, broken.and(from_published))
 }
 
-/// One cycle of a joint signal: the result of `step`, and the bounds that the step violates.
+/// Performs one cycle of a joint signal. Returns the result of `step`, and the bounds that it
+/// violates.
 pub(super) fn joints(
     from: &JointSignal,
     arm: &ArmModel<'_>,
@@ -95,8 +97,8 @@ pub(super) fn joints(
 
 /// Returns the bounds that a step of the joints violates.
 ///
-/// The velocity envelope belongs to the position before the step, because a client can know no
-/// other position.
+/// The velocity envelope is computed for the position before the step, because a client knows only
+/// this position.
 pub(super) fn joint_bounds(
     from: &JointSignal,
     next: &JointSignal,
@@ -115,7 +117,8 @@ pub(super) fn joint_bounds(
     broken
 }
 
-/// One cycle of a Cartesian signal: the result of `step`, and the bounds that the step violates.
+/// Performs one cycle of a Cartesian signal. Returns the result of `step`, and the bounds that it
+/// violates.
 pub(super) fn cartesian(
     from: &CartesianSignal,
     arm: &ArmModel<'_>,
@@ -137,7 +140,7 @@ pub(super) fn cartesian(
     )
 }
 
-/// One cycle of the elbow: the result of `step`, and the bounds that the step violates.
+/// Performs one cycle of the elbow. Returns the result of `step`, and the bounds that it violates.
 pub(super) fn elbow(
     from: &ElbowSignal,
     arm: &ArmModel<'_>,
@@ -186,6 +189,6 @@ fn bounds(limits: &MotionLimits, velocity: f64, acceleration: f64, jerk: f64) ->
     }
 }
 
-/// Velocities up to this count as zero, `[rad/s]`: the envelope is zero at a position limit, and
-/// rounding errors must not violate it.
+/// Velocity up to which a joint counts as still, `[rad/s]`. The envelope is zero at a position
+/// limit, and rounding errors must not violate it.
 const ROUNDING: f64 = 1e-9;

@@ -1,4 +1,4 @@
-//! Joint positions for a commanded pose, continued from the positions of the previous cycle.
+//! Joint positions for a commanded pose, near the positions of the previous cycle.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::{Frame, JointVector, Twist};
@@ -8,12 +8,12 @@ use super::ArmModel;
 use crate::signal::stack;
 
 /// Returns joint positions near `from` that bring the end effector to `target`, with joint 3 at
-/// `elbow` if given.
+/// `elbow` if an elbow is given.
 ///
-/// Newton's iteration on differential inverse kinematics: a millisecond of motion requires two or
-/// three steps to [`CLOSE`]. Without an elbow each step is the smallest possible, so the redundancy
-/// changes as little as the pose allows. Near a singularity, or for a target out of reach, the
-/// returned joints do not reach the target. The caller must check them.
+/// This function uses Newton's method with differential inverse kinematics. A millisecond of motion
+/// requires two or three iterations to reach [`CLOSE`]. Without an elbow, each iteration changes
+/// the joints as little as possible. Near a singularity, or for a target out of reach, the returned
+/// joints do not reach the target. The caller must check the result.
 pub(super) fn solve(
     arm: &ArmModel<'_>,
     target: &Isometry3<f64>,
@@ -40,7 +40,7 @@ pub(super) fn solve(
     q
 }
 
-/// Bounds of one step. If the elbow is commanded, joint 3 must reach it.
+/// Bounds of one iteration. If the elbow is commanded, joint 3 must reach the elbow angle.
 fn step_bounds(elbow: Option<f64>) -> JointBox {
     let mut upper = JointVector::repeat(STEP_MAX);
     let mut lower = -upper;
@@ -52,7 +52,7 @@ fn step_bounds(elbow: Option<f64>) -> JointBox {
 }
 
 /// Displacement and rotation vector from `pose` to `goal`, in base axes. The rotation blocks may be
-/// inexact, as the vendor's rounded constants are.
+/// inexact, like the vendor's rounded constants.
 fn difference(goal: &Matrix4<f64>, pose: &Matrix4<f64>) -> Twist {
     let block = |m: &Matrix4<f64>| -> Matrix3<f64> { m.fixed_view::<3, 3>(0, 0).into_owned() };
     let turn = block(goal) * block(pose).transpose();
@@ -76,14 +76,14 @@ fn difference(goal: &Matrix4<f64>, pose: &Matrix4<f64>) -> Twist {
     stack(&shift, &(twice_sine * (scale / 2.0)))
 }
 
-/// Pose error at which the joints are accurate enough, `[m, rad]`: at 1 kHz, a thousandth of the
-/// permitted third difference of the joints.
+/// Pose error at which the joints are accurate enough, `[m, rad]`. It is a thousandth of the
+/// permitted third difference of the joints at 1 kHz.
 const CLOSE: f64 = 1e-12;
 
-/// Largest number of steps. Only targets that no smooth motion reaches need more.
+/// Largest number of iterations. Only targets that no smooth motion can reach need more.
 const STEPS_MAX: usize = 8;
 
-/// Longest step of a joint, `[rad]`: a hundred times the bound for a cycle.
+/// Largest change of a joint in one iteration, `[rad]`: a hundred times the bound for a cycle.
 const STEP_MAX: f64 = 0.5;
 
 #[cfg(test)]

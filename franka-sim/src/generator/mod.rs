@@ -5,9 +5,9 @@
 //!                                                                   └──> Desired, Errors
 //! ```
 //!
-//! All violated bounds of a cycle are reported together, as robots report them. Thresholds are the
-//! nominal limits. The error for a bound depends on the order of the derivative relative to the
-//! commanded quantity (FCI documentation, control parameters and error list).
+//! Like real robots, the generators report all violated bounds of a cycle together. The thresholds
+//! are the nominal limits. The error for a bound depends on the order of the derivative, relative
+//! to the commanded quantity (FCI documentation, control parameters and error list).
 
 mod checks;
 mod ik;
@@ -22,7 +22,7 @@ use crate::config::Config;
 use crate::kind::{Description, Precision};
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal};
 
-/// Desired and commanded values, which the controllers follow and the state publishes.
+/// Desired and commanded values. The controllers follow them, and the state contains them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Desired {
     /// `q_d`, `dq_d`, `ddq_d`.
@@ -45,11 +45,11 @@ impl Desired {
         desired
     }
 
-    /// Returns desired values at rest at exactly the position of the last state.
+    /// Returns desired values at rest, at exactly the position that the last state shows.
     ///
-    /// A motion begins here, because a client begins with the values that it has read. Otherwise
-    /// the rounding of the state would count as acceleration (0.1 rad/s²), and extrapolation over
-    /// some lost commands would turn it into a jump.
+    /// A motion begins with these values, because a client begins with the values that it has read.
+    /// Otherwise the rounding of the state would count as an acceleration (0.1 rad/s²).
+    /// Extrapolation over some lost commands would turn this acceleration into a jump.
     pub(crate) fn as_published(&self, precision: Precision) -> Self {
         let pose = CartesianSignal::resting(self.cartesian.pose)
             .published(precision)
@@ -107,10 +107,10 @@ pub(crate) enum Input<'a> {
     First(&'a RobotCommand),
     /// A later command.
     Next(&'a RobotCommand),
-    /// No command in time.
+    /// No command has arrived in time.
     Lost,
-    /// No further command: the last command applies from now on. This input shows whether a motion
-    /// may finish.
+    /// No command will follow, and the last command continues to apply. This input checks if a
+    /// motion may finish.
     Rest,
 }
 
@@ -127,7 +127,7 @@ impl<'a> Input<'a> {
     }
 }
 
-/// An invalid command: a non-finite number, or flags that make no sense.
+/// An invalid command: a non-finite number, or an impossible combination of flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct InvalidInput;
 
@@ -276,7 +276,7 @@ fn cartesian_velocity(
     )
 }
 
-/// Kinematics completion: elbow and joints of a Cartesian command, with their checks.
+/// Computes and checks the elbow and the joints that belong to a Cartesian command.
 fn complete(
     input: Input<'_>,
     before: &Desired,
@@ -311,7 +311,7 @@ fn complete(
             }
             Some(elbow)
         }
-        // This includes an elbow at rest: lost commands do not change a commanded elbow.
+        // This includes an elbow at rest, because lost commands do not change a commanded elbow.
         None if matches!(input, Input::Lost) && before.elbow.commanded => {
             Some(before.elbow.extrapolated())
         }

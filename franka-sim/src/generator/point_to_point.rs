@@ -1,11 +1,11 @@
-//! Asynchronous joint positions: the robot plans a motion from its current position that ends at
-//! rest at a target.
+//! Asynchronous joint positions. The robot plans a motion from its current state to rest at a
+//! target.
 //!
 //! All joints share one duration and move along polynomials of fifth degree. The polynomials start
-//! with the present velocity and acceleration and end at rest. The duration is the shortest on a
-//! grid of five percent for which velocity, acceleration and jerk are within their bounds
-//! everywhere. For some states of motion (fast, away from the target) no such duration exists; then
-//! the joints brake first.
+//! with the current velocity and acceleration, and end at rest. Durations are tried in steps of
+//! five percent. The shortest duration that keeps velocity, acceleration and jerk within their
+//! bounds is used. If no such duration exists (for example, if a joint moves fast away from the
+//! target), the joints brake first.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};
@@ -38,7 +38,8 @@ struct Bounds {
 }
 
 impl PointToPoint {
-    /// A generator without a target, with at most `velocity`, `[rad/s]`.
+    /// Returns a generator without a target. `velocity` is the largest velocity of each joint,
+    /// `[rad/s]`.
     pub(crate) fn new(velocity: &JointVector, limits: &JointLimits) -> Self {
         Self {
             bounds: Bounds {
@@ -50,7 +51,7 @@ impl PointToPoint {
         }
     }
 
-    /// Replaces the target, `[rad]`; `now` is the state of the joints.
+    /// Replaces the target, `[rad]`; `now` is the current state of the joints.
     pub(crate) fn go_to(&mut self, target: &JointVector, now: &JointSignal) {
         self.plan = match Profile::plan(now, target, &self.bounds) {
             Some(profile) => Plan::Moving(Box::new(profile)),
@@ -104,7 +105,7 @@ struct Profile {
 
 impl Profile {
     fn plan(now: &JointSignal, target: &JointVector, bounds: &Bounds) -> Option<Self> {
-        // The extremes of a motion from rest are known: 15/8 d/T, 10/√3 d/T², 60 d/T³.
+        // The largest derivatives of a motion from rest are 15/8 d/T, 10/√3 d/T² and 60 d/T³.
         let mut duration: f64 = CYCLE;
         for i in 0..7 {
             let distance = (target[i] - now.q[i]).abs();
@@ -180,9 +181,10 @@ fn derivatives(c: &[f64; 6], t: f64) -> [f64; 4] {
     ]
 }
 
-/// Share of the nominal acceleration and jerk that a plan uses: samples may miss an extreme.
+/// Share of the nominal acceleration and jerk that a plan uses, because the samples may miss an
+/// extreme.
 const SHARE: f64 = 0.9;
-/// Relative slack of the bounds, for rounding.
+/// Relative tolerance of the bounds for rounding errors.
 const SLACK: f64 = 1e-6;
 /// Number of points at which a plan is checked.
 const SAMPLES: u32 = 50;

@@ -14,11 +14,11 @@ use crate::robot::{Awaited, Robot};
 /// at this rate.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
-/// Time for which the first state of a motion waits for a first command. A shared host may keep a
-/// thread of the client from its processor for some 10 ms.
+/// Time for which the first state of a motion waits for a first command. A busy host may delay a
+/// thread of the client by about 10 ms.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
-/// Result of waiting for the answer to a state.
+/// Result of a wait for the answer to a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     /// The answer was available, or no answer was due.
@@ -40,8 +40,8 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Runs until no client or task remains that could control the robot. Waits for late commands
-    /// up to `patience`.
+    /// Runs until no client or task remains that could control the robot. Waits up to `patience`
+    /// for each late command.
     pub(super) fn run(mut self, strict: bool, patience: Duration) {
         let mut clock = Clock::new(Instant::now(), strict);
         let mut attempts = 0;
@@ -56,7 +56,7 @@ impl Cycle {
             if !patience.is_zero() {
                 let now = clock.at(Instant::now());
                 match self.await_answer(now, patience, &mut attempts, clock.pace()) {
-                    // If this thread was late, the delay is not the client's.
+                    // If this thread was late, the client did not cause the delay.
                     Answer::NotAwaited => {}
                     Answer::Awaited => clock.waited(Instant::now()),
                     Answer::End => return clock.pace().log(),
@@ -77,14 +77,14 @@ impl Cycle {
         }
     }
 
-    /// Runs in virtual timeuntil no client or task remains. Each state waits for the client's
-    /// answer; see [`Sim::virtual_time`](super::Sim::virtual_time).
+    /// Runs in virtual time until no client or task remains. After each state, waits for the
+    /// client's answer: see [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration, speed: Speed) {
         // In virtual time no state is late, so the clock does not slip.
         let mut clock = Clock::new(Instant::now(), true);
         let mut attempts = 0;
         let mut pacer = Pacer::new(speed);
-        // Time of the robot and of its network.
+        // Current time of the robot and of its network.
         let mut now = Instant::now();
         loop {
             if !self.cycle(now, clock.pace()) {
@@ -116,8 +116,8 @@ impl Cycle {
     }
 
     /// Waits for the client's answer, if the newest state requires one. A client may read several
-    /// states before its first command. The wait for the first command starts short
-    /// ([`FIRST_WAIT`]) and doubles with each of the `attempts`, up to `patience`.
+    /// states before its first command. The first wait for the first command lasts [`FIRST_WAIT`],
+    /// and doubles with each of the `attempts`, up to `patience`.
     fn await_answer(
         &mut self,
         now: Instant,
@@ -150,7 +150,7 @@ impl Cycle {
         self.robot.has_client() || hand || vacuum
     }
 
-    /// Sleeps until the clock reaches `end`. Relays datagrams of a simulated network meanwhile.
+    /// Sleeps until the clock reaches `end`, and passes datagrams through a simulated network.
     fn sleep_until(&mut self, end: Instant, clock: &mut Clock) {
         loop {
             let now = clock.at(Instant::now());
@@ -167,7 +167,7 @@ impl Cycle {
         }
     }
 
-    /// Advances every device by one millisecond. Returns false when the robot's service has ended.
+    /// Advances every device by one millisecond. Returns false if the robot's service has ended.
     fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         if let Some(others) = &self.in_step {
             others.meet();
@@ -175,7 +175,7 @@ impl Cycle {
         if let Some(Hook(job)) = &mut self.every_millisecond {
             job(self.robot.device_mut());
         }
-        // When the robot's service ends, this thread ends, and with it the other devices.
+        // When the robot's service ends, this thread and the other devices end.
         let goes_on = self.robot.cycle(now, pace);
         if let Some(Hook(job)) = &mut self.after_each_state {
             job(self.robot.device_mut());

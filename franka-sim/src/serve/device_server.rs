@@ -1,4 +1,4 @@
-//! A device on its sockets. It processes the client's requests, once per cycle; `sessions` chooses
+//! A device on its sockets. It processes the client's requests once per cycle. `sessions` chooses
 //! the client.
 
 use std::net::{SocketAddr, UdpSocket};
@@ -14,7 +14,7 @@ use super::relay::Relay;
 use crate::network::Network;
 use crate::robot::Awaited;
 
-/// Work between two milliseconds.
+/// Function that runs between two milliseconds.
 pub(super) type Job<D> = Box<dyn FnOnce(Between<'_, D>) + Send>;
 
 /// Objects that a job may read and change.
@@ -25,7 +25,7 @@ pub(super) struct Between<'a, D> {
     pub(super) pace: Pace,
 }
 
-/// Messages of the stream's task to the thread.
+/// Messages from the task of the stream to the thread.
 pub(super) enum Order {
     /// A client has connected: its address, and the queue of its replies.
     Connect {
@@ -38,38 +38,39 @@ pub(super) enum Order {
     Disconnect,
 }
 
-/// Largest number of datagrams read per cycle: a flood must not stop the clock.
+/// Largest number of datagrams read per cycle, because a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
-/// Largest number of orders per cycle, for the same reason as the limit on datagrams.
+/// Largest number of orders per cycle, for the same reason.
 const ORDERS: usize = 32;
 
 /// Longest time for which the wait for a command may delay orders and jobs.
 const JOB_POLL: Duration = Duration::from_millis(1);
 
-/// Longest counted time of one wait for a datagram. The kernel rounds such waits up to a few
-/// milliseconds. A longer wait means that the host delayed this process, and maybe the client.
+/// Longest time that counts of one wait for a datagram. The kernel rounds such waits up to a few
+/// milliseconds. During a longer wait, the host delayed this process, and perhaps the client.
 const WAIT_MAX: Duration = Duration::from_millis(10);
 
-/// Longest time of one wait for a datagram that counts as silence. A longer wait means that this
-/// process was stopped.
+/// Longest time of one wait that counts as silence. During a longer wait, this process was stopped.
 const HELD_UP_MAX: Duration = Duration::from_millis(100);
 
-/// Longest silence, unless the patience is longer. A client that receives nothing for a second
-/// considers the link lost, and on a busy machine the waits for one answer may add up to a second.
+/// Longest silence, unless the patience is longer. Without this limit, the waits for one answer
+/// could add up to a second on a busy machine. A client considers the link lost after a second
+/// without a state.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
 
-/// Time for which an answer has been awaited.
+/// Time for which the server has waited for an answer.
 #[derive(Debug, Default)]
 struct Wait {
-    /// Time of silence. The time for which this process was stopped is excluded.
+    /// Time of silence, without the time for which this process was stopped.
     silence: Duration,
-    /// Like `silence`, and without most of the time for which this process waited for a processor.
+    /// Like `silence`, but also without most of the time for which this process waited for a
+    /// processor.
     counted: Duration,
 }
 
 impl Wait {
-    /// Adds a wait for a datagram.
+    /// Adds the duration of a wait for a datagram.
     fn add(&mut self, took: Duration) {
         self.silence += took.min(HELD_UP_MAX);
         self.counted += took.min(WAIT_MAX);
@@ -81,16 +82,15 @@ impl Wait {
     }
 }
 
-/// Number of replies that may wait for a client. The server reads a request only if the queue has
-/// room for the answers to it and to all open requests. An answer may consist of two replies.
+/// Capacity of the queue of replies. The server reads a request only if the queue has room for the
+/// answers to this request and to all open requests. An answer may consist of two replies.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
 const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 
 /// A device, its UDP socket, the queues from its listener, and the simulated network, if any.
 ///
-/// The queues are Tokio's, because one end is a task and the other is this thread. The task waits
-/// for room or for a reply without blocking a worker, and the thread only tries. A task cannot
-/// await a queue between threads (crossbeam).
+/// The queues are Tokio's, because one end is a task and the other end is this thread. The task can
+/// wait for room or for a reply without blocking a worker. The thread never waits.
 pub(super) struct DeviceServer<D> {
     device: Box<D>,
     socket: UdpSocket,
@@ -128,8 +128,8 @@ impl<D: Device> DeviceServer<D> {
         &mut self.device
     }
 
-    /// Runs one millisecond, at `now`: commands, orders, jobs, state, replies. Returns false once
-    /// the simulation must end.
+    /// Runs one millisecond at `now`: commands, orders, jobs, state, replies. Returns false if the
+    /// simulation must end.
     pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         self.take_commands(now);
         self.take_orders();
@@ -155,18 +155,18 @@ impl<D: Device> DeviceServer<D> {
         true
     }
 
-    /// Time until datagrams must be [relayed](Self::relay) again; `None` without a network.
+    /// Time until [`relay`](Self::relay) must run again; `None` without a network.
     pub(super) fn pause(&self, now: Instant) -> Option<Duration> {
         self.relay.as_ref().map(|relay| relay.pause(now))
     }
 
-    /// The command that the newest state requires, unless it has arrived.
+    /// Kind of command that the newest state still requires.
     pub(super) fn awaits(&self) -> Awaited {
         self.device.awaits()
     }
 
-    /// The command that [`awaits`](Self::awaits) returns, unless the client has answered the states
-    /// that have reached it.
+    /// Like [`awaits`](Self::awaits), but nothing if the client has answered all states that have
+    /// reached the client.
     pub(super) fn awaits_answer(&self) -> Awaited {
         match &self.relay {
             Some(relay) if !relay.is_unanswered() => Awaited::Nothing,
@@ -187,9 +187,9 @@ impl<D: Device> DeviceServer<D> {
         self.relay.as_ref().and_then(Relay::next_arrival)
     }
 
-    /// Waits, at the device's time `now`, for the [awaited answer](Self::awaits_answer), at most
-    /// for `patience` ([`Wait`]). Meanwhile it processes orders and jobs as between two
-    /// milliseconds. Returns false once the simulation must end.
+    /// Waits for the [awaited answer](Self::awaits_answer), at most for `patience` ([`Wait`]).
+    /// `now` is the device's time. During the wait, this function processes orders and jobs.
+    /// Returns false if the simulation must end.
     pub(super) fn await_command(&mut self, now: Instant, patience: Duration, pace: Pace) -> bool {
         let mut wait = Wait::default();
         loop {
@@ -216,7 +216,7 @@ impl<D: Device> DeviceServer<D> {
             socket.set_read_timeout(Some(longest))?;
             socket.peek_from(&mut [0])
         };
-        // A later read from the socket reports the result, errors included.
+        // The next read from the socket reports the result, including errors.
         let _ = wait();
         let _ = socket.set_nonblocking(true);
     }
@@ -226,7 +226,7 @@ impl<D: Device> DeviceServer<D> {
         self.client.is_some()
     }
 
-    /// Relays the network's datagrams between two milliseconds.
+    /// Passes datagrams through the simulated network, between two milliseconds.
     pub(super) fn relay(&mut self, now: Instant) {
         self.take_commands(now);
         self.deliver_states(now);
@@ -246,8 +246,7 @@ impl<D: Device> DeviceServer<D> {
         for _ in 0..DATAGRAMS {
             match self.socket.recv_from(&mut buffer) {
                 Ok((length, source)) => {
-                    // Datagrams from other sockets of the client's host do not belong to the
-                    // client.
+                    // Other sockets of the client's host are not the client.
                     let ip = self.client.as_ref().map(|(peer, _)| peer.ip());
                     let client = ip.zip(self.device.udp_port());
                     if client == Some((source.ip(), source.port())) {
@@ -294,8 +293,8 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// True if the client has room for all answers to one more order. A disconnected client needs
-    /// no room.
+    /// True if the queue has room for all answers to one more order. A disconnected client needs no
+    /// room.
     fn has_room(&self) -> bool {
         let full =
             |replies: &mpsc::Sender<Bytes>| !replies.is_closed() && replies.capacity() < ANSWERS;
@@ -305,7 +304,8 @@ impl<D: Device> DeviceServer<D> {
             .is_some_and(|(_, replies)| full(replies))
     }
 
-    /// Runs the waiting jobs. Returns false if no more jobs can come; the simulation must then end.
+    /// Runs the waiting jobs. Returns false if no more jobs can come, because the simulation must
+    /// then end.
     fn run_jobs(&mut self, now: Instant, pace: Pace) -> bool {
         for _ in 0..ORDERS {
             match self.jobs.try_recv() {
@@ -329,7 +329,7 @@ impl<D: Device> DeviceServer<D> {
                 None => false,
             };
             if gone {
-                // The queue is closed. Once the sender is dropped, the connection closes.
+                // The queue is closed. The connection closes when the sender is dropped.
                 self.disconnect();
             }
         }
@@ -340,7 +340,7 @@ impl<D: Device> DeviceServer<D> {
         self.forget_client();
     }
 
-    /// Forgets the client, and all datagrams in transit to and from it.
+    /// Removes the client, and all datagrams in transit between client and device.
     fn forget_client(&mut self) {
         self.client = None;
         if let Some(relay) = &mut self.relay {
@@ -349,8 +349,8 @@ impl<D: Device> DeviceServer<D> {
     }
 }
 
-/// Sends a state to the client. A client that does not read loses states; TCP reports a client that
-/// has disconnected.
+/// Sends a state to the client. A client that does not read loses states. TCP reports clients that
+/// have disconnected.
 fn publish(socket: &UdpSocket, state: &[u8], listener: SocketAddr) {
     let _ = socket.send_to(state, listener);
 }

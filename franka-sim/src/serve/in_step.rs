@@ -1,8 +1,8 @@
-//! Synchronisation of robots that begin each of their milliseconds together.
+//! Synchronisation of robots that begin each millisecond together.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Meeting point of the threads of robots in step, once in each of their milliseconds.
+/// Barrier at which the threads of robots in step meet once per millisecond.
 #[derive(Debug)]
 struct Meeting {
     state: Mutex<State>,
@@ -11,16 +11,16 @@ struct Meeting {
 
 #[derive(Debug)]
 struct State {
-    /// Robots that have not ended.
+    /// Number of robots that have not ended.
     members: usize,
-    /// Number of members that wait for the others.
+    /// Number of members that wait for the other members.
     waiting: usize,
     /// Number of milliseconds that have begun.
     begun: u64,
 }
 
-/// Membership of one robot in the meeting. Dropping it ends the membership, so no other robot waits
-/// for this robot any longer.
+/// Membership of one robot in the meeting. After the membership is dropped, no robot waits for this
+/// robot.
 #[derive(Debug)]
 pub(super) struct InStep(Arc<Meeting>);
 
@@ -39,7 +39,7 @@ pub(super) fn in_step<const N: usize>() -> [InStep; N] {
 }
 
 impl InStep {
-    /// Waits until all other robots that have not ended have also called this.
+    /// Waits until all other members have also called this function.
     pub(super) fn meet(&self) {
         let mut state = self.0.state();
         state.waiting += 1;

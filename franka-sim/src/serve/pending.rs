@@ -1,4 +1,4 @@
-//! Connections that have not sent their handshake yet; `crate::connection` answers it.
+//! Connections that have not sent their handshake yet. `crate::connection` answers the handshake.
 
 use std::collections::VecDeque;
 use std::net::SocketAddr;
@@ -13,23 +13,23 @@ use tokio::time::sleep;
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// Largest number of connections that may be pending. A further connection closes the oldest, so
-/// silent connections never block a client.
+/// Largest number of connections that may be pending. A further connection closes the oldest one,
+/// because silent connections must not block a client.
 const MAX_PENDING: usize = 64;
 
-/// Wait after a failure of the listener (out of file descriptors, for example).
+/// Wait after an error of the listener, for example if no file descriptors are left.
 const RETRY: Duration = Duration::from_millis(100);
 
-/// Silence after which the client's host is probed, and the number of probes before it counts as
-/// gone. The figures are those with which libfranka probes the robot.
+/// Silence after which the server probes the client's host, and number of lost probes after which
+/// the host counts as gone. libfranka probes the robot with the same values.
 const KEEPALIVE: (Duration, u32) = (Duration::from_secs(1), 3);
 
 /// A connection whose first message has arrived.
 pub(super) struct Handshake {
     pub(super) stream: TcpStream,
     pub(super) peer: SocketAddr,
-    /// Bytes read from the stream. They begin with a message, or with bytes that can never become
-    /// one; more bytes may follow.
+    /// Bytes read from the stream. They begin with a message, or with bytes that can never become a
+    /// message. More bytes may follow.
     pub(super) received: BytesMut,
 }
 
@@ -89,8 +89,8 @@ impl PendingConnections {
             );
             oldest.abort();
         }
-        // Without these options, replies are slower, and a client that has lost its network is
-        // detected later.
+        // Without these options, replies would be slower, and the server would detect a lost client
+        // later.
         let (silence, count) = KEEPALIVE;
         let keepalive = TcpKeepalive::new()
             .with_time(silence)

@@ -3,7 +3,7 @@
 /// Raises the calling thread to a real-time priority.
 ///
 /// # Errors
-/// The host's error. In practice, the user has no right to real-time priority.
+/// Returns the host's error. The usual cause is that the user has no right to real-time priority.
 #[cfg(target_os = "linux")]
 pub(super) fn raise() -> std::io::Result<()> {
     // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value. musl
@@ -30,7 +30,7 @@ pub(super) fn raise() -> std::io::Result<()> {
     Err(std::io::ErrorKind::Unsupported.into())
 }
 
-/// Priority in the middle of the range (1 to 99). A client on the same host may thus have a higher
-/// priority.
+/// Priority in the middle of the range (1 to 99). A client on the same host can therefore have a
+/// higher priority.
 #[cfg(target_os = "linux")]
 const PRIORITY: i32 = 50;

@@ -5,16 +5,16 @@ use std::time::{Duration, Instant};
 
 use crate::network::Network;
 
-/// A network that runs on the time of the thread's clock, and the client to which it delivers
-/// states.
+/// A network whose time is the time of the thread's clock, and the client to which the network
+/// delivers states.
 #[derive(Debug)]
 pub(super) struct Relay {
     network: Network,
     /// Start of the network's time.
     origin: Instant,
-    /// Latest time seen. The network's time must not run backwards.
+    /// Latest time so far, because the network's time must not decrease.
     latest: Duration,
-    /// Address of the client, once a state has been sent to it.
+    /// Address of the client, once a state has been sent to the client.
     listener: Option<SocketAddr>,
     /// `message_id` of the newest state that was sent.
     sent: Option<u64>,
@@ -40,8 +40,8 @@ impl Relay {
         }
     }
 
-    /// Runs `job` on the network of a relay, if any, at that network's time. `job` may add or
-    /// remove the network; the relay begins and ends with it.
+    /// Runs `job` on the network of a relay, if any, with the network's time. `job` may add or
+    /// remove the network, which adds or removes the relay.
     pub(super) fn change<R>(
         relay: &mut Option<Self>,
         now: Instant,
@@ -113,15 +113,15 @@ impl Relay {
         Some(delivery.datagram)
     }
 
-    /// Discards the datagrams in transit: their client has disconnected.
+    /// Discards the datagrams in transit, because their client has disconnected.
     pub(super) fn clear(&mut self) {
         self.network.clear();
         (self.listener, self.sent, self.asking) = (None, None, None);
         (self.newest, self.answered) = (None, false);
     }
 
-    /// True if the client has received a state that requires a command and has not answered its
-    /// newest state.
+    /// True if the client has received a state that requires a command, but has not answered the
+    /// newest state that has reached the client.
     pub(super) fn is_unanswered(&self) -> bool {
         self.asking.is_some() && self.newest >= self.asking && !self.answered
     }
@@ -144,8 +144,8 @@ impl Relay {
         next.map(|at| self.origin + at)
     }
 
-    /// Time until the relay must run again. It ends when the next state arrives. It is always
-    /// short, because a command's transit time begins when the relay reads the command.
+    /// Time until the relay must run again: at the latest, when the next state arrives. The time is
+    /// always short, because a command's transit begins when the relay reads the command.
     pub(super) fn pause(&self, now: Instant) -> Duration {
         let next = self.next_arrival();
         let left = next.map(|at| at.saturating_duration_since(now));

@@ -1,4 +1,5 @@
-//! Sockets of one device, and its handle for other tasks. `sessions` serves its clients.
+//! Sockets of one device, and the device's handle for other tasks. `sessions` serves the device's
+//! clients.
 
 use std::fmt;
 use std::io;
@@ -16,7 +17,7 @@ use super::relay::Relay;
 use super::sessions;
 use crate::network::Network;
 
-/// A device on its sockets. Dropping it closes its sockets.
+/// A device on its sockets. Dropping this value closes the sockets.
 pub struct Service<D> {
     address: SocketAddr,
     jobs: mpsc::Sender<Job<D>>,
@@ -28,8 +29,8 @@ pub struct Service<D> {
 #[error("the simulated robot has stopped")]
 pub struct Stopped;
 
-/// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name
-/// the address, because a simulation has several.
+/// Opens the sockets of a device. Returns the device's handle, and its server for the thread.
+/// Errors contain the address, because a simulation has several addresses.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
     device: Box<D>,
@@ -54,7 +55,7 @@ pub(super) async fn open<D: Device>(
 }
 
 impl<D: 'static> Service<D> {
-    /// Address for clients.
+    /// Returns the address to which clients connect.
     pub fn addr(&self) -> SocketAddr {
         self.address
     }
@@ -63,10 +64,10 @@ impl<D: 'static> Service<D> {
     /// it must be short.
     ///
     /// # Errors
-    /// [`Stopped`] if the simulation has ended, which only a panic in another `job` causes.
+    /// Returns [`Stopped`] if the simulation has ended. Only a panic causes such an end.
     ///
     /// # Cancel safety
-    /// Once polled, `job` may run even if the future is dropped.
+    /// If the future is dropped after its first poll, `job` may still run.
     pub async fn with<R: Send + 'static>(
         &self,
         job: impl FnOnce(&mut D) -> R + Send + 'static,

@@ -5,8 +5,8 @@
 //!   └─ too slow, too many: closed      └─ device has a client: refused
 //! ```
 //!
-//! A connection occupies the device from its handshake on, so that a silent connection blocks no
-//! client.
+//! A connection occupies the device only after its handshake, because a silent connection must not
+//! block clients.
 
 use std::time::Duration;
 
@@ -21,12 +21,12 @@ use super::pending::{Handshake, PendingConnections};
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// Longest time for which a client may leave no room for a reply in its queue. A client that does
-/// not read must not block others.
+/// Longest time for which a client's queue may have no room for a reply. A client that does not
+/// read must not block other clients.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Time that a second client waits for the first to disconnect. A client that reconnects may arrive
-/// before its old connection is closed.
+/// Time for which a second client waits until the first client disconnects. A client that
+/// reconnects may arrive before its old connection is closed.
 const HANDOVER: Duration = Duration::from_millis(50);
 
 /// Serves clients until the thread has ended or the task is aborted.
@@ -67,8 +67,8 @@ pub(super) async fn serve(
     }
 }
 
-/// Refuses a second client by resetting its connection. Every client accepts a reset as the end.
-/// After an orderly close, libfranka 0.21 waits indefinitely for its first answer.
+/// Refuses a second client by resetting its connection, because every client understands a reset.
+/// After an orderly close, libfranka 0.21 would wait for its first answer forever.
 fn refuse(second: Handshake, name: &str) {
     let peer = second.peer;
     tracing::warn!(%peer, "refused: the {name} already has a client");
@@ -95,13 +95,13 @@ async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, 
     };
     if orders.send(connect).await.is_ok() {
         transfer(handshake, &orders, replies, name, framing).await;
-        // If the thread has ended, so has the robot.
+        // If the thread has ended, the robot has also ended.
         let _ = orders.send(Order::Disconnect).await;
     }
     tracing::info!(%peer, "client of the {name} disconnected");
 }
 
-/// Moves messages in both directions until the client or the device ends the session.
+/// Passes messages in both directions until the client or the device ends the session.
 async fn transfer(
     handshake: Handshake,
     orders: &mpsc::Sender<Order>,
@@ -134,7 +134,7 @@ async fn transfer(
         }
     };
     let outgoing = async {
-        // The thread drops its end to close the connection.
+        // To close the connection, the thread drops its end of the queue.
         while let Some(reply) = replies.recv().await {
             let sent = timeout(SEND_TIMEOUT, write.write_all(&reply)).await;
             if !matches!(sent, Ok(Ok(()))) {

@@ -1,4 +1,4 @@
-//! A client's stream, divided into messages, with bounds on its slowness.
+//! A client's stream, divided into messages, with time limits.
 
 use std::time::Duration;
 
@@ -10,14 +10,14 @@ use tokio::time::{Instant, timeout_at};
 use crate::connection::Framing;
 
 /// Time limits for a message. Clients write each message in one piece. A message that stops in the
-/// middle must not block other clients. A message on a slow network must not be interrupted.
+/// middle must not block other clients. But a message on a slow network must not be interrupted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patience {
-    /// Longest time to the first byte of a message; no limit if absent.
+    /// Longest time to the first byte of a message; `None` for no limit.
     pub(super) first: Option<Duration>,
-    /// Longest time from one byte to the next.
+    /// Longest time between two bytes.
     pub(super) gap: Duration,
-    /// Longest time from the first byte to the last.
+    /// Longest time between the first byte and the last byte.
     pub(super) total: Duration,
 }
 
@@ -91,7 +91,8 @@ mod tests {
 
     const LONG: Duration = Duration::from_secs(100);
 
-    /// Result for a whole message whose bytes arrive one by one, with this pause between them.
+    /// Returns the result for a whole message whose bytes arrive one by one, with this pause
+    /// between them.
     async fn trickled(patience: Patience, pause: Duration) -> Result<usize, StreamEnd> {
         let (mut client, mut stream) = tokio::io::duplex(64);
         let size = u32::try_from(Header::SIZE + 4).expect("small");
