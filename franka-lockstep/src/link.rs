@@ -104,7 +104,6 @@ impl Link {
         None
     }
 
-    /// Sends a command.
     pub(super) fn send(&mut self, now: Duration, command: &[u8], finishing: bool) {
         if finishing && self.drop_finishing > 0 {
             self.drop_finishing -= 1;

@@ -118,7 +118,6 @@ impl Estimate {
         reflexes
     }
 
-    /// Clears the collisions.
     pub(crate) fn clear(&mut self) {
         self.joint_collision = [false; 7];
         self.cartesian_collision = [false; 6];

@@ -53,7 +53,6 @@ pub(crate) struct RangeErrors {
 }
 
 impl Description {
-    /// The description of a kind.
     pub(crate) fn of(kind: RobotKind) -> &'static Self {
         [&FR3, &FER]
             .into_iter()

@@ -22,7 +22,6 @@ pub(crate) struct JointSignal {
 }
 
 impl JointSignal {
-    /// Returns the signal at rest at `q`.
     pub(crate) fn resting(q: JointVector) -> Self {
         Self {
             q,
@@ -84,7 +83,6 @@ pub(crate) struct CartesianSignal {
 }
 
 impl CartesianSignal {
-    /// Returns the signal at rest at `pose`.
     pub(crate) fn resting(pose: Isometry3<f64>) -> Self {
         Self {
             pose,

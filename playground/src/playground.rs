@@ -41,7 +41,6 @@ pub enum State {
     Stopped,
 }
 
-/// Phase of a session.
 #[derive(Clone, Copy)]
 enum Phase {
     Starting(GoalId),

@@ -100,7 +100,6 @@ impl<'a> ArmModel<'a> {
     }
 }
 
-/// Input of a cycle.
 #[derive(Clone, Copy)]
 pub(crate) enum Input<'a> {
     /// The client's first command of the motion.

@@ -41,7 +41,6 @@ impl Line {
     }
 }
 
-/// Schedule of the stalls.
 #[derive(Debug, Clone)]
 struct Schedule {
     stalls: Stalls,

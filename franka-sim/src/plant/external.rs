@@ -43,7 +43,6 @@ impl External {
 }
 
 impl From<JointVector> for External {
-    /// Constant torques.
     fn from(torque: JointVector) -> Self {
         Self {
             torque,

@@ -68,7 +68,6 @@ use watch::Watch;
 pub struct Robot {
     config: Config,
     kind: &'static Description,
-    /// The controllers' model.
     model: Model,
     /// The configured arm, and the links and axes that result from it.
     arm: Arm,

@@ -60,7 +60,6 @@ pub(super) struct Rules {
 /// Result of one cycle of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// The motion continues.
     Continues,
     /// The client finished the motion.
     Finished,

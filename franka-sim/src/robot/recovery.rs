@@ -6,7 +6,6 @@ use franka_proto::{CommandId, Errors, RecoveryStatus, Reply, RobotMode};
 use super::{Activity, Robot};
 use crate::generator::PointToPoint;
 
-/// A recovery in progress.
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
     /// Id of the request to answer; `None` if its client has disconnected or a person started the

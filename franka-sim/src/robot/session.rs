@@ -181,7 +181,6 @@ impl Robot {
     }
 }
 
-/// An inactive wall.
 const NO_WALL: VirtualWall = VirtualWall {
     object_world_size: [0.0; 3],
     object_frame: [

@@ -34,7 +34,6 @@ pub(super) enum Order {
     },
     /// Bytes of the client's stream.
     Receive(Bytes),
-    /// The client has disconnected.
     Disconnect,
 }
 
@@ -221,7 +220,6 @@ impl<D: Device> DeviceServer<D> {
         let _ = socket.set_nonblocking(true);
     }
 
-    /// True if a client is connected.
     pub(super) fn has_client(&self) -> bool {
         self.client.is_some()
     }

@@ -51,7 +51,7 @@ impl Client {
         let mut buffer = [0; RobotState::MAX_SIZE];
         let received = loop {
             match self.socket.recv(&mut buffer) {
-                // The process was stopped meanwhile.
+                // The process was stopped during the call.
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 received => break received,
             }
@@ -85,13 +85,13 @@ pub(super) fn runtime() -> tokio::runtime::Runtime {
 #[test]
 fn states_keep_coming_while_the_runtime_is_blocked() {
     let runtime = runtime();
-    // The simulator is never further ahead of the client than the client's socket has room for.
+    // The simulator is ahead of the client only by as much as the client's socket can hold.
     let (read, reads) = std::sync::mpsc::channel();
     (0..10).for_each(|_| read.send(()).expect("a receiver"));
     let mut served = false;
     let sim = Sim::fr3().every_millisecond(move |robot| {
         served |= robot.is_connected();
-        // Without a sender the test has ended.
+        // If there is no sender, the test has ended.
         let _ = served.then(|| reads.recv());
     });
     let sim = runtime.block_on(sim.start()).expect("a robot");
@@ -100,7 +100,7 @@ fn states_keep_coming_while_the_runtime_is_blocked() {
     let (blocking, blocked) = std::sync::mpsc::channel();
     runtime.spawn(async move {
         blocking.send(()).expect("the test waits");
-        // Its only thread waits for the end of the test.
+        // The only thread of the runtime waits for the end of the test.
         let _ = released.recv();
     });
     blocked.recv().expect("the runtime runs the task");
@@ -116,7 +116,7 @@ fn states_keep_coming_while_the_runtime_is_blocked() {
 fn jobs_before_and_after_each_state_miss_none() {
     let (sender, seen) = std::sync::mpsc::channel();
     let before = sender.clone();
-    // The robots send nothing once the test has seen enough.
+    // This send fails after the test has ended.
     let sim = Sim::fr3().every_millisecond(move |robot| {
         let _ = before.send(("before", robot.state().message_id));
     });
@@ -144,7 +144,7 @@ fn robots_in_step_share_each_millisecond_until_one_stops() {
             apart.fetch_max(own.abs_diff(other), Ordering::SeqCst);
         }
     };
-    // Up to ten times as fast as the second one, if permitted.
+    // Without synchronisation, this robot would be up to ten times as fast as the second robot.
     let fast = Sim::fr3().virtual_time(Duration::from_millis(1));
     let sims = [fast, Sim::fer()];
     let [first, second] = Sim::in_step(sims);
@@ -180,7 +180,7 @@ fn second_client_is_reset_and_the_next_one_served() {
     assert_eq!(kind, ErrorKind::ConnectionReset);
     first.state();
     drop(first);
-    // At once, and again: the old connection is still closing.
+    // The client reconnects at once, while the old connection is still closing.
     for _ in 0..5 {
         Client::connect(sim.addr()).state();
     }
@@ -215,8 +215,8 @@ fn a_client_that_does_not_read_makes_room_for_the_next() {
     deaf.stream.set_write_timeout(pause).expect("a timeout");
     deaf.socket.set_read_timeout(pause).expect("a timeout");
     deaf.stream.set_nodelay(true).expect("an option");
-    // The description is long: its copies fill every buffer on the path. A few per state, because a
-    // burst would be disconnected at once.
+    // Copies of the long description fill every buffer on the path. The client requests only a few
+    // per state, because a burst would end the session at once.
     let is_connected = || runtime.block_on(sim.with(|robot| robot.is_connected()));
     let (begun, mut room) = (Instant::now(), true);
     while is_connected().expect("running") {
@@ -333,14 +333,14 @@ fn states_to_clients_pass_the_simulated_network() {
     for _ in 0..20 {
         let asked = Instant::now();
         let published = newest();
-        // The question may be answered in mid-cycle: the next state but one is later than the
-        // answer.
+        // The answer may come in the middle of a cycle. The second state after it is certainly
+        // later.
         while client.state().message_id <= published + 1 {}
         assert!(asked.elapsed() >= delay, "{:?}", asked.elapsed());
     }
     let before = newest();
     drop(client);
-    // Datagrams in transit to one client do not reach the next.
+    // Datagrams in transit to one client must not reach the next client.
     let next = Client::connect(sim.addr());
     assert!(next.state().message_id > before);
 }
@@ -447,7 +447,7 @@ fn robots_share_a_process() {
     }
 }
 
-/// The hand's server moves the fingers on the robot's flange, in one process with the arm.
+/// The hand's server moves the fingers on the robot's flange, in the same process as the arm.
 #[cfg(feature = "mujoco")]
 #[test]
 fn a_hand_on_sockets_moves_the_fingers_in_the_scene() {

@@ -60,9 +60,11 @@ fn an_offset_of_the_torque_sensors_shows_and_pulls() {
     });
     pair.idle(1000);
     let shown = pair.state.tau_ext_hat_filtered[1].abs();
-    // The robot's own controller holds the arm: the sensor reads its weight and the offset.
+    // The robot's own controller holds the arm, so the sensor reads the weight of the arm plus the
+    // offset.
     assert!((shown - offset).abs() < 0.02, "{shown}");
-    // Under torque control nothing holds it: the torque loop interprets the offset as torque.
+    // Under torque control nothing holds the arm, because the torque loop interprets the offset as
+    // torque.
     let before = pair.robot.q()[1];
     pair.start_torques();
     for _ in 0..300 {
@@ -97,7 +99,7 @@ fn a_torque_acts_after_the_delay_and_then_with_the_lag() {
             .iter()
             .position(|gain| gain.abs() > 1e-9)
             .expect("it moves");
-        // The first command answers a state that the motion has begun with already.
+        // The first command answers the first state of the motion.
         let immediate = delay as usize - 1;
         assert_eq!(first, immediate, "{delay} cycles, {lag} s");
         // The lag causes the deviation from constant acceleration.
@@ -122,7 +124,7 @@ fn the_state_has_the_models_pose_and_the_robot_the_true_one() {
     let ideal = Pair::fr3().robot.true_pose().translation.vector;
     assert!((shown - ideal).norm() < 1e-4, "{shown} {ideal}");
     assert!((truth - ideal).norm() > 2e-3, "{truth} {ideal}");
-    // A wall between the end effector's true and reported positions.
+    // The wall is between the end effector's true and reported positions.
     let apart = shown.z - truth.z;
     assert!(apart.abs() > 1e-3, "{apart}");
     let wall = Vector3::new(0.0, 0.0, truth.z + 0.5 * apart);
@@ -168,7 +170,7 @@ fn reported_pose_is_separate_from_the_links_true_pose() {
                 apart > 2e-3
             };
             assert!(is_expected, "{apart} m apart with an error of {error} m");
-            // The description has the lengths.
+            // The description must contain the lengths.
             let text = pair.robot.description().expect("an FR3 serves one");
             let expected = format!("xyz=\"0 -{} 0\"", geometry.lengths.upper_arm);
             assert!(text.contains(&expected), "{expected}");
@@ -213,7 +215,7 @@ fn torques_come_in_quanta_and_noise_is_as_large_as_the_arm_says() {
         "{}",
         deviation(&dq)
     );
-    // The robot's own controller answers the noise of position and velocity, too.
+    // The robot's own controller also reacts to the noise of position and velocity.
     assert!(
         (0.055..0.15).contains(&deviation(&tau)),
         "{}",

@@ -40,7 +40,7 @@ fn commands_at_the_nominal_bounds_pass_on_both_histories() {
             if published {
                 (v, a) = (pair.state.dq_d[0], pair.state.ddq_d[0]);
             }
-            // As a client's limiter: nominal values less its margin.
+            // These are the limits of a client's limiter: nominal values minus its margin.
             a = (a + 4999.999e-3_f64).min(9.999);
             v += a * 1e-3;
             let mut command = RobotCommand::default();
@@ -81,7 +81,7 @@ fn the_velocity_envelope_closes_towards_the_limit() {
         command.dq_c[0] += 0.005;
         pair.tick(Some(command));
     }
-    // The envelope there: sqrt(2 · 6 · 0.25) - 0.3 and less.
+    // The velocity envelope at this position is sqrt(2 · 6 · 0.25) - 0.3 or less.
     assert!(command.dq_c[0] > 1.0 && command.dq_c[0] < 1.44);
     pair.assert_reflex(id, &[E::JointMotionGeneratorVelocityLimitsViolation]);
 }
@@ -126,7 +126,7 @@ fn a_cartesian_ramp_may_be_too_fast_for_the_joints_alone() {
     let (mut pair, id) = cartesian(MoveGeneratorMode::CartesianVelocity);
     let mut command = RobotCommand::default();
     while pair.state.robot_mode == RobotMode::Move {
-        // 3.2 m/s² is allowed in space, and joint 2 alone takes 3.2 rad per metre.
+        // Cartesian limits permit 3.2 m/s², but joint 2 must turn by 3.2 rad per metre.
         command.O_dP_EE_c[0] += 3.2e-3;
         pair.tick(Some(command));
     }
@@ -217,7 +217,7 @@ fn lost_commands_are_extrapolated_and_twenty_end_the_motion() {
         MoveControllerMode::JointImpedance,
         MoveGeneratorMode::JointVelocity,
     );
-    // Nothing is lost before the first command.
+    // No command counts as lost before the first command.
     pair.idle(50);
     let mut command = RobotCommand::default();
     for cycle in 1..=50 {
@@ -314,7 +314,7 @@ fn more_torque_than_a_sensor_reads_is_noticed() {
 
 #[test]
 fn losses_right_after_the_first_command_leave_no_trace() {
-    // From positions that single precision rounds.
+    // Single precision rounds these positions.
     let q = READY + JointVector::repeat(0.123_456_789);
     for generator in [
         MoveGeneratorMode::JointPosition,

@@ -52,7 +52,7 @@ fn one_abort_carries_every_error_of_its_cycle() {
         ],
     );
     assert_eq!(pair.state.reflex_reason, pair.state.errors);
-    // Nothing of the command has been taken over.
+    // The command had no effect.
     let moved = JointVector::from(pair.state.q_d) - READY;
     assert!(moved.amax() < 1e-6, "{moved}");
 }
@@ -76,7 +76,7 @@ fn joint_position_error_is_named_by_robot_generation() {
         q[0] = limits.hard_upper[0] - 1e-5;
         pair.robot.place(&q);
         pair.tick(None);
-        // As the state has it, rounded or not.
+        // The position in the state may be rounded.
         q = JointVector::from(pair.state.q_d);
         pair.start_joints();
         pair.tick(Some(positions(&q)));
@@ -147,7 +147,7 @@ fn asynchronous_target_is_the_newest_of_its_millisecond() {
     }
     pair.idle(1000);
     assert!((pair.q()[0] - 0.1).abs() < 1e-3, "{}", pair.q());
-    // Commands after the finish belong to no motion.
+    // Commands after the end belong to no motion.
     for command in [finished(at(0.1)), at(-0.1)] {
         pair.datagram(&RobotCommand {
             message_id: pair.state.message_id,
@@ -173,14 +173,14 @@ fn an_asynchronous_motion_keeps_the_velocities_of_its_move() {
     pair.tick(Some(positions(&target)));
     let mut fastest = 0.0_f64;
     for _ in 0..1500 {
-        // No command comes for any of these cycles.
+        // No command arrives in any of these cycles.
         pair.tick(None);
         fastest = fastest.max(pair.state.dq_d[0]);
     }
     assert_eq!(pair.state.robot_mode, RobotMode::Move);
     assert!(fastest > 0.15 && fastest <= 0.3 + 1e-6, "{fastest}");
     assert!((JointVector::from(pair.state.q_d) - target).amax() < 1e-6);
-    // The reference client ends with seven zeros, and late.
+    // The last command of libfranka contains seven zeros, and comes late.
     let mut end = finished(RobotCommand::default());
     end.message_id = pair.state.message_id - 3;
     pair.datagram(&end);

@@ -35,7 +35,7 @@ fn declare(load: &Load) -> Request {
 
 fn felt(state: &RobotState) -> Vector3<f64> {
     let [x, y, z, ..] = state.O_F_ext_hat_K;
-    // The state has the robot's action on the hand.
+    // The state contains the force of the robot on the hand.
     -Vector3::new(x, y, z)
 }
 
@@ -85,7 +85,7 @@ fn acceleration_phases_have_thresholds_of_their_own() {
         for cycle in 0..700 {
             let mut q = READY;
             if moves {
-                // More than 1 rad/s² from 0.1 s to 0.25 s.
+                // The acceleration exceeds 1 rad/s² from 0.1 s to 0.25 s.
                 q[0] += 0.1 * ramp(f64::from(cycle) * 1e-3, 0.6);
             }
             if cycle == 100 {
@@ -164,10 +164,11 @@ fn the_wrench_is_told_at_the_stiffness_frame() {
     pair.idle(500);
     let seen = pair.state.wrench_at_stiffness_frame();
     assert!((seen[0] + 4.0).abs() < 0.1, "{seen:?}");
-    // The tool points down, so the force acts above the frame's origin: about y.
+    // The tool points down. The force therefore acts above the frame's origin, with a torque about
+    // y.
     assert!((seen[4] + 4.0 * lever).abs() < 0.05, "{seen:?}");
-    // In the axes of the base the torque is about the base's origin, with the flange as the lever,
-    // for any stiffness frame.
+    // With every stiffness frame, the torque in base axes is about the base's origin, and the lever
+    // is the position of the flange.
     let [x, y, z] = pair.position();
     let moment = Vector3::new(x, y, z).cross(&Vector3::new(-4.0, 0.0, 0.0));
     let about_base = Vector3::from_column_slice(&pair.state.O_F_ext_hat_K[3..]);
@@ -177,7 +178,7 @@ fn the_wrench_is_told_at_the_stiffness_frame() {
 #[test]
 fn the_wrench_is_zero_near_a_singularity_of_either_robot() {
     for kind in RobotKind::ALL {
-        // Smallest singular values of the flange's Jacobian below and above the bound.
+        // The smallest singular value of the flange's Jacobian is compared with the bound.
         let least = |q: &JointVector| {
             let jacobian = Model::of(kind).zero_jacobian(Frame::Flange, q, &EndEffector::default());
             let gram = jacobian * jacobian.transpose();
@@ -253,7 +254,7 @@ fn contact_comes_and_goes_and_collision_stays_until_recovery() {
     pair.robot.push_joints(push, 2000);
     let mut contact = false;
     for _ in 0..500 {
-        // A stiff hold, so that the push is felt and does not only move the arm.
+        // The client holds the arm firmly. Otherwise the push would only move the arm.
         let error = READY - pair.q();
         let dq = JointVector::from(pair.state.dq);
         let wish = error * 400.0 - dq * 20.0;

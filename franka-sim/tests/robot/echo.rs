@@ -46,7 +46,7 @@ fn q_d_of_cartesian_motion_is_the_ik_of_the_command() {
         assert!((state.O_T_EE_c[14] - command.O_T_EE_c[14]).abs() < 1e-6);
         assert!((state.O_T_EE_d[14] - command.O_T_EE_c[14]).abs() < 1e-6);
     });
-    // The measured joints are others, which lag.
+    // The measured joints lag behind the desired joints.
     assert!((JointVector::from(pair.state.q_d) - READY).amax() > 0.05);
 }
 
@@ -102,7 +102,7 @@ fn lost_commands_leave_an_elbow_that_rests_where_it_is() {
 fn o_t_ee_d_is_of_desired_joints_outside_cartesian_motion() {
     let mut pair = Pair::fr3();
     pair.start_joints();
-    // Pushed off its path, the arm is elsewhere.
+    // The push moves the arm off its path.
     pair.robot
         .touch(Touch::force(Vector3::new(0.0, 0.0, -15.0)));
     for _ in 0..500 {
@@ -181,7 +181,7 @@ fn accelerometers_feel_gravity_and_their_own_motion() {
         let mut q = READY;
         q[0] += 0.2 * ramp(f64::from(cycle) * 1e-3, 0.5);
         pair.tick(Some(positions(&q)));
-        // Board 5 is some 0.2 m from the axis of joint 1, which turns with up to 4.6 rad/s².
+        // Board 5 is about 0.2 m from the axis of joint 1, whose acceleration is up to 4.6 rad/s².
         most = most.max(norm(pair.state.accelerometer_top[5]));
     }
     assert!(most > 9.85, "{most}");
@@ -211,7 +211,7 @@ fn fields_that_joint_setpoints_do_not_use_are_zero() {
         let mut pair = Pair::of(kind);
         assert!(!unused(&pair.state).0, "outside of motions it is a pose");
         pair.start_joints();
-        // The controller carries the arm against a push.
+        // The controller holds the arm against a push.
         pair.robot
             .push_end_effector(Wrench::new(0.0, 4.0, 0.0, 0.0, 0.0, 0.0), 200);
         for _ in 0..100 {

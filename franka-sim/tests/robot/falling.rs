@@ -1,5 +1,5 @@
-//! A hand that descends to a table, on every plant. The configured thresholds stop it. Thresholds
-//! that are 30 % higher do not.
+//! A hand that descends to a table, on every plant. The configured thresholds stop the hand, but
+//! thresholds that are 30 % higher do not.
 
 use std::any::Any;
 
@@ -57,7 +57,7 @@ impl Threshold {
     }
 }
 
-/// Fingertips 9 cm above the base, pointing down.
+/// Returns a robot whose fingertips are 9 cm above the base and point down.
 fn above_the_table() -> Config {
     Config {
         q: JointVector::from([0.0, 0.37, 0.0, -2.35, 0.0, 2.72, 0.785]),
@@ -66,7 +66,6 @@ fn above_the_table() -> Config {
     }
 }
 
-/// Kind of descent.
 #[derive(Debug, Clone, Copy)]
 enum Descent {
     /// The client commands 0.1 m/s, to a point 3 cm below the table.
@@ -85,7 +84,7 @@ struct Landing {
     state: RobotState,
 }
 
-/// Lets the hand descend to the table of the scene. Without a scene, it is a table that only the
+/// Lets the hand descend to the table of the scene, or without a scene to a table that only the
 /// fingertips can touch.
 fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing {
     pair.request(&Request::SetCollisionBehavior(threshold.behavior()));

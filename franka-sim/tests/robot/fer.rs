@@ -55,7 +55,7 @@ fn get_cartesian_limit_tells_the_walls_that_there_are() {
         assert_eq!(status, Status::Setter(SetterStatus::Success));
         seen.push(pair.sizes[pair.sizes.len() - 1]);
     }
-    // Status, corner, frame and flag behind the header.
+    // The header is followed by status, corner, frame and flag.
     assert_eq!(seen, [12 + 1 + 3 * 8 + 16 * 8 + 1; 2]);
     assert_eq!(pair.wall(3), wall());
     assert!(!pair.wall(0).object_activation);
@@ -96,7 +96,7 @@ fn the_end_effector_stays_within_an_active_wall() {
     let (mut pair, id) = rise(walled(true), 0.1);
     pair.assert_reflex(id, &[E::CartesianPositionLimitsViolation]);
     pair.recover();
-    // Back in is always possible.
+    // A motion back into the box is always possible.
     let (pair, _) = rise(pair, -0.05);
     assert_eq!(
         pair.state.robot_mode,
@@ -195,7 +195,7 @@ fn torques_come_beside_a_generator_of_zero_velocities() {
         pair.state.controller_mode,
         ControllerMode::ExternalController
     );
-    // No number is rounded on the way.
+    // The protocol rounds no number.
     assert_eq!(JointVector::from(pair.state.tau_J_d), tau);
     for _ in 0..100 {
         pair.tick(Some(torques(&tau)));
@@ -231,8 +231,8 @@ fn states_carry_what_is_commanded_to_the_last_digit() {
     assert_eq!(pair.outcome(id), MoveStatus::Success);
 }
 
-/// Accelerates joint `joint` of an arm of `kind` to the acceleration `ddq` within its jerk limit.
-/// Returns the errors within 50 ms.
+/// Accelerates joint `joint` of an arm of `kind` to the acceleration `ddq`, within its jerk limit.
+/// Returns the errors that occur within 50 ms.
 fn accelerate(kind: RobotKind, joint: usize, ddq: f64) -> Errors {
     let mut pair = Pair::of(kind);
     pair.start_joints();

@@ -1,4 +1,4 @@
-//! Firm touches on every family of arms, on every plant: an arm at rest stays at rest.
+//! Firm touches on every family of arms, on every plant. An arm at rest must stay at rest.
 
 use franka_model::{Frame, READY, Wrench};
 use nalgebra::Vector3;
@@ -10,8 +10,8 @@ use franka_sim::config::Tool;
 use franka_sim::{Arm, Touch};
 
 /// Calls `test` for the ideal arm, the central arm of each family with elastic joints, and some
-/// random arms of each family. Each arm is tested with and without a Hand, in another pose. The
-/// text describes the arm.
+/// random arms of each family. Each arm is tested with and without a Hand, and in a different pose.
+/// The text describes the arm.
 fn for_each_arm(seeds: u64, test: impl Fn(&str, &mut Pair)) {
     let families = [("realistic", Family::realistic()), ("bad", Family::bad())];
     let mut poses = poses().into_iter().cycle();
@@ -132,7 +132,7 @@ fn grip_yields_by_force_over_stiffness_until_released() {
         let push = pair.robot.touch(Touch::force(force));
         pair.idle(1000);
         let moved = end_effector(pair) - before;
-        // The joints' friction and damping help to hold.
+        // The joints' friction and damping also hold the arm.
         assert!((moved.y - 1e-3).abs() < 4e-4, "{name}: {moved}");
         assert!(pair.robot.dq().amax() < 0.01, "{name}");
         assert!(pair.robot.release(push) && pair.robot.release(grip));
@@ -182,7 +182,7 @@ fn a_wall_stops_an_arm_that_is_pushed_into_it_and_does_not_pull() {
         assert!(off.abs() < 1.0, "{name}: {felt}, {deep} m deep");
         pair.robot.release(push);
         for _ in 0..500 {
-            // Away again, fast: all at once, which tears the wall along for a step.
+            // A sudden pull moves the arm away fast; the wall follows for one step.
             let lift = Touch::force(Vector3::new(0.0, 0.0, 40.0)).lasting(1);
             pair.robot.touch(lift);
             pair.tick(None);

@@ -4,7 +4,7 @@ use franka_model::CYCLE;
 
 use crate::pair::*;
 
-/// The values that a kind of motion commands, and their differences, as the state contains them.
+/// The values that a kind of motion commands, and their derivatives, as in the state.
 struct Channel {
     name: &'static str,
     generator: MoveGeneratorMode,
@@ -13,7 +13,7 @@ struct Channel {
     command: fn(&RobotState, f64) -> RobotCommand,
     /// Returns the commanded value, its velocity and its acceleration.
     told: fn(&RobotState) -> [f64; 3],
-    /// Distance from the start after 0.6 s; for a velocity, the speed.
+    /// Distance from the start after 0.6 s, or the speed if the command is a velocity.
     way: f64,
     /// True if the command is a velocity.
     is_rate: bool,
@@ -99,7 +99,7 @@ fn underway(channel: &Channel, kind: RobotKind) -> (Pair, RobotState) {
     (pair, start)
 }
 
-/// Returns the command of a cycle, whether it is then lost or not.
+/// Returns the command of a cycle, which may then be lost.
 fn nominal(channel: &Channel, start: &RobotState, cycle: u32) -> RobotCommand {
     let shift = channel.way * ramp(f64::from(cycle) * CYCLE, 0.6);
     (channel.command)(start, shift)
@@ -124,7 +124,7 @@ fn lost_command_is_bridged_with_the_last_acceleration() {
                     (told_acceleration - acceleration) * CYCLE,
                 ];
                 for (n, off) in off.into_iter().enumerate() {
-                    // States of protocol 10 carry single precision.
+                    // States of protocol 10 have single precision.
                     assert!(
                         off.abs() < 1e-6,
                         "{kind:?} {}, {lost} lost, derivative {n}: {off} off",
@@ -175,7 +175,8 @@ fn bridged_commands_must_keep_the_limits() {
             MoveGeneratorMode::JointVelocity,
         );
         let mut command = RobotCommand::default();
-        // Up to 9 rad/s², within the jerk, until just below the limit.
+        // The acceleration rises to 9 rad/s² within the jerk limit, until the velocity is just
+        // below its limit.
         let mut acceleration = 0.0_f64;
         while command.dq_c[0] < limits.velocity[0] - 0.04 {
             acceleration = (acceleration + 1.0).min(9.0);

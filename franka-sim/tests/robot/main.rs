@@ -1,5 +1,5 @@
-//! Tests of the simulated robot in virtual time, through the sessions of both sides and the bytes
-//! between them. Some tests cover behaviour that earlier simulators lacked.
+//! Tests of the simulated robot in virtual time. They use the protocol sessions of client and
+//! robot, and the bytes between them.
 //!
 //! | module | content |
 //! |---|---|

@@ -60,7 +60,7 @@ fn the_reply_to_a_recovery_comes_when_the_arm_is_at_rest() {
         pair.tick(Some(command));
     }
     assert!(pair.state.dq[0] > 1.7);
-    // The next cycle has a command that ends the motion.
+    // The command of the next cycle ends the motion.
     pair.robot.trip(E::PowerLimitViolation);
     assert!(pair.recover() > 150, "it takes longer to stop");
     assert!(pair.robot.dq().amax() < 0.01, "{}", pair.robot.dq());
@@ -80,7 +80,7 @@ fn an_arm_outside_its_limits_takes_a_manual_recovery() {
         assert_eq!(pair.ask(&Request::AutomaticErrorRecovery), manual);
         pair
     };
-    // In Desk.
+    // First case: recovery in Desk.
     let mut pair = outside();
     pair.robot.recover_manually();
     let mut fastest = 0.0_f64;
@@ -93,7 +93,7 @@ fn an_arm_outside_its_limits_takes_a_manual_recovery() {
     assert_eq!(pair.state.robot_mode, RobotMode::Idle);
     pair.start_joints();
 
-    // Or by hand: guided back, then recovered by the client.
+    // Second case: a person guides the arm back, and then the client recovers the robot.
     let mut pair = outside();
     assert!(pair.robot.guide(true));
     let hand = pair.robot.touch(push(0, -3.0));
@@ -178,7 +178,7 @@ fn guiding_moves_only_what_set_guiding_mode_has_unlocked() {
         pair.idle(500);
         Vector3::from(pair.position()) - before
     };
-    // The hand's x axis points forwards, its y axis to the right.
+    // The hand's x axis points forwards, and its y axis points to the right.
     let x_only = pushed([true, false, false, false, false, false]);
     assert!(x_only.x > 0.02 && x_only.y.abs() < 0.005, "{x_only}");
     let y_only = pushed([false, true, false, false, false, false]);
@@ -274,7 +274,7 @@ fn too_much_power_is_an_error() {
     let mut errors = Errors::NONE;
     for cycle in 0..800 {
         let mut q = READY;
-        // Upwards, against gravity.
+        // This motion is upwards, against gravity.
         q[3] += 0.5 * ramp(f64::from(cycle) * 1e-3, 0.7);
         pair.tick(Some(positions(&q)));
         errors = errors.union(pair.state.errors);
@@ -287,7 +287,7 @@ fn too_much_power_is_an_error() {
 fn a_controller_that_makes_a_joint_shake_is_an_error() {
     let mut pair = Pair::fr3();
     let id = pair.start_torques();
-    // 42 Hz on the light last joint: a damper with the wrong phase.
+    // The last joint, which is light, oscillates with 42 Hz, as with a damper of the wrong phase.
     let mut tau = JointVector::zeros();
     for cycle in 0..400 {
         let phase = core::f64::consts::TAU * 42.0 * f64::from(cycle) * 1e-3;
@@ -341,7 +341,7 @@ fn the_arm_stops_before_it_hits_itself_and_may_leave() {
     pair.recover();
     pair.tick(None);
 
-    // Out of the margin it may go, further in it may not.
+    // The arm may leave the margin, but it may not go further into it.
     let mut again = Pair::new(with_hand(*pair.robot.q()));
     let id = again.start_joints();
     fold(&mut again, -0.1, 1000);
@@ -368,7 +368,7 @@ fn a_push_on_any_link_moves_the_arm_and_a_grip_holds_it() {
     pair.idle(800);
     let held = Vector3::from(pair.position()) - before;
     assert!(held.norm() < 5e-3, "{held}");
-    // The elbow still yields.
+    // The elbow still yields to the push.
     assert!((pair.q() - READY).amax() > 0.05, "{}", pair.q() - READY);
     pair.robot.release(grip);
     assert!(!pair.robot.release(grip));

@@ -86,7 +86,7 @@ fn extrapolation_of_orientation() {
     assert_eq!(default, Extrapolation::BaseAxes);
     let (before, after, _) = turn(default);
     assert!(after > before);
-    // About one axis both are the same.
+    // For a rotation about a constant axis, both extrapolations are equal.
     assert_eq!(turn(Extrapolation::BodyAxes).1, after);
     let (_, _, mode) = turn(Extrapolation::Held);
     assert_eq!(mode, RobotMode::Reflex, "which costs a step in velocity");
@@ -94,7 +94,7 @@ fn extrapolation_of_orientation() {
 
 #[test]
 fn filters_of_the_robots_own() {
-    // A ramp of 0.1 rad/s within a tenth of a second.
+    // The velocity rises to 0.1 rad/s within a tenth of a second.
     let drive = |mut pair: Pair| {
         pair.start(
             MoveControllerMode::JointImpedance,
@@ -232,7 +232,7 @@ fn the_largest_load_and_frames_that_setters_take() {
 
 #[test]
 fn the_axes_of_force_thresholds() {
-    // Low along y only, and the hand turned by 45 degrees against the base.
+    // Only the threshold along y is low. The hand is turned by 45 degrees relative to the base.
     let mut q = READY;
     q[6] += std::f64::consts::FRAC_PI_4;
     let thresholds = CollisionBehavior::uniform(
@@ -258,10 +258,10 @@ fn the_axes_of_force_thresholds() {
         }
         pair.state.errors.contains(E::CartesianReflex)
     };
-    // Along the base's y by 12 N: 8.5 N along either axis of the hand.
+    // 12 N along the base's y are 8.5 N along each axis of the hand.
     assert!(stops(None, 0.0, 12.0));
     assert!(!stops(Some(ForceAxes::Stiffness), 0.0, 12.0));
-    // Along the base's x it is the other way round: one hand's axis is beyond its own 10 N.
+    // 16 N along the base's x exceed only the threshold of 10 N along the hand's y.
     assert!(!stops(None, 16.0, 0.0));
     assert!(stops(Some(ForceAxes::Stiffness), 16.0, 0.0));
 }
@@ -276,7 +276,7 @@ fn the_velocity_at_which_torques_may_finish() {
             pair.tick(Some(torques(&tau)));
         }
         let mut last = finished(torques(&tau));
-        // Protocol 5 has the other flag only.
+        // Protocol 5 has no flag for torques.
         last.torque_command_finished = pair.robot.version() == Version::V10;
         pair.tick(Some(last));
         (pair.outcome(id), pair.state.errors)

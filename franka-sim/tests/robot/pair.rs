@@ -1,4 +1,4 @@
-//! A client and a robot in one thread. Time is a counter.
+//! A client and a robot in one thread. A counter represents time.
 
 pub(crate) use franka_model::{JointVector, RobotKind};
 pub(crate) use franka_proto::{
@@ -129,7 +129,7 @@ impl Pair {
         self.wall
     }
 
-    /// Runs one cycle: the command answers the newest state, then the next state arrives.
+    /// Runs one cycle: the command answers the newest state, and then the next state arrives.
     pub(crate) fn tick(&mut self, command: Option<RobotCommand>) {
         if let Some(command) = command {
             self.datagram(&RobotCommand {

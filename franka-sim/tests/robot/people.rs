@@ -65,7 +65,7 @@ fn spring_pulls_wall_stops_and_block_holds_a_joint() {
             .touch(Touch::force(Vector3::new(0.0, 0.0, -10.0)));
         pair.idle(4000);
         let deep = ground.z - hand(pair).z;
-        // 10 N on a wall that yields by a millimetre under 20 N.
+        // The force is 10 N, and the wall yields by a millimetre under 20 N.
         assert!((deep - 0.5e-3).abs() < 0.2e-3, "{name}: {deep} m deep");
         pair.robot.let_go();
 
@@ -185,14 +185,14 @@ fn fitted_arm_keeps_posture_and_load_of_the_former_one() {
         let q = *pair.robot.q();
         pair.robot.fit(Arm::bad(kind));
         assert_eq!(*pair.robot.q(), q, "{name}");
-        // The geometry of the states stays: clients have read it.
+        // The geometry of the states does not change, because clients have read it.
         let mut fitted = Arm::bad(kind);
         fitted.body.state_geometry = StateGeometry::DESCRIBED;
         assert_eq!(pair.robot.config().arm, Some(fitted), "{name}");
         pair.idle(1500);
         assert_eq!(pair.outcome(motion), MoveStatus::Preempted, "{name}");
         assert_eq!(pair.state.robot_mode, RobotMode::Idle, "{name}");
-        // The undeclared part of a bad arm's load.
+        // This is the undeclared part of a bad arm's load.
         let more = felt(pair) - before;
         assert!(more.abs() > 0.3, "{name}: {more} N");
         pair.robot.fit(Arm::ideal(kind));
@@ -217,7 +217,7 @@ fn moving_spring_leads_the_hand_and_tells_its_force() {
         let off = hand(pair) - path(1.0);
         assert!(off.norm() < 3e-3, "{name}: {off}");
         let felt = pair.robot.felt(lead).expect("it has not ended");
-        // Damper and spring, at the end of a millisecond instead of on the mean.
+        // This is the force at the end of the millisecond, not its mean.
         let expected = off.y * -2000.0;
         assert!(
             (felt.y - expected).abs() < 1.0,

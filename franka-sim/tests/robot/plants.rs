@@ -1,4 +1,4 @@
-//! Robots for tests of the physics: every kind on every plant.
+//! Robots for tests of the physics, of every kind and on every plant.
 
 #[cfg(feature = "mujoco")]
 use franka_sim::plant::{MujocoArm, Scene};
@@ -7,7 +7,7 @@ use crate::pair::*;
 use franka_sim::config::Tool;
 
 /// Returns a robot of every kind on every plant, with its client and a description. Robots in
-/// MuJoCo stand on the table. If the Hand is the tool, they have its body and fingers.
+/// MuJoCo stand on the table. If the tool is the Hand, the scene includes its body and fingers.
 pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     let mut robots = Vec::new();
     for kind in RobotKind::ALL {
@@ -30,7 +30,7 @@ pub(crate) fn robots(config: &Config) -> Vec<(String, Pair)> {
     robots
 }
 
-/// Like [`robots`], with a bare flange and with a Hand.
+/// Like [`robots`], both with a bare flange and with a Hand.
 pub(crate) fn robots_with_and_without_hand() -> Vec<(String, Pair)> {
     let tools = [("bare", Tool::NONE), ("Hand", Tool::hand())];
     let with = |(name, tool): (&str, Tool)| {

@@ -1,5 +1,5 @@
-//! The robot's estimate of a push on the flange, and the displacement of an impedance, on every
-//! plant.
+//! Pushes on the flange on every plant: the force that the robot estimates, and how far an
+//! impedance yields.
 
 use franka_model::{Frame, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -14,10 +14,10 @@ const PUSH: f64 = 5.0;
 /// Stiffness of the yielding impedances, `[N/m]`.
 const STIFFNESS: f64 = 750.0;
 
-/// Number of cycles in which an impedance yields to a push, or returns, to within a hundredth.
+/// Number of cycles until an impedance has yielded to a push, or has returned, except for a
+/// hundredth of the distance.
 const SETTLING: usize = 1500;
 
-/// Returns directions of a push.
 fn directions() -> [Vector3<f64>; 5] {
     [
         [1.0, 0.0, 0.0],

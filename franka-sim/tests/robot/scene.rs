@@ -14,7 +14,7 @@ use franka_sim::{Config, Tool};
 /// Position of the fingertips in the ready pose: x and z, `[m]`.
 const TCP: (f64, f64) = (0.306_89, 0.486_88);
 
-/// A robot with a hand, and the client of both. They share one counter of time.
+/// A robot with a hand, and the client of both. One counter represents time.
 struct Cell {
     pair: Pair,
     hand: Hand,
@@ -179,7 +179,7 @@ fn box_is_grasped_lifted_and_felt() {
         let felt = cell.weight() - before;
         println!("{kind:?}: lifted by {lifted} m, slipped by {slipped} m, weighs {felt} N");
         assert!((felt - 0.2 * 9.81).abs() < 0.1, "{kind:?}: {felt} N");
-        // After the release, it is no longer there.
+        // After the release, the box is no longer in the hand.
         let open = gripper::Move {
             width: 0.07,
             speed: 0.1,

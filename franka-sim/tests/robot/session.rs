@@ -24,7 +24,7 @@ fn the_first_state_is_consistent() {
         assert!((state.theta[i] - state.q[i]).abs() < 0.01);
         assert!(state.tau_ext_hat_filtered[i].abs() < 1e-6);
     }
-    // Board 0 lies flat: gravity is along its axis.
+    // Board 0 is horizontal, so gravity acts along its axis.
     assert_eq!(state.accelerometer_bottom[0], [0.0, 0.0, 9.81]);
 }
 
@@ -165,7 +165,7 @@ fn move_sent_after_a_stop_begins_with_the_arm_at_rest() {
     assert_eq!(pair.statuses(second), [started]);
 }
 
-/// The client sends asynchronous targets only once, so it has no second chance to answer.
+/// The client sends each asynchronous target only once, so this target must not be lost.
 #[test]
 fn first_state_of_a_motion_after_braking_can_be_answered() {
     let mut pair = Pair::fr3();
@@ -180,7 +180,8 @@ fn first_state_of_a_motion_after_braking_can_be_answered() {
     pair.begin(request);
     pair.tick(Some(positions(&home.add_scalar(0.2))));
     pair.idle(200);
-    // Finished in mid-motion: the arm brakes, and the next motion waits for its end.
+    // The client finishes in the middle of the motion. The arm brakes, and the next motion waits
+    // until the arm has stopped.
     pair.tick(Some(RobotCommand {
         motion_generation_finished: true,
         ..RobotCommand::default()

@@ -76,7 +76,7 @@ fn huge_setter_values_move_no_standing_arm() {
         let mut pair = kind();
         for value in [1e6, 1e20, 1e300] {
             for request in large(value) {
-                // Very large thresholds are never reached, and harmless.
+                // Very large thresholds are harmless, because they are never reached.
                 let expected = match request {
                     Request::SetCollisionBehavior(_) => SUCCESS,
                     _ => INVALID,
@@ -171,7 +171,7 @@ fn a_threshold_of_zero_is_always_reached() {
 fn a_joint_stiffness_of_zero_is_an_arm_that_only_carries_itself() {
     let mut pair = Pair::fr3();
     assert_eq!(pair.ask(&Request::SetJointImpedance([0.0; 7])), SUCCESS);
-    // The documented ranges of the Cartesian one begin above zero.
+    // The documented ranges of the Cartesian stiffness begin above zero.
     assert_eq!(pair.ask(&Request::SetCartesianImpedance([0.0; 6])), INVALID);
     pair.start_joints();
     for _ in 0..500 {
@@ -210,7 +210,7 @@ fn in_a_motion_no_setter_is_possible() {
     ] {
         assert_eq!(pair.ask(&request), NOT_POSSIBLE, "{request:?}");
     }
-    // The description may be asked for at any time.
+    // A client may request the description at any time.
     let id = pair.request(&Request::GetRobotModel);
     assert_eq!(pair.statuses(id).len(), 1);
 }

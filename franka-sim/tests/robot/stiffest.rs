@@ -6,7 +6,7 @@ use crate::plants::robots;
 /// Calls `test` for every robot with a bare flange, which is the least stable case.
 fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     let config = Config {
-        // This is about the gains. A blow must not cause a reflex.
+        // The test is about gains, so an impact must not cause a reflex.
         enforce_limits: false,
         ..Config::default()
     };
@@ -15,8 +15,7 @@ fn for_each_plant(test: impl Fn(&mut Pair, &str)) {
     }
 }
 
-/// Applies a blow to every joint. Returns the largest speed of any joint half a second later,
-/// `[rad/s]`.
+/// Hits every joint. Returns the largest speed of any joint half a second later, `[rad/s]`.
 fn ringing(pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) -> f64 {
     let blow = JointVector::from([20.0, -20.0, 20.0, 20.0, -5.0, 5.0, 3.0]);
     pair.robot.push_joints(blow, 20);
@@ -54,14 +53,14 @@ fn the_stiffest_cartesian_impedance_does_not_ring() {
         );
         let hold = pair.q_d();
         let fastest = ringing(pair, |_| positions(&hold));
-        // Motion in the null space of the task is only damped.
+        // Motion in the null space of the task has only damping.
         assert!(fastest < 2e-2, "{name}: {fastest} rad/s");
     });
 }
 
-/// The client applies its gains once per millisecond, to a state that is one cycle old. They come
-/// from libfranka 0.21, `joint_impedance_control.cpp`. The second case has four times this
-/// stiffness and twice this damping.
+/// The client applies its gains once per millisecond, to a state that is one cycle old. The gains
+/// are from libfranka 0.21, `joint_impedance_control.cpp`. The second case uses four times the
+/// stiffness and twice the damping.
 #[test]
 fn a_clients_stiff_impedance_does_not_ring() {
     for factor in [1.0, 2.0] {

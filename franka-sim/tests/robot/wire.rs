@@ -13,7 +13,7 @@ fn a_client_of_protocol_5_connects_to_a_robot_of_protocol_5() {
     ] {
         let mut pair = Pair::of(kind);
         assert_eq!(pair.robot.version(), version);
-        // The pair's client decodes by the layout of the version alone.
+        // The client decodes with the layout of this version only.
         let first = pair.state.message_id;
         pair.idle(3);
         assert_eq!(pair.state.message_id, first + 3);
@@ -70,7 +70,7 @@ fn second_client_is_refused_instead_of_queued() {
         let mut second = TcpStream::connect(sim.addr()).await.expect("a listener");
         second.write_all(hello.as_bytes()).await.expect("room");
         let refused = timeout(Duration::from_secs(30), second.read(&mut [0; 15])).await;
-        // An orderly end, or a reset because of the bytes that were not read.
+        // The stream ends, or is reset because of unread bytes.
         assert!(!matches!(refused.expect("no wait"), Ok(1..)));
         sim.stop().await;
     });
@@ -94,7 +94,7 @@ fn lateness_counts_in_states_that_wait_for_no_command() {
     pair.start_joints();
     pair.tick(Some(positions(&READY)));
     let before = pair.state.message_id;
-    // Without commands, each call still returns its state.
+    // Without commands, each call still returns a state.
     pair.idle(19);
     assert_eq!(pair.state.message_id, before + 19);
     assert_eq!(pair.state.robot_mode, RobotMode::Move);
@@ -111,7 +111,7 @@ fn a_late_command_is_dropped_and_the_first_one_begins_the_count() {
     for first in [Some(positions(&READY)), None] {
         let mut pair = Pair::fr3();
         let id = pair.start_joints();
-        // No cycle counts before a command comes.
+        // No cycle counts before the first command.
         pair.idle(50);
         pair.tick(first);
         for _ in 0..20 {

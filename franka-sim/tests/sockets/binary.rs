@@ -11,8 +11,8 @@ use franka_proto::Version;
 
 use crate::port::{Port, SOON};
 
-/// Virtual time, in which no machine is too slow for a client that answers. A silence of 20 cycles,
-/// which ends a motion, then takes some seconds.
+/// Option for virtual time, which waits for clients on slow machines. A silence of 20 cycles, which
+/// ends a motion, then takes some seconds.
 const PATIENCE: &str = "--virtual-time=0.1";
 
 /// A running simulator on free ports of 127.0.0.1. Dropping this value ends the simulator.
@@ -24,12 +24,12 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// Starts a robot of this kind that waits for answers. Returns once it listens.
+    /// Starts a robot of this kind that waits for answers. Returns when the robot listens.
     pub(crate) fn start(kind: &str) -> Self {
         Self::start_with(&["--robot", kind, PATIENCE])
     }
 
-    /// Starts a robot with these arguments, of which the first is the kind. Returns once it
+    /// Starts a robot with these arguments, of which the first is the kind. Returns when the robot
     /// listens.
     pub(crate) fn start_with(arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_franka-sim"))
@@ -119,7 +119,8 @@ impl Binary {
     fn signal(&self, signal: libc::c_int) {
         let process = self.child.lock().expect("no panic").id();
         let process = libc::pid_t::try_from(process).expect("a process id");
-        // SAFETY: it sends a signal to a child that has not been waited for, and touches no memory.
+        // SAFETY: the call sends a signal to a child that has not been waited for, and accesses no
+        // memory.
         let result = unsafe { libc::kill(process, signal) };
         assert_eq!(result, 0, "{}", std::io::Error::last_os_error());
     }

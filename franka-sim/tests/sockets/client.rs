@@ -21,7 +21,6 @@ pub(crate) struct Client {
     version: Version,
     /// Address from which the states come.
     robot: SocketAddr,
-    /// The newest state.
     pub(crate) state: RobotState,
 }
 
@@ -96,7 +95,6 @@ impl Client {
         self.send_bytes(&bytes[..length]);
     }
 
-    /// Sends a command from another socket.
     pub(crate) fn send_from(&self, socket: &UdpSocket, command: &RobotCommand) {
         let mut bytes = [0; RobotCommand::MAX_SIZE];
         let length = command.encode(self.version, &mut bytes).expect("room");

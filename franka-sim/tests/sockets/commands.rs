@@ -67,7 +67,7 @@ fn non_finite_command_ends_motion_and_disturbs_no_client() {
         for trial in &BAD_COMMANDS {
             for place in 0..trial.places {
                 let bad = BAD[place % BAD.len()];
-                // Torques alone: the controller that runs with them differs between the versions.
+                // For torques alone, the generator differs between the versions.
                 let generator = match trial.controller {
                     MoveControllerMode::ExternalController => binary.version().torque_generator(),
                     _ => trial.generator,
@@ -84,7 +84,7 @@ fn non_finite_command_ends_motion_and_disturbs_no_client() {
                         break client.status(id);
                     }
                 };
-                // Refused as input; a matrix that is not a pose, by a reflex.
+                // Invalid input is refused; a matrix that is not a pose causes a reflex.
                 let refusals = [
                     Status::Move(MoveStatus::InputErrorAborted),
                     Status::Move(MoveStatus::ReflexAborted),
@@ -126,7 +126,7 @@ fn requests_of_the_end_effectors_with_non_finite_numbers_fail() {
             requests.push((vacuum, 2, timeout.to_vec()));
             requests.push((vacuum, 1, [&[10, 0], &timeout[..]].concat()));
         }
-        // A profile that does not exist.
+        // This profile does not exist.
         requests.push((vacuum, 1, [&[10, 4], &[0; 8][..]].concat()));
         for (port, command, payload) in requests {
             let (mut connection, _udp) = port.shake_hands();

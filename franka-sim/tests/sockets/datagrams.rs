@@ -14,7 +14,7 @@ use crate::port::receive;
 /// Addresses of senders on the client's host, and on another host.
 const SOURCES: [&str; 2] = ["127.0.0.1:0", "127.0.0.2:0"];
 
-/// Commands from another socket are not the client's, even on the client's host.
+/// Commands from other sockets must have no effect, even from the client's host.
 #[test]
 fn only_the_socket_that_the_client_announced_commands() {
     each_robot(|binary| {
@@ -48,7 +48,7 @@ const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 #[test]
 fn garbage_disturbs_no_client_in_a_motion_or_without_one() {
     each_robot(|binary| {
-        // The source of the states, which is the same for all clients.
+        // The states come from this address for all clients.
         let targets = binary.ports().each_ref().map(|port| {
             let (_connection, udp) = port.shake_hands();
             receive(&udp, &mut []).1
@@ -78,7 +78,7 @@ fn a_flood_is_over_when_it_is_over() {
         let (robot, _) = Client::connect(binary).addresses();
         let socket = UdpSocket::bind(SOURCES[0]).expect("a port");
         for _ in 0..100_000 {
-            // A full buffer drops the rest.
+            // If the buffer is full, it drops further datagrams.
             let _ = socket.send_to(&[0xff; 371], robot);
         }
         assert_served(binary);
@@ -119,7 +119,7 @@ fn commands_that_answer_no_newest_state_do_not_count() {
         assert!(client.state.motion_running());
         assert!(client.state.errors.is_empty());
 
-        // Alone, they are as good as silence.
+        // Without the client's own commands, these datagrams count as silence.
         let status = loop {
             client.send(&elsewhere(&client, u64::MAX));
             client.next_state();

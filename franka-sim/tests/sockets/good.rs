@@ -1,4 +1,4 @@
-//! The good client, which observes the protocol.
+//! A client that observes the protocol.
 
 use std::fmt::Display;
 use std::sync::mpsc;
@@ -12,8 +12,8 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::binary::Binary;
 
-/// Largest number of times that a good client may be refused. Before each refusal, the server waits
-/// for 50 ms for the previous client to disconnect.
+/// Largest number of refusals of a good client. Before each refusal, the server waits for 50 ms
+/// until the previous client disconnects.
 const REFUSALS: usize = 20;
 
 fn runtime() -> Runtime {
@@ -46,8 +46,8 @@ pub(crate) fn assert_served(binary: &Binary) {
     });
 }
 
-/// Tries again after a refusal, because the server may not have noticed yet that the previous
-/// client has left.
+/// Connects, and tries again after a refusal, because the server may still serve the previous
+/// client.
 async fn patiently<T, E: Display, F: Future<Output = Result<T, E>>>(connect: impl Fn() -> F) -> T {
     let mut refusals = 0;
     loop {
@@ -76,7 +76,7 @@ pub(crate) fn assert_moves(binary: &Binary) {
     });
 }
 
-/// Clears errors that occur because a busy machine delayed a client.
+/// Clears errors that a delay of a client on a busy machine has caused.
 pub(crate) fn recover(binary: &Binary) {
     runtime().block_on(async {
         let robot = connect(binary).await;
@@ -85,8 +85,8 @@ pub(crate) fn recover(binary: &Binary) {
     });
 }
 
-/// Moves a good client up and down while `mischief` runs, which begins in the middle of a motion.
-/// Asserts that every motion arrives.
+/// Moves the robot of a good client up and down while `mischief` runs, which begins in the middle
+/// of a motion. Asserts that every motion reaches its target.
 pub(crate) fn assert_moves_during(binary: &Binary, mischief: impl FnOnce() + Send) {
     let (begin, begun) = mpsc::channel();
     thread::scope(|scope| {

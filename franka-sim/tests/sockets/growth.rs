@@ -11,7 +11,7 @@ use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::{Connection, SOON};
 
-/// Performs one abuse of each kind that takes no time, on every port.
+/// Performs one fast abuse of each kind, on every port.
 fn round(binary: &Binary) {
     for port in binary.ports() {
         let hello = port.connect(port.version, 4711);
@@ -62,7 +62,7 @@ fn settled(binary: &Binary, descriptors: usize) {
 fn the_process_does_not_grow_with_the_number_of_abuses() {
     each_robot(|binary| {
         let descriptors = binary.descriptors();
-        // Buffers and tables reach the size that they keep.
+        // In these rounds, buffers and tables reach their final size.
         for _ in 0..20 {
             round(binary);
         }

@@ -28,7 +28,7 @@ fn a_first_message_that_is_none_closes_the_connection() {
                 port.announcing(port.header() as u32 - 1, 0, 0),
                 port.announcing(1025, 0, 0),
                 port.announcing(u32::MAX, 0, 0),
-                // No handshake, or an incomplete one.
+                // These bytes are no handshake, or an incomplete handshake.
                 stop,
                 port.message(0, 0, &[]),
                 port.message(0, 0, &[10, 0, 1]),
@@ -66,7 +66,7 @@ fn silent_connections_keep_no_client_out_and_are_closed() {
     each_robot(|binary| {
         for port in binary.ports() {
             let mut silent: Vec<_> = (0..100).map(|_| port.dial()).collect();
-            // While they are there.
+            // The other connections are still open.
             assert_served(binary);
             let begun = Instant::now();
             for connection in &mut silent {
@@ -90,13 +90,13 @@ fn a_handshake_that_breaks_off_keeps_no_client_out() {
                 broken
             };
             let lengths = [1, port.header() - 1, port.header(), hello.len() - 1];
-            // Silence, while it lasts.
+            // The good client must be served during the silence.
             let mut silent = lengths.map(begin);
             assert_served(binary);
             for broken in &mut silent {
                 assert_eq!(broken.read_to_end(), b"");
             }
-            // An end, in order and out of order.
+            // The connection ends with a close or with a reset.
             for end in [drop, Connection::reset] {
                 lengths.map(begin).into_iter().for_each(end);
                 assert_served(binary);
@@ -114,7 +114,7 @@ fn a_handshake_may_come_byte_by_byte_and_name_any_port() {
             let answer = slow.read(port.header() + 1).expect("an answer");
             assert_eq!(answer[port.header()], 0, "kSuccess");
             drop(slow);
-            // No states can be sent to port 0, nor to a closed port.
+            // States can reach neither port 0 nor a closed port.
             for udp_port in [0, 1, 9] {
                 let begun = Instant::now();
                 loop {

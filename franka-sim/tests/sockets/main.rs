@@ -7,11 +7,11 @@
 //! | module | content |
 //! |---|---|
 //! | `binary` | the process: its ports, its memory, what it has logged |
-//! | `port` | a service as bytes see it |
-//! | `good` | the good client, which is the project's own |
-//! | `client` | a client of the robot that can do wrong in mid-session |
+//! | `port` | a service of the simulator, and its bytes |
+//! | `good` | a client that observes the protocol: this project's driver |
+//! | `client` | a client of the robot that can violate the protocol within a session |
 //! | `handshakes`, `messages`, `second_clients`, `motions`, `datagrams`, `commands`, `growth` | abuse |
-//! | `stopped` | the process stopped and continued |
+//! | `stopped` | a process that is stopped and continued |
 //! | `virtual_time` | robot time as fast as the client answers |
 
 mod binary;
@@ -35,8 +35,7 @@ use binary::Binary;
 /// Each test holds this lock, because two cores support only a few robots.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Lock that a test holds across every await. This is intended: each test blocks a separate
-/// runtime.
+/// Lock that a test intentionally holds across every await. Each test blocks a separate runtime.
 struct Alone {
     _guard: MutexGuard<'static, ()>,
 }

@@ -46,7 +46,7 @@ fn a_message_that_breaks_off_ends_the_session() {
         for port in binary.ports() {
             let setter = port.message(port.setter, 1, &[0; 400]);
             for length in [1, port.header() + 1] {
-                // Silence: the session continues for some time, and then ends.
+                // After silence, the session continues for some time, and then ends.
                 let (mut connection, udp) = port.shake_hands();
                 connection.send(&setter[..length]);
                 receive(&udp, &mut []);
@@ -73,25 +73,25 @@ fn unusual_message_is_answered() {
         for port in binary.ports() {
             let (mut connection, _udp) = port.shake_hands();
             let status = |connection: &mut Connection, id: u32| {
-                // One byte on the robot's stream, two on the others.
+                // A status has one byte on the robot's stream, and two bytes on the other streams.
                 let length = port.header() + if port.name == "robot" { 1 } else { 2 };
                 let answer = connection.read(length).expect("an answer");
                 let place = port.header() - 8;
                 assert_eq!(answer[place..place + 4], id.to_le_bytes(), "{}", port.name);
                 answer[port.header()]
             };
-            // Byte by byte.
+            // The message arrives byte by byte.
             connection.trickle(&port.message(port.stop, 1, &[]));
             assert_eq!(status(&mut connection, 1), 0);
-            // Longer than needed.
+            // The message is longer than needed.
             connection.send(&port.message(port.stop, 2, &[0xff; 64]));
             assert_eq!(status(&mut connection, 2), 0);
-            // An id again, once it is answered; ids backwards.
+            // An id is used again after its answer, and ids decrease.
             for id in [2, 2, 1, 0, u32::MAX] {
                 connection.send(&port.message(port.stop, id, &[]));
                 assert_eq!(status(&mut connection, id), 0);
             }
-            // Many at once, all read.
+            // Many requests come at once, and the client reads all answers.
             let burst: Vec<u8> = (10..60)
                 .flat_map(|id| port.message(port.stop, id, &[]))
                 .collect();
@@ -132,8 +132,8 @@ fn a_flood_of_requests_holds_up_no_state() {
             let answered = reading.join().expect("no panic");
             assert!(answered.is_some(), "every request is answered");
         });
-        // The thread takes 32 requests between two states. A slow reader misses some of these, and
-        // may see an old one at the end.
+        // The thread processes 32 requests between two states. A slow reader misses some of these
+        // states, and may see an old state at the end.
         let (states, due) = (newest() - before, u64::from(count / 64));
         assert!(states > due, "{states} states, at least {due} expected");
         drop((connection, writer));

@@ -26,7 +26,7 @@ fn a_client_may_vanish_before_its_motion_is_answered() {
                 end(client.connection);
                 assert_served(binary);
             }
-            // And once it has begun.
+            // The second case is a motion that has begun.
             let mut client = Client::connect(binary);
             client.start(CONTROLLER, GENERATOR);
             end(client.connection);
@@ -44,13 +44,13 @@ fn a_client_may_leave_the_protocol_while_it_moves() {
             vec![0xff; 100],
             port.connect(port.version, 4711),
             port.announcing(u32::MAX, port.stop, 9),
-            // Under the id of the motion, which is open.
+            // The id is the id of the motion, which still has no answer.
             port.message(port.stop, 1, &[]),
         ] {
             let mut client = Client::connect(binary);
             assert_eq!(client.start(CONTROLLER, GENERATOR), CommandId(1));
             client.connection.send(&bytes);
-            // The end of its motion may be the last that it hears.
+            // The client may still receive the end of its motion.
             client.connection.read_to_end();
             assert_served(binary);
             recover(binary);

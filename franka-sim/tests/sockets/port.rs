@@ -107,7 +107,7 @@ impl Port {
                 assert_eq!(answer[self.header()..][..1], [0], "{}", self.name);
                 return (connection, udp);
             }
-            // The client before has not been taken leave of yet.
+            // The server has not yet disconnected the previous client.
             assert!(begun.elapsed() < SOON, "{} accepts no client", self.name);
         }
     }
@@ -163,7 +163,7 @@ impl Connection {
         }
     }
 
-    /// Reads up to the end of the stream, which must come.
+    /// Reads up to the end of the stream. Panics if the stream does not end.
     pub(crate) fn read_to_end(&mut self) -> Vec<u8> {
         let mut bytes = Vec::new();
         match self.stream.read_to_end(&mut bytes) {

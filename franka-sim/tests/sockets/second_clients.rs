@@ -12,7 +12,7 @@ fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket,
     let answer = connection.read(port.header() + 1).expect("an answer");
     assert_eq!(answer[port.header()], 0, "{}", port.name);
     if port.name != "robot" {
-        // The second byte of a status.
+        // This is the second byte of a status.
         connection.read(1).expect("the rest of the answer");
     }
     receive(udp, &mut []);
@@ -27,11 +27,13 @@ fn a_second_client_is_refused_and_the_first_not_disturbed() {
                 let mut second = port.dial();
                 second.send(&port.connect(port.version, 4711));
                 assert_undisturbed(port, &mut first, &udp, 2 * id);
-                // By a reset, which a waiting client notices at once.
+                // The server must reset the connection, because a waiting client detects a reset at
+                // once.
                 second.expect_reset();
                 assert_undisturbed(port, &mut first, &udp, 2 * id + 1);
             }
-            // Nor by second clients that violate the protocol, send nothing, or vanish.
+            // Second clients that violate the protocol, send nothing, or vanish must not disturb
+            // the first client either.
             let mut garbage = port.dial();
             garbage.send(&[0xff; 100]);
             let silent: Vec<_> = (0..20).map(|_| port.dial()).collect();

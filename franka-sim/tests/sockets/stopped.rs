@@ -1,6 +1,7 @@
-//! The simulator's process is stopped and continued in the middle of a motion. A busy host does the
-//! same for shorter times. A real robot's clock never stops, so the client's motion must not be
-//! affected. The robots wait for late commands, so delays of the client do not matter.
+//! The simulator's process is stopped and continued in the middle of a motion. A busy host stops
+//! the process in the same way, for shorter times. A real robot's clock never stops, so stops must
+//! not affect the client's motion. The robots wait for late commands, so delays of the client have
+//! no effect.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -99,7 +100,8 @@ fn a_stop_takes_no_patience_from_a_client_in_virtual_time() {
         let control = robot.control_torques(move |_, _| {
             calls += 1;
             if calls == 100 {
-                // Longer than the robot waits, and then a fifth of that without a stop.
+                // Each stop is longer than the robot waits. A fifth of this time without a stop
+                // follows.
                 stopped.stop_for(Duration::from_millis(800));
                 sleep(Duration::from_millis(100));
             }

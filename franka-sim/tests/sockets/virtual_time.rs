@@ -10,7 +10,7 @@ use franka_sim::{Fingers, Running, Sim, Tool};
 
 use crate::alone;
 
-/// Time for which no busy machine delays a thread.
+/// Wait that exceeds the delay of a thread on any busy machine.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 async fn start(sim: Sim, patience: Duration) -> (Running, Robot) {
@@ -56,7 +56,7 @@ async fn states_outpace_the_wall_clock_with_equal_counts() {
             }
             println!("{moved:?} of motion in {:?}", begun.elapsed());
             assert!(moved > Duration::from_secs(10), "{moved:?}");
-            // A busy machine may be slow on the whole; most states still follow fast.
+            // A busy machine may be slow in total, but most states must still follow fast.
             assert!(typical < Duration::from_millis(1), "{typical:?}");
             runs.push(moved);
             robot.shutdown().await;
@@ -77,7 +77,7 @@ async fn no_answer_is_too_late_for_a_patient_robot() {
             calls == 1 || period == Duration::from_millis(1),
             "{period:?}"
         );
-        // Much too long on the wall, a hundred times.
+        // The client is much too slow for the wall clock, a hundred times.
         std::thread::sleep(Duration::from_millis(3));
         let torques = Torques([0.0; 7]);
         if calls < 100 {
@@ -103,7 +103,7 @@ async fn a_robot_that_waits_for_commands_is_no_faster_than_the_wall() {
     let control = robot.control_torques(move |_, _| {
         calls += 1;
         if calls % 100 == 0 {
-            // Twice as long as it takes a robot that does not wait to stop.
+            // Without waiting, the robot would stop in half of this time.
             std::thread::sleep(Duration::from_millis(40));
         }
         let torques = Torques([0.0; 7]);
@@ -155,7 +155,7 @@ async fn a_hand_grasps_in_the_time_of_the_robot() {
         .await
         .expect("a grasp");
     assert!(grasped);
-    // Both use the same clock, on which a homing takes more than a second.
+    // Robot and hand use the same clock, on which a homing takes more than a second.
     let took = robot.state().message_id - begun;
     assert!((1000..10_000).contains(&took), "{took} ms");
     sim.stop().await;

@@ -32,7 +32,6 @@ pub enum Values {
     Seven([f64; 7]),
 }
 
-/// Bounds of a parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Bounds {
     Any,

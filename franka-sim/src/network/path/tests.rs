@@ -127,7 +127,7 @@ fn some_are_overtaken_and_none_is_lost() {
     let arrived = pass(&mut Path::new(conditions, 3), 10_000, 371);
     assert!(arrived.is_sorted_by_key(|&(at, _)| at));
     let mut in_order = numbers(&arrived);
-    // The next two datagrams overtake a delayed one, unless they take the longer path too.
+    // The next two datagrams overtake a delayed datagram, unless they also take the longer path.
     let overtaken = in_order.windows(2).filter(|pair| pair[1] < pair[0]).count();
     assert!((700..1100).contains(&overtaken), "{overtaken}");
     in_order.sort_unstable();
@@ -144,7 +144,8 @@ fn half_of_a_datagram_is_none() {
         assert_eq!(arrived + tally.lost, tally.sent);
         tally
     });
-    // Of two packets, none is lost with 0.81, both with 0.01. Three deviations are 120 and 115.
+    // With probability 0.81, none of two packets is lost; with 0.01, both are lost. Three standard
+    // deviations are 120 and 115.
     assert!(large.lost.abs_diff(1900) < 120, "{large:?}");
     assert!(large.fragment_lost.abs_diff(1800) < 115, "{large:?}");
     assert!(small.lost.abs_diff(1000) < 90, "{small:?}");
@@ -186,7 +187,7 @@ fn stall_holds_datagrams_and_releases_them_at_line_rate() {
             "{least:?}"
         );
         let bursts = gaps.iter().filter(|&&gap| gap < 2 * spacing).count();
-        // Two or three of every stall arrive together with an earlier one.
+        // In every stall, two or three datagrams arrive together with an earlier datagram.
         assert!((200..600).contains(&bursts), "{bursts}");
     }
 }

@@ -221,7 +221,6 @@ fn read(data: &MjData<Box<MjModel>>, places: &Places) -> (JointVector, JointVect
     )
 }
 
-/// Pose of a body in the world.
 fn body_pose(data: &MjData<Box<MjModel>>, name: &str) -> Option<Isometry3<f64>> {
     let id = scene::body(data.model(), name)?;
     let position = Vector3::from(data.xpos()[id]);

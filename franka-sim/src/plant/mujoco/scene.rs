@@ -162,7 +162,6 @@ impl Scene {
         self.has_hand
     }
 
-    /// The fingers, if the scene has any.
     pub(super) fn fingers(&self, model: &MjModel) -> Result<Option<FingerJoints>, SceneError> {
         self.has_hand.then(|| FingerJoints::of(model)).transpose()
     }

@@ -31,17 +31,18 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
     ),
 ];
 
-/// Position of the arm before each run, `[rad]`, with 80 N·m/rad and 4 N·m·s/rad.
+/// Position of the arm before each run, `[rad]`, held with 80 N·m/rad and 4 N·m·s/rad.
 const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 
 /// Largest deviation of a ratio. All ratios of the central arm of the family are within 0.05,
-/// except two. Joint 4 under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
+/// except two. The ratios of joint 4 at 60 N·m/rad and joint 2 at 40 N·m/rad are too small by
+/// 0.053.
 const OFF_MAX: f64 = 0.06;
 
 /// Period of the log, `[s]`.
 pub(super) const PERIOD: f64 = 0.02;
 
-/// An arm under springs that a client computes in every cycle.
+/// An arm with springs that a client computes in every cycle.
 pub(super) struct Sprung {
     pair: Pair,
     torque: JointVector,
@@ -57,7 +58,6 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// The mean of these rows.
     pub(super) fn mean(rows: &[Self]) -> Self {
         let mean = |of: fn(&Self) -> JointVector| -> JointVector {
             rows.iter().map(of).sum::<JointVector>() / rows.len() as f64
@@ -120,7 +120,6 @@ impl Sprung {
         rows
     }
 
-    /// The four runs.
     pub(super) fn runs(&mut self) -> [Vec<Row>; 4] {
         RECORDED.map(|(spring, damper, _)| self.run(spring, damper))
     }

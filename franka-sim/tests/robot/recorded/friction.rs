@@ -1,8 +1,9 @@
-//! Friction of the realistic arms against a real one, by the same fit to the experiment of
-//! [`four_gains`](super::four_gains).
+//! Comparison of the friction of realistic arms and of a real arm. Both are fitted in the same way
+//! to the experiment of [`four_gains`](super::four_gains).
 //!
-//! The fit is biased: the torque steps every 20 ms, and friction is not a sum of its two terms. So
-//! it compares arms, and its figures are not parameters of a family.
+//! The fit is biased, because the torque steps every 20 ms, and because friction is not the sum of
+//! the two fitted terms. The fit can therefore compare arms, but its figures are not parameters of
+//! a family.
 
 use franka_model::Model;
 use franka_sim::Tool;
@@ -28,11 +29,11 @@ const MOVING: f64 = 0.02;
 /// Velocity at which the fitted Coulomb friction has reached 76 %, `[rad/s]`.
 const SIGN_VELOCITY: f64 = 0.03;
 
-/// Rows of the log over which noise is averaged.
+/// Number of rows over which noise is averaged.
 const AVERAGED: usize = 3;
 
-/// Friction at [`SPEEDS`] of each joint: the torque minus the torque of the links is fitted by
-/// Coulomb and viscous friction, inertia of the rotor and offset.
+/// Friction at [`SPEEDS`] of each joint: Coulomb friction, viscous friction, rotor inertia and an
+/// offset are fitted to the torque minus the torque of the links.
 fn friction(runs: &[Vec<Row>]) -> [[f64; 7]; 2] {
     let model = Model::physically_consistent(RobotKind::Fr3);
     let load = Tool::hand().load;

@@ -47,7 +47,7 @@ fn median(sorted: &[f64]) -> f64 {
 fn reported_poses_fit_the_model_with_recorded_lengths() {
     let (rest, angle) = deviations(Lengths::RECORDED_FR3, AT_REST.iter());
     assert!(median(&rest) < 1e-7, "{rest:?}");
-    // Motion of joints that turn at 5 mrad/s, in 1.3 ms.
+    // The bound is the motion of joints with 5 mrad/s in 1.3 ms.
     let most = rest[rest.len() - 1];
     assert!(most < 1e-5 && angle < 3e-5, "{rest:?} {angle}");
     let (moving, _) = deviations(Lengths::RECORDED_FR3, MOVING.iter());

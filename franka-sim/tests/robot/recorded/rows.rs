@@ -1,6 +1,6 @@
 //! Rows of recordings, and values computed from recordings.
 //!
-//! All are of a Franka Research 3 with the Hand in 2026, from `franka_data` of
+//! All recordings are of a Franka Research 3 with the Hand in 2026, from `franka_data` of
 //! `shubhamsonkar01/franka_ros2_teleop_data_collection` at 1c62aa8d, under the Apache License 2.0.
 
 /// Joint positions, and the pose of the fingertips in `O_T_EE`: position and orientation `[x, y, z,
@@ -152,7 +152,7 @@ pub(super) const MOVING: [Reported; 12] = [
     },
 ];
 
-/// One of the cycles that represent the whole recording, and its share.
+/// One of the cycles that represent the whole recording, and its weight.
 ///
 /// Torques of the model are linear in masses, moments and inertias. The weighted means of their
 /// coefficients over these rows equal the means over all 6942 rows, to within 4 mN·m for any arm of
