@@ -23,7 +23,6 @@ pub struct Link {
 
 /// A state that the client receives.
 pub(super) struct Reception {
-    /// Time of reception.
     pub(super) at: Duration,
     pub(super) datagram: Vec<u8>,
     /// Number of older states that had also arrived and are skipped.

@@ -65,7 +65,6 @@ pub enum Asked {
     Begin(GoalId),
 }
 
-/// State of the connection, for the harness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Connection {
     Up,

@@ -28,8 +28,8 @@ pub struct Config {
     /// declares it with `SetLoad`.
     pub payload: Load,
     /// The arm: friction, drives, sensors, and differences from its model. `None` selects the
-    /// [ideal](Arm::ideal) arm of the robot's kind, although no real arm is ideal.
-    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) select a realistic arm.
+    /// [ideal](Arm::ideal) arm of the robot's kind. [`Sim::fr3`](crate::Sim::fr3) and
+    /// [`Sim::fer`](crate::Sim::fer) select a realistic arm.
     pub arm: Option<Arm>,
     /// Seed of all random numbers. The same seed and the same input give the same states.
     pub seed: u64,

@@ -10,7 +10,6 @@ pub(crate) struct Description {
     pub(crate) version: Version,
     /// Name of the robot in its description; `None` if the robot serves no description.
     pub(crate) urdf_name: Option<&'static str>,
-    /// Precision of the numbers in its states.
     pub(crate) precision: Precision,
     /// Errors that the robot raises for desired joint positions outside their range.
     pub(crate) range: RangeErrors,

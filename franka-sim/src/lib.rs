@@ -21,7 +21,7 @@
 //!
 //! # Example
 //!
-//! This program advances the robot by one millisecond at a time, without sockets:
+//! The robot advances by one millisecond at a time, without sockets:
 //!
 //! ```
 //! use franka_sim::{Config, Robot};
@@ -45,8 +45,8 @@
 //!   other programs.
 //! - `mujoco`: the physics in MuJoCo, `plant::MujocoArm`. This feature requires Rust 1.95 and
 //!   MuJoCo's library, which `cargo xtask mujoco` fetches in this workspace.
-//! - `serde`: reads families of arms from JSON, with `arm::Family::from_json`. The feature
-//!   `command-line` includes this feature.
+//! - `serde`: families of arms in JSON, `arm::Family::from_json`. `command-line` includes this
+//!   feature.
 //!
 //! # Disturbances
 //!
@@ -68,10 +68,9 @@
 //! - End effectors: they have only kinematics, unless the plant (the physics) has fingers. Without
 //!   fingers in the plant, the end effectors do not affect the arm, and held objects have neither
 //!   mass nor pose.
-//! - Unpublished values: the simulator chooses values that the vendor has not published, and
-//!   [`Unpublished`] makes them options. They are tolerances, default thresholds and gains, the
-//!   gain of the force estimate, and the criterion for instability. None has been measured on a
-//!   robot.
+//! - Unpublished values: the simulator chooses them, and [`Unpublished`] contains them as options:
+//!   tolerances, default thresholds and gains, the gain of the force estimate, and the criterion
+//!   for instability. None has been measured on a robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // Some items are used only by the robot on sockets.

@@ -82,7 +82,7 @@ pub extern "C" fn block(on: u32) {
     with(|shown| shown.playground.block(on != 0));
 }
 
-/// Makes the robot recover from its stop. The arm then holds its position until the next target.
+/// Makes the robot recover from its stop. The arm then holds its position.
 #[unsafe(no_mangle)]
 pub extern "C" fn recover() {
     with(|shown| shown.playground.recover());

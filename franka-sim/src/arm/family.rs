@@ -1,4 +1,4 @@
-//! Families of arms, which contain a distribution for every parameter of an arm.
+//! Families of arms, with a distribution for every parameter.
 
 use franka_model::geometry::Lengths;
 use franka_model::{JointVector, RobotKind};
@@ -119,9 +119,8 @@ pub struct Family {
     pub load_com_error: Distribution,
     /// Tilt about each horizontal axis, `[rad]`.
     pub base_tilt: Distribution,
-    /// Number of stalls of the network interface of a Franka Emika Robot, per second, drawn once
-    /// per arm. A Franka Research 3 has no stalls. [`Stalls::FER`] defines the lengths of the
-    /// stalls.
+    /// Stalls per second of a Franka Emika Robot's network interface, drawn once per arm. A Franka
+    /// Research 3 has none. [`Stalls::FER`] defines their lengths.
     pub stalls_per_second: Distribution,
     /// Zero error of the motors' positions, for a Franka Research 3, `[rad]`. A Franka Emika Robot
     /// has no such error.

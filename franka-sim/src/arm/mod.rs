@@ -60,7 +60,7 @@ impl Arm {
     /// friction is smooth, and a twentieth of the published friction, which makes the arm creep to
     /// its target. Its lengths match the vendor's description, even for a Franka Research 3.
     ///
-    /// Use this arm for tests that need exact results. No real arm is ideal.
+    /// Use this arm for tests that need exact results.
     pub fn ideal(kind: RobotKind) -> Self {
         Self {
             friction: Friction::smooth(kind),

@@ -134,7 +134,6 @@ impl Arguments {
             .vacuum_gripper(suction, beside(2)))
     }
 
-    /// The model library to serve.
     fn library(&self) -> Result<Option<Bytes>, String> {
         let Some(path) = &self.model_library else {
             return Ok(None);

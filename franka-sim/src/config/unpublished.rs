@@ -4,15 +4,15 @@ use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
 /// Assumptions about properties of the robot that are not published. None has been measured. If a
-/// client depends on one of these values, test the client with other values, too.
+/// client depends on a value, test it with other values, too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {
     /// Largest permitted distance of the first command of a motion from the commanded values in the
     /// state.
     pub start: StartTolerance,
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-    /// start. Default 0.05. In a pose that a real robot refuses, the smallest singular value is
-    /// 0.011. In ordinary poses, it is 0.14 to 0.23.
+    /// start. Default 0.05. A pose that a real robot refuses has the value 0.011. Ordinary poses
+    /// have 0.14 to 0.23.
     pub singular: f64,
     /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
     /// is zero. Default 0.1. In recordings of two Franka Research 3, the first robot reports no
@@ -31,7 +31,7 @@ pub struct Unpublished {
     pub move_clears_reason: bool,
     /// True if fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
     /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
-    /// controllers. We know no recording of a motion that shows these fields. Default true.
+    /// controllers. No recording of a motion is known. Default true.
     pub zero_fields: bool,
     /// Number of errors that a cycle latches if its command violates several bounds.
     pub error_bits: ErrorBits,

@@ -27,7 +27,6 @@ pub(super) enum Progress {
     Moving,
     /// An object stops the fingers.
     Blocked,
-    /// The target is reached.
     Arrived,
 }
 

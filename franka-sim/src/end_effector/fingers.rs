@@ -146,7 +146,6 @@ impl Fingers {
             .approach(target, speed.min(Self::MAX_SPEED), force)
     }
 
-    /// Ends a motion.
     fn rest(&mut self) {
         self.activity = Activity::Idle;
         self.finger_motion.rest();

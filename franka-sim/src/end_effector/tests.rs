@@ -87,7 +87,6 @@ impl<M: Mechanism> Pair<M> {
     }
 }
 
-/// Returns a hand after its homing.
 fn homed(fingers: Fingers) -> Pair<Fingers> {
     let mut pair = Pair::new(fingers);
     assert_eq!(pair.complete(&Request::Homing).0, Status::Success);

@@ -31,7 +31,6 @@ impl Broken {
         }
     }
 
-    /// Flags that are set in `self` or `other`.
     fn or(self, other: Self) -> Self {
         Self {
             velocity: self.velocity || other.velocity,
@@ -78,8 +77,7 @@ fn judge<S: Copy>(
     (next, broken.and(from_published))
 }
 
-/// Performs one cycle of a joint signal. Returns the result of `step`, and the bounds that it
-/// violates.
+/// Returns the joint signal after `step`, and the bounds that `step` violates.
 pub(super) fn joints(
     from: &JointSignal,
     arm: &ArmModel<'_>,
@@ -117,8 +115,7 @@ pub(super) fn joint_bounds(
     broken
 }
 
-/// Performs one cycle of a Cartesian signal. Returns the result of `step`, and the bounds that it
-/// violates.
+/// Returns the Cartesian signal after `step`, and the bounds that `step` violates.
 pub(super) fn cartesian(
     from: &CartesianSignal,
     arm: &ArmModel<'_>,
@@ -140,7 +137,7 @@ pub(super) fn cartesian(
     )
 }
 
-/// Performs one cycle of the elbow. Returns the result of `step`, and the bounds that it violates.
+/// Returns the elbow after `step`, and the bounds that `step` violates.
 pub(super) fn elbow(
     from: &ElbowSignal,
     arm: &ArmModel<'_>,

@@ -34,7 +34,6 @@ pub(crate) struct Desired {
 }
 
 impl Desired {
-    /// Returns desired values at rest at `q`.
     pub(crate) fn resting(arm: &ArmModel<'_>, q: JointVector) -> Self {
         let mut desired = Self {
             joints: JointSignal::resting(q),
@@ -92,7 +91,6 @@ impl<'a> ArmModel<'a> {
         }
     }
 
-    /// Pose of the end effector at `q`.
     pub(crate) fn pose(&self, q: &JointVector) -> nalgebra::Isometry3<f64> {
         let matrix = self.model.pose(Frame::EndEffector, q, self.frames);
         // Frames are rigid transforms, because setters refuse all others.
@@ -104,7 +102,6 @@ impl<'a> ArmModel<'a> {
 pub(crate) enum Input<'a> {
     /// The client's first command of the motion.
     First(&'a RobotCommand),
-    /// A later command.
     Next(&'a RobotCommand),
     /// No command has arrived in time.
     Lost,

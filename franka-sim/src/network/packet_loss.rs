@@ -8,7 +8,6 @@ use crate::noise::Random;
 pub(super) struct Losses {
     loss: Loss,
     random: Random,
-    /// True during a burst.
     bad: bool,
 }
 

@@ -56,7 +56,7 @@ pub struct Tally {
 impl Path {
     /// Returns a path under these conditions. `seed` determines all random numbers.
     pub fn new(conditions: Conditions, seed: u64) -> Self {
-        // Each part draws separate random numbers, because loss must not change the stalls.
+        // Random numbers are separate, because loss must not change the stalls.
         let mut seeds = Random::new(seed);
         Self {
             line: Line::new(&conditions, seeds.bits()),
@@ -189,8 +189,8 @@ impl PartialEq for UnderWay {
 
 impl Eq for UnderWay {}
 
-/// Returns the number of IPv4 packets for a datagram of this size in bytes. A protocol 5 state has
-/// two packets, all other datagrams have one.
+/// Returns the number of IPv4 packets for a datagram of this size in bytes. Only a protocol 5 state
+/// has two packets.
 const fn packets(bytes: usize) -> usize {
     (UDP_HEADER + bytes).div_ceil(MTU - IP_HEADER)
 }

@@ -114,7 +114,6 @@ pub struct Robot {
     datagram: [u8; RobotState::MAX_SIZE],
 }
 
-/// Activity of the arm.
 // Only one value exists, so the size of its largest variant does not matter.
 #[allow(clippy::large_enum_variant)]
 enum Activity {
@@ -124,7 +123,6 @@ enum Activity {
     Braking(Brake),
     /// The arm follows a client.
     Moving(ActiveMotion),
-    /// A person guides the arm.
     Guided(Guidance),
 }
 
@@ -316,7 +314,6 @@ impl Robot {
     }
 }
 
-/// Returns the description that the robot serves.
 fn description(kind: &Description, config: &Config, model: &Model) -> Option<Bytes> {
     let name = kind.urdf_name?;
     Some(match &config.urdf {

@@ -61,7 +61,6 @@ pub(super) struct Rules {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     Continues,
-    /// The client finished the motion.
     Finished,
     /// A command violated the rules and had no effect. The value names the errors.
     Broken(Errors),
@@ -118,7 +117,6 @@ impl ActiveMotion {
         self.asynchronous.is_some()
     }
 
-    /// True if the client sends only torques.
     pub(super) fn is_torque_only(&self) -> bool {
         self.request.generator == MoveGeneratorMode::None
     }
@@ -133,7 +131,6 @@ impl ActiveMotion {
         self.paused
     }
 
-    /// Returns `control_command_success_rate`.
     pub(super) fn success_rate(&self, first: FirstCycles) -> f64 {
         self.success_rate.rate(first)
     }

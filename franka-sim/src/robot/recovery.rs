@@ -8,8 +8,7 @@ use crate::generator::PointToPoint;
 
 #[derive(Debug, Clone)]
 pub(super) struct Recovery {
-    /// Id of the request to answer; `None` if its client has disconnected or a person started the
-    /// recovery.
+    /// Id of the request to answer, if its client is still connected.
     id: Option<CommandId>,
     since: u64,
     /// Motion of the joints back into their range, if a person requested the recovery.

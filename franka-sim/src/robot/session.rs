@@ -1,6 +1,5 @@
-//! The robot's session with its client: the robot accepts one client, answers the client's
-//! requests, and disconnects the client. `connection` handles the handshake. `serve::sessions`
-//! refuses a second client.
+//! The robot's session with its client: the robot accepts one client, answers its requests, and
+//! disconnects it. `connection` handles the handshake. `serve::sessions` refuses a second client.
 
 use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};

@@ -100,7 +100,6 @@ impl Clock {
         self.pace
     }
 
-    /// Returns the time of this clock at `wall`.
     pub(super) fn at(&self, wall: Instant) -> Instant {
         wall - self.pace.slipped
     }

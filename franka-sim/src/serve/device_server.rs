@@ -69,7 +69,6 @@ struct Wait {
 }
 
 impl Wait {
-    /// Adds the duration of a wait for a datagram.
     fn add(&mut self, took: Duration) {
         self.silence += took.min(HELD_UP_MAX);
         self.counted += took.min(WAIT_MAX);

@@ -24,7 +24,6 @@ struct State {
 #[derive(Debug)]
 pub(super) struct InStep(Arc<Meeting>);
 
-/// Returns the memberships of `N` robots.
 pub(super) fn in_step<const N: usize>() -> [InStep; N] {
     let state = State {
         members: N,

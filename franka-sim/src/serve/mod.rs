@@ -14,7 +14,7 @@
 //! |---|---|
 //! | `clock` | the schedule of states, and the handling of a late host: [`Pace`] |
 //! | `cycle` | the loop of the thread |
-//! | `device_server` | a device on its sockets, which receives commands, orders and jobs, and sends states and replies |
+//! | `device_server` | a device on its sockets |
 //! | `device` | the interface of a device to the server |
 //! | `relay` | the simulated network between sockets and device |
 //! | `sessions` | one client at a time, and the refusal of a second client |
@@ -73,8 +73,7 @@ use speed::Speed;
 /// ```
 #[derive(Debug)]
 pub struct Sim {
-    /// The configuration is on the heap, because builds without optimisation copy moved values, and
-    /// stacks of threads are small.
+    /// On the heap, because builds without optimisation copy moved values, and stacks are small.
     config: Box<Config>,
     /// The physics; `None` for the rigid-body plant.
     plant: Option<Box<dyn Plant>>,
@@ -160,14 +159,13 @@ impl Sim {
         self
     }
 
-    /// Listens on `address` (IPv4 or IPv6). Port 0 selects a free port. Real robots listen on port
-    /// 1337.
+    /// Listens on `address` (IPv4 or IPv6). Port 0 selects a free port. Real robots use port 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
         self
     }
 
-    /// Uses this plant (the physics) instead of the rigid-body plant: see [`Robot::with_plant`].
+    /// Uses this plant (physics), not the rigid-body plant: see [`Robot::with_plant`].
     pub fn plant(mut self, plant: impl Plant) -> Self {
         self.plant = Some(Box::new(plant));
         self
@@ -186,8 +184,7 @@ impl Sim {
         self
     }
 
-    /// Simulates the [ideal](Arm::ideal) arm, for tests that need exact results. No real arm is
-    /// ideal.
+    /// Simulates the [ideal](Arm::ideal) arm, for tests that need exact results.
     pub fn ideal(self) -> Self {
         let kind = self.config.kind;
         self.arm(Arm::ideal(kind))
@@ -219,16 +216,15 @@ impl Sim {
 
     /// Serves a Franka Hand in addition to the robot, on this TCP port. Port 0 selects a free port.
     ///
-    /// Real hands listen on port 1338. To add the mass and the frame of the hand, mount
-    /// [`Tool::hand`] with [`tool`](Self::tool). If the [plant](Self::plant) has fingers, the hand
-    /// moves them.
+    /// Real hands use port 1338. To add the mass and the frame of the hand, mount [`Tool::hand`]
+    /// with [`tool`](Self::tool). If the [plant](Self::plant) has fingers, the hand moves them.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self
     }
 
     /// Serves a vacuum gripper in addition to the robot, on this TCP port. Port 0 selects a free
-    /// port. Real vacuum grippers listen on port 1339.
+    /// port. Real vacuum grippers use port 1339.
     pub fn vacuum_gripper(mut self, suction: Suction, port: u16) -> Self {
         self.vacuum_gripper = Some((suction, port));
         self

@@ -71,7 +71,6 @@ impl Relay {
         self.latest
     }
 
-    /// Sends a state to the client that listens at `listener`.
     pub(super) fn send_state(&mut self, now: Instant, datagram: &[u8], listener: SocketAddr) {
         self.listener = Some(listener);
         self.sent = message_id(datagram);
@@ -106,7 +105,6 @@ impl Relay {
         self.network.to_robot.send(time, datagram);
     }
 
-    /// Returns the next command that has arrived.
     pub(super) fn take_command(&mut self, now: Instant) -> Option<Vec<u8>> {
         let time = self.time(now);
         let delivery = self.network.to_robot.take(time)?;

@@ -48,10 +48,9 @@ impl Running {
     pub const SPEED_MAX: f64 = 10.0;
 
     /// Sets the speed of robot time in [virtual time](super::Sim::virtual_time), as a multiple of
-    /// the wall clock's speed. A slow host or client may prevent this speed. With `None`, the
-    /// default, robot time advances as fast as the client answers. A speed of 0 is a pause: each
-    /// millisecond of the robot then lasts 400 ms, because clients would consider a silent
-    /// connection lost.
+    /// the wall clock's speed. A slow host or client may not reach it. With `None`, the default,
+    /// robot time advances as fast as the client answers. A speed of 0 is a pause: each millisecond
+    /// of the robot then lasts 400 ms, because clients would consider a silent connection lost.
     ///
     /// # Errors
     /// Returns [`SpeedError`] without virtual time, or if `speed` is out of range. The speed is

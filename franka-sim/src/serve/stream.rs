@@ -39,7 +39,6 @@ impl Patience {
 /// Reason why no more messages arrive.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum StreamEnd {
-    /// The stream has ended.
     Closed,
     /// The stream was slower than the time limits.
     TooSlow,

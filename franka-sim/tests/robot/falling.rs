@@ -74,12 +74,10 @@ enum Descent {
     Free,
 }
 
-/// Result of a descent.
 struct Landing {
     /// Largest value until the motion ended or the hand reached the table.
     most: f64,
     before: f64,
-    /// Cycle of the largest value.
     cycle: usize,
     state: RobotState,
 }
@@ -90,7 +88,7 @@ fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing
     pair.request(&Request::SetCollisionBehavior(threshold.behavior()));
     let plant: &dyn Any = pair.robot.plant();
     if plant.is::<RigidArm>() {
-        // MuJoCo has a table in the scene, which all of the hand can meet.
+        // In MuJoCo, the scene contains a table, which every part of the hand can touch.
         let table = Touch::wall(Vector3::zeros(), Vector3::z());
         pair.robot.touch(table);
     }
@@ -164,7 +162,7 @@ fn fall_trips_its_thresholds_but_none_30_percent_higher() {
                     free.state.errors
                 );
                 assert!(free.most > 2.0 * free.before, "{name}: no blow");
-                // The blow is 1.15 times this threshold.
+                // The impact is 1.15 times this threshold.
                 let bound = free.most / 1.15;
                 let (_, tripped) = fall(kind.at(bound));
                 assert_eq!(tripped.state.errors, kind.reflex().into(), "{name}");

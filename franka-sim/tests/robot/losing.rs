@@ -15,7 +15,6 @@ struct Channel {
     told: fn(&RobotState) -> [f64; 3],
     /// Distance from the start after 0.6 s, or the speed if the command is a velocity.
     way: f64,
-    /// True if the command is a velocity.
     is_rate: bool,
 }
 

@@ -27,7 +27,6 @@ pub(crate) fn noisy() -> Arm {
 /// Both ends of a session, and the data that the client has received so far.
 pub(crate) struct Pair {
     pub(crate) robot: Robot,
-    /// State in the newest datagram.
     pub(crate) state: RobotState,
     pub(crate) client: client::Session,
     stream: Vec<u8>,
@@ -198,7 +197,6 @@ impl Pair {
         self.ask(&Request::Move(MoveRequest::new(controller, generator)))
     }
 
-    /// Returns the final status of a motion.
     pub(crate) fn outcome(&self, id: CommandId) -> MoveStatus {
         match self.statuses(id)[..] {
             [

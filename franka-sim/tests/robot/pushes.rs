@@ -34,7 +34,7 @@ fn push(pair: &mut Pair, direction: &Vector3<f64>) -> franka_sim::TouchId {
     pair.robot.touch(push)
 }
 
-/// Returns the force of the hand on the robot. The force in the state has the opposite sign.
+/// Returns the force of the hand on the robot, which is the negative force in the state.
 fn felt(pair: &Pair) -> Vector3<f64> {
     let [x, y, z, ..] = pair.state.O_F_ext_hat_K;
     -Vector3::new(x, y, z)
@@ -124,7 +124,7 @@ fn gives_way(name: &str, pair: &mut Pair, mut command: impl FnMut(&Pair) -> Robo
         let start = end_effector(pair).translation.vector;
         let push = push(pair, &direction);
         run(pair, SETTLING, &mut |pair, cycle| {
-            // The reading is correct while the arm yields, too.
+            // The reading is also correct while the arm yields.
             if (100..500).contains(&cycle) {
                 misread = misread.max((felt(pair).norm() - PUSH).abs());
             }

@@ -116,7 +116,7 @@ impl Client {
         }
     }
 
-    /// Starts a motion and holds the arm still in it for some cycles.
+    /// Starts a motion that holds the arm still for some cycles.
     pub(crate) fn start(
         &mut self,
         controller: MoveControllerMode,

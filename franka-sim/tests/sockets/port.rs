@@ -15,7 +15,6 @@ pub(crate) const SOON: Duration = Duration::from_secs(300);
 pub(crate) struct Port {
     pub(crate) name: &'static str,
     pub(crate) address: SocketAddr,
-    /// Protocol version of the service.
     pub(crate) version: u16,
     /// Number of bytes of a command number: four for the robot, two for the end effectors.
     number: usize,
@@ -65,7 +64,6 @@ impl Port {
         }
     }
 
-    /// Number of bytes of a header.
     pub(crate) fn header(&self) -> usize {
         self.number + 8
     }
@@ -76,7 +74,6 @@ impl Port {
         [&self.announcing(size, command, id), payload].concat()
     }
 
-    /// Returns a header that announces `size`.
     pub(crate) fn announcing(&self, size: u32, command: u32, id: u32) -> Vec<u8> {
         let mut bytes = command.to_le_bytes()[..self.number].to_vec();
         bytes.extend(id.to_le_bytes());

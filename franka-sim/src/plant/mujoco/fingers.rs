@@ -75,7 +75,6 @@ impl FingerJoints {
         })
     }
 
-    /// Opens the fingers immediately.
     pub(super) fn open(&self, data: &mut MjData<Box<MjModel>>) {
         for place in self.qpos {
             data.qpos_mut()[place] = FingerDrive::STROKE / 2.0;

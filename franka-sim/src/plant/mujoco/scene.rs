@@ -157,7 +157,6 @@ impl Scene {
         Ok(model)
     }
 
-    /// True if the scene has a Franka Hand.
     pub(super) fn has_hand(&self) -> bool {
         self.has_hand
     }

@@ -10,7 +10,6 @@ use super::{Effort, FIRM_JOINT, JOINT_INERTIA, Spring, Touch, TouchId};
 use crate::plant::External;
 use crate::signal::{halves, stack};
 
-/// All active touches.
 #[derive(Debug, Default)]
 pub(in crate::robot) struct Touches {
     touches: Vec<Present>,
