@@ -1,9 +1,9 @@
 //! Makes the native library available at run time to programs with the feature `mujoco`.
 //!
 //! `mujoco-rs` links the library. Cargo adds the output directories of build scripts to the
-//! loader's search path of the programs that Cargo runs. A link in the output directory of this
-//! script thus serves `cargo run`, tests and documentation examples of every dependent. The binary
-//! `franka-sim` also contains this path. It looks in its own directory first.
+//! loader's search path of the programs that Cargo runs. Programs, tests and documentation examples
+//! of every dependent crate therefore find the link in the output directory of this script. The
+//! binary `franka-sim` also contains this path, but it looks in its own directory first.
 
 use std::env;
 use std::error::Error;
@@ -20,14 +20,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     if !is_wanted || !is_linux || env::var_os(STATIC).is_some() {
         return Ok(());
     }
-    // Without a directory, `mujoco-rs` asks pkg-config. The loader finds libraries of pkg-config
-    // automatically.
+    // If no directory is set, `mujoco-rs` uses pkg-config, whose libraries the loader finds.
     let Some(directory) = env::var_os(DYNAMIC).map(PathBuf::from) else {
         return Ok(());
     };
     let library = directory.join("libmujoco.so");
     println!("cargo::rerun-if-changed={}", library.display());
-    // `mujoco-rs` also reports this error, with another text.
+    // `mujoco-rs` also reports this error, but with another text.
     let library = fs::canonicalize(&library).map_err(|error| {
         format!(
             "no library of MuJoCo: {}: {error}; run `cargo xtask mujoco`, or set {DYNAMIC} to the absolute path of a \
@@ -45,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A second name for the file, or a copy where file systems end between them.
+/// Creates a link to the file, or a copy if both paths are on different file systems.
 fn put(file: &Path, name: &Path) -> std::io::Result<()> {
     if name.exists() {
         fs::remove_file(name)?;
@@ -53,7 +52,7 @@ fn put(file: &Path, name: &Path) -> std::io::Result<()> {
     fs::hard_link(file, name).or_else(|_| fs::copy(file, name).map(|_| ()))
 }
 
-/// Environment variables that `mujoco-rs` reads. They are set where documentation is built without
+/// Environment variables that `mujoco-rs` reads. They are set if documentation is built without
 /// native libraries.
 const DOCS: &str = "DOCS_RS";
 const STATIC: &str = "MUJOCO_STATIC_LINK_DIR";

@@ -357,7 +357,7 @@ impl DriverStack {
         self.outcomes.len()
     }
 
-    /// The outcome of a goal or a program; `None` while it has none.
+    /// The outcome of a goal or a program; `None` before the outcome.
     pub fn outcome(&self, id: GoalId) -> Option<&Outcome> {
         self.outcomes.get(&id)
     }

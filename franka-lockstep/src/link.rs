@@ -119,7 +119,7 @@ impl Link {
     }
 }
 
-/// The `message_id`, which is the first field of a state in either version.
+/// The `message_id`, which is the first field of a state in both versions.
 fn message_id(state: &[u8]) -> u64 {
     u64::from_le_bytes(*state.first_chunk().expect("a state has a number"))
 }

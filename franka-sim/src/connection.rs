@@ -71,8 +71,8 @@ impl<P: Protocol> Connection<P> {
         self.received.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete request. Answers handshakes, and requests that no device accepts,
-    /// by itself: it writes these answers to `replies`.
+    /// Returns the next complete request. This function itself answers handshakes, and requests
+    /// that no device accepts, through `replies`.
     pub(crate) fn next_request(
         &mut self,
         replies: &mut VecDeque<Bytes>,

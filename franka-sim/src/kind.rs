@@ -27,7 +27,6 @@ pub(crate) struct SafetyStatuses {
     pub(crate) recovery: RecoveryStatus,
 }
 
-/// The precision of the numbers in a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Precision {
     Single,

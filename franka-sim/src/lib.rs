@@ -60,8 +60,8 @@
 //!
 //! - The robot: the user must provide the robot's model library (protocol 5). The self-collision
 //!   check knows the shape of the Franka Hand, but not of other tools.
-//! - Errors: the simulator never raises errors of the force controller, of Desk's own motions, or
-//!   of the base's acceleration by itself. [`Robot::trip`] raises any error.
+//! - Errors: errors of the force controller, of Desk's own motions, and of the base's acceleration
+//!   never occur automatically. [`Robot::trip`] raises any error.
 //! - Physics: links do not bend, and joints bend only if the [`Arm`] has elasticity. The rigid-body
 //!   plant models no surroundings except a [`Touch`], and no contact of the arm with itself. The
 //!   MuJoCo plant (feature `mujoco`) contains a scene.
@@ -70,7 +70,7 @@
 //!   mass nor pose.
 //! - Unpublished values: the simulator chooses them, and [`Unpublished`] contains them as options:
 //!   tolerances, default thresholds and gains, the gain of the force estimate, and the criterion
-//!   for instability. None has been measured on a robot.
+//!   for instability. None of them has been measured on a robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // Some items are used only by the robot on sockets.

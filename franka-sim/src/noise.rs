@@ -6,7 +6,7 @@ use franka_model::JointVector;
 /// transform.
 ///
 /// The crate `rand` may change its small generator with the version or the platform. This generator
-/// gives the same numbers for a seed everywhere.
+/// returns the same numbers for a seed everywhere.
 #[derive(Debug, Clone)]
 pub(crate) struct Random {
     state: u64,

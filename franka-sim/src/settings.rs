@@ -37,7 +37,6 @@ pub(crate) struct Guiding {
 }
 
 impl Guiding {
-    /// All directions.
     pub(crate) const FREE: Self = Self {
         axes: [true; 6],
         elbow: true,

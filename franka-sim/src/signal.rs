@@ -10,7 +10,6 @@ use nalgebra::{Isometry3, Vector3};
 use crate::config::Extrapolation;
 use crate::kind::Precision;
 
-/// Positions of the seven joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct JointSignal {
     /// Joint positions, `[rad]`.

@@ -34,9 +34,9 @@ thread_local! {
     static GUARDS: Vec<CString> = Guard::ALL.iter().map(guard_text).collect();
 }
 
-/// Replaces the arm by a new arm at rest in the ready pose. The arm is a Franka Emika Robot if
-/// `kind` is 1, otherwise a Franka Research 3. It is ideal if `realistic` is 0, otherwise realistic
-/// and drawn from `seed`.
+/// Replaces the arm by a new arm at rest in the ready pose. If `kind` is 1, the arm is a Franka
+/// Emika Robot, otherwise an FR3. It is ideal if `realistic` is 0, otherwise realistic and drawn
+/// from `seed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(kind: u32, realistic: u32, seed: u32) {
     let kind = match kind {

@@ -1,4 +1,4 @@
-//! Tests of the actions that a visitor of the page can perform.
+//! Tests of a visitor's actions on the page.
 
 use franka_model::RobotKind;
 use franka_playground::{Playground, State};

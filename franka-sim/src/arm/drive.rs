@@ -62,8 +62,8 @@ pub struct Ripple {
 /// A torque that opposes the link of each joint and is missing in the robot's model, for example
 /// the torque of cables: `sine · sin(angle) + cosine · cos(angle)`.
 ///
-/// Source: the log of Gaz et al., in which such a term with an amplitude of 0.26 N·m lowers the
-/// unexplained torque of joint 4. It falls from 0.23 to 0.14 N·m.
+/// Source: the log of Gaz et al., in which such a term, with an amplitude of 0.26 N·m, explains a
+/// part of joint 4's torque. The unexplained part falls from 0.23 to 0.14 N·m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseTorque {
     /// Coefficient of the sine, `[N·m]`.

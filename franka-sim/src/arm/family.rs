@@ -120,7 +120,7 @@ pub struct Family {
     /// Tilt about each horizontal axis, `[rad]`.
     pub base_tilt: Distribution,
     /// Stalls per second of a Franka Emika Robot's network interface, drawn once per arm. A Franka
-    /// Research 3 has none. [`Stalls::FER`] defines their lengths.
+    /// Research 3 has no stalls. [`Stalls::FER`] defines their lengths.
     pub stalls_per_second: Distribution,
     /// Zero error of the motors' positions, for a Franka Research 3, `[rad]`. A Franka Emika Robot
     /// has no such error.

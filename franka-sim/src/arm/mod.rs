@@ -100,7 +100,7 @@ impl Arm {
         family.arm(kind, None)
     }
 
-    /// One arm of the family: the same seed gives the same arm.
+    /// One arm of the family. The same seed always selects the same arm.
     pub fn sample(kind: RobotKind, seed: u64, family: &Family) -> Self {
         family.arm(kind, Some(seed))
     }

@@ -1,5 +1,5 @@
 //! A simulated Franka robot for any client that speaks its protocol: `franka_sim::command_line` as
-//! a program.
+//! a binary.
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;

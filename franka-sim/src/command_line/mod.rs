@@ -27,7 +27,7 @@ impl Arguments {
     ///
     /// # Errors
     /// Returns an error if the options describe no valid robot, if an address is in use, or if the
-    /// simulation has ended by itself.
+    /// simulation has ended.
     pub async fn run(
         &self,
         ready: impl AsyncFnOnce(&Arc<Running>, &str) -> io::Result<()>,

@@ -35,7 +35,7 @@ pub struct Unpublished {
     pub zero_fields: bool,
     /// Number of errors that a cycle latches if its command violates several bounds.
     pub error_bits: ErrorBits,
-    /// Modes besides Idle in which the robot accepts setters (requests that change a setting).
+    /// Modes other than Idle in which the robot accepts setters (requests that change a setting).
     pub setters: Setters,
     /// The largest load and frames that setters accept.
     pub setter_bounds: SetterBounds,
@@ -173,7 +173,7 @@ pub enum ErrorBits {
     First,
 }
 
-/// Modes besides Idle in which the robot accepts setters. It never accepts them in a motion.
+/// Modes other than Idle in which the robot accepts setters. It never accepts setters in a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setters {
     /// True if the robot accepts setters after a reflex. Default true.
@@ -264,7 +264,7 @@ impl Default for SelfCollision {
 /// amplitude, than the acceleration limits permit in a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instability {
-    /// Least velocity to either side for a reversal to count, `[rad/s]`. Default 0.15.
+    /// Smallest velocity in each direction for a reversal to count, `[rad/s]`. Default 0.15.
     pub velocity: f64,
     /// Number of reversals within [`window`](Self::window). Default 8. With 0.15 rad/s to each
     /// side, 8 reversals in 0.1 s require 24 rad/s² on average. No robot permits commands above 20

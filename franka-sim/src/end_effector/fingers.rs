@@ -114,7 +114,6 @@ impl Fingers {
         self.finger_motion.object()?.take()
     }
 
-    /// The command for the fingers of a plant.
     pub(crate) fn drive(&self) -> FingerDrive {
         self.finger_motion.drive()
     }

@@ -9,7 +9,6 @@ use nalgebra::{Cholesky, Isometry3, SMatrix};
 use super::{Law, Spring};
 use crate::signal::{JointSignal, stack};
 
-/// Stiffness of the springs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Firmness {
     /// Stiffness of the stiffness frame, in its axes, `[N/m, N·m/rad]`.

@@ -2,8 +2,8 @@
 //!
 //! A controller computes a [`Law`] once per millisecond. Within the millisecond, the spring and
 //! damper of the law act on the arm at every step of the plant, like a robot's joint loops. This
-//! rate keeps every stiffness stable. An example is a stiffness of 14 250 N·m/rad on 0.074 kg·m²,
-//! which oscillates at 70 Hz.
+//! rate keeps every stiffness stable. The stiffest case is 14 250 N·m/rad on 0.074 kg·m². It
+//! oscillates at 70 Hz.
 
 mod cartesian_impedance;
 mod joint_impedance;

@@ -49,7 +49,6 @@ struct Schedule {
     next: Option<Next>,
 }
 
-/// The next stalls.
 #[derive(Debug, Clone)]
 struct Next {
     /// A multiple of the period.

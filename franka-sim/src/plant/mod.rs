@@ -52,7 +52,7 @@ pub trait Plant: Any + Debug + Send {
     fn fit(&mut self, kind: RobotKind, arm: &Arm);
 
     /// Advances by `dt` seconds under the torques of the drives and the external torques. The plant
-    /// adds the contact forces of its own objects.
+    /// adds the contact forces of objects around the arm.
     fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64);
 
     /// Puts the arm at rest at `q`, `[rad]`. Returns the torques that hold the arm there against

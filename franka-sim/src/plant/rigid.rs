@@ -16,9 +16,10 @@ use crate::arm::{Arm, EndStops};
 ///
 /// `torque` and the inertia come from the drives. `external` and the slope come from external
 /// torques. `D` is the damping of drives and stops, and `K` the stops' stiffness. The velocity
-/// advances before the position. Stiff parts (friction at rest, end stops, springs of touches) thus
-/// follow the implicit Euler rule, and the rest follows the symplectic rule. The step stays stable
-/// for any stiffness, and a free arm keeps its energy (see the tests in `plant::energy`).
+/// advances before the position. Stiff parts (friction at rest, end stops, springs of touches)
+/// therefore follow the implicit Euler rule, and all other parts follow the symplectic rule. The
+/// step stays stable for any stiffness, and a free arm keeps its energy (see the tests in
+/// `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: AsBuilt,

@@ -51,7 +51,8 @@ impl Measurement {
 }
 
 impl Robot {
-    /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
+    /// Controls the arm for one millisecond. Returns the controller's last torques, without
+    /// gravity.
     ///
     /// If control or physics diverges, this function puts the arm at rest in its last position and
     /// raises `instability_detected`. Otherwise a non-finite number would also affect all later

@@ -75,7 +75,7 @@ pub struct Robot {
     train: DriveTrain,
     interface: TorqueInterface,
     plant: Box<dyn Plant>,
-    /// Undeclared load on the flange besides the tool.
+    /// Undeclared load on the flange in addition to the tool.
     load: Load,
     /// URDF text.
     description: Option<Bytes>,

@@ -23,7 +23,7 @@ pub(super) struct Guidance {
     ends: [Ratchet; 7],
 }
 
-/// Conditions besides errors that keep the robot from moving.
+/// Conditions, other than errors, that prevent motions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lock {
     pub(super) user_stop: bool,

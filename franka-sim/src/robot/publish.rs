@@ -7,7 +7,7 @@ use nalgebra::Matrix4;
 use super::{Activity, Measurement, Robot};
 
 impl Robot {
-    /// Writes the state; `torque` is the controllers' last command, gravity excluded.
+    /// Writes the state. `torque` is the controllers' last command, without gravity.
     pub(super) fn publish(&mut self, torque: &JointVector) {
         let Measurement { q, dq, .. } = self.measurement;
         let rate = self.config.unpublished.first_cycles;

@@ -118,7 +118,7 @@ impl Robot {
         }
     }
 
-    /// Queues a reply for the client. A disconnected client gets no reply.
+    /// Queues a reply for the client. A disconnected client receives no reply.
     pub(super) fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let Some(client) = &mut self.client else {
             return;

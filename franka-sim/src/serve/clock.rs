@@ -119,12 +119,12 @@ impl Clock {
         self.due
     }
 
-    /// Records that the thread awaited a command until `wall`. No state is due earlier.
+    /// Records that the thread awaited a command until `wall`. No state is due before `wall`.
     pub(super) fn waited(&mut self, wall: Instant) {
         self.due = self.due.max(self.at(wall));
     }
 
-    /// Records that the thread woke at `wall` instead of `meant`. The clock slips if this is too
+    /// Records that the thread woke at `wall` instead of `meant`. The clock slips if `wall` is too
     /// late.
     pub(super) fn woke(&mut self, wall: Instant, meant: Instant) {
         let late = self.at(wall).saturating_duration_since(meant);

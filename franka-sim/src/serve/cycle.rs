@@ -1,4 +1,4 @@
-//! The simulator's thread: one state per millisecond or, in virtual time, one per answer.
+//! The simulator's thread: one state per millisecond or, in virtual time, one state per answer.
 
 use std::time::{Duration, Instant};
 

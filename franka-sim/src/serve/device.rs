@@ -92,7 +92,7 @@ where
         M::Protocol::default().device()
     }
 
-    /// The end effectors' protocols have no commands by UDP.
+    /// The protocols of the end effectors have no UDP commands.
     fn command(&mut self, _: &[u8]) {}
 
     fn awaits(&self) -> Awaited {

@@ -24,7 +24,7 @@ pub(super) fn raise() -> std::io::Result<()> {
     }
 }
 
-/// Fails: systems other than Linux have no such priority.
+/// Always fails, because only Linux has this priority.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn raise() -> std::io::Result<()> {
     Err(std::io::ErrorKind::Unsupported.into())

@@ -23,7 +23,7 @@ pub struct Running {
     pub(super) vacuum_gripper: Option<Service<VacuumGripper>>,
     /// Speed of robot time; `None` without virtual time.
     pub(super) speed: Option<Speed>,
-    /// Closed when the thread ends for any reason.
+    /// Channel that closes when the thread ends for any reason.
     pub(super) finished: watch::Receiver<()>,
 }
 

@@ -1,4 +1,4 @@
-//! Sessions of clients. A device has one client at a time and refuses a second.
+//! Sessions of clients. A device has one client at a time, and refuses a second client.
 //!
 //! ```text
 //! pending ── handshake is whole ──> waits a moment ── device is free ──> session

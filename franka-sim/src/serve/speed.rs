@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 use super::Running;
 use super::clock::PERIOD;
 
-/// Duration of one robot millisecond while the robot is paused, on the wall clock. Clients consider
-/// a connection lost after a second without a state.
+/// Wall-clock duration of one robot millisecond while the robot is paused. Clients consider a
+/// connection lost after a second without a state.
 const PAUSED_PERIOD: Duration = Duration::from_millis(400);
 
-/// Longest sleep. A new speed takes effect at the latest after this time.
+/// Longest sleep. A new speed takes effect within this time.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Longest delay of robot time that the simulator still makes up for.

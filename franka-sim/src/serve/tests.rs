@@ -15,7 +15,6 @@ use crate::robot::Touch;
 /// Time limit for every event, long enough for a busy machine.
 pub(super) const SOON: Duration = Duration::from_secs(300);
 
-/// A simple client that blocks.
 struct Client {
     stream: TcpStream,
     session: client::Session,

@@ -126,7 +126,7 @@ fn a_cartesian_ramp_may_be_too_fast_for_the_joints_alone() {
     let (mut pair, id) = cartesian(MoveGeneratorMode::CartesianVelocity);
     let mut command = RobotCommand::default();
     while pair.state.robot_mode == RobotMode::Move {
-        // Cartesian limits permit 3.2 m/s², but joint 2 must turn by 3.2 rad per metre.
+        // Cartesian limits permit this acceleration, but joint 2 must turn by 3.2 rad per metre.
         command.O_dP_EE_c[0] += 3.2e-3;
         pair.tick(Some(command));
     }

@@ -16,7 +16,7 @@ fn push(joint: usize, torque: f64) -> Touch {
     Touch::torque(torques)
 }
 
-/// Causes an error, so that there is an error to recover from.
+/// Causes an error from which a test can recover.
 fn fail(pair: &mut Pair) {
     pair.start_joints();
     let mut q = READY;

@@ -247,7 +247,6 @@ impl Pair {
         assert_eq!(seen, self.state.message_id, "the reply overtook its state");
     }
 
-    /// Returns the model that the robot's controllers use.
     pub(crate) fn model(&self) -> &'static Model {
         Model::physically_consistent(self.robot.config().kind)
     }

@@ -6,7 +6,7 @@ use crate::each_robot;
 use crate::good::{assert_moves_during, assert_served};
 use crate::port::{Connection, Port, receive};
 
-/// Asserts that the connected client still gets answers and states.
+/// Asserts that the connected client still receives answers and states.
 fn assert_undisturbed(port: &Port, connection: &mut Connection, udp: &UdpSocket, id: u32) {
     connection.send(&port.message(port.stop, id, &[]));
     let answer = connection.read(port.header() + 1).expect("an answer");

@@ -176,7 +176,6 @@ struct World {
     ahead_is_of: Option<usize>,
 }
 
-/// An arm in the world.
 struct Standing {
     kind: RobotKind,
     prefix: String,
