@@ -14,7 +14,7 @@ pub struct Drive {
     /// Franka Research 3 give 1.3 (joint 4) to more than 4 (wrist).
     pub torque_loop_gain: f64,
     /// Time constant of the first-order lag with which the torque follows a command of the torque
-    /// interface, `[s]`. We know no source. A force bandwidth of 10 Hz, and the gains that are
+    /// interface, `[s]`. No source is known. A force bandwidth of 10 Hz, and the gains that are
     /// stable on real arms, bound the value.
     pub torque_lag: f64,
     /// Number of cycles between a state and the cycle in which the answer to this state takes

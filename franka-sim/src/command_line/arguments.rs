@@ -13,15 +13,15 @@ use crate::arm::SystemLimits;
 /// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
 /// interrupted.
 ///
-/// Point a client at the address that is printed once the robot is ready, for example libfranka's
-/// `franka::Robot robot("127.0.0.1")` or pylibfranka's
+/// When the robot is ready, the simulator prints its address. Connect a client to this address, for
+/// example libfranka's `franka::Robot robot("127.0.0.1")` or pylibfranka's
 /// `Robot("127.0.0.1", RealtimeConfig.kIgnore)`. The robot accepts one client at a time and keeps
 /// its state between clients.
 ///
-/// The robot is as strict as a real one. A command beyond a limit, a step in velocity or torque, a
-/// collision, or 20 missing commands in a row end a motion in a reflex. The client clears it with
-/// an automatic error recovery. With --permissive the robot accepts such commands, so that a
-/// program can be made to run before it is made safe.
+/// The robot is as strict as a real robot. A command beyond a limit, a step in velocity or torque,
+/// a collision, or 20 missing commands in a row cause a reflex: the robot stops the motion itself.
+/// The client can then request an automatic error recovery. With --permissive, the robot accepts
+/// such commands. You can then develop a program before you make it safe.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
 pub struct Arguments {
@@ -29,22 +29,23 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     pub robot: Kind,
 
-    /// Address to listen on, IPv4 or IPv6; 0.0.0.0 for all interfaces, :: for both families on all
-    /// of them.
+    /// Address to listen on, IPv4 or IPv6. 0.0.0.0 selects all IPv4 interfaces, and :: selects all
+    /// interfaces with IPv4 and IPv6.
     #[arg(long, default_value = "127.0.0.1")]
     pub bind: IpAddr,
 
-    /// TCP port to listen on; 0 takes a free one. Other clients than ours only use 1337.
+    /// TCP port to listen on; 0 selects a free port. Clients of other projects can use only 1337.
     #[arg(long, default_value_t = 1337)]
     pub port: u16,
 
-    /// Joint positions at the start, in radians, separated by commas; the ready pose if absent.
+    /// Joint positions at the start, in radians, separated by commas. The default is the ready
+    /// pose.
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     pub q: Option<[f64; 7]>,
 
-    /// Serves neither a Franka Hand nor a vacuum gripper. Without this option they listen on the
-    /// two ports after the robot's, as on a robot: 1338 and 1339. On port 0 all three ports are
-    /// free ones.
+    /// Serves neither a Franka Hand nor a vacuum gripper. Without this option, they listen on the
+    /// two ports after the port of the robot, like real ones: 1338 and 1339. With port 0, all three
+    /// ports are free ports.
     #[arg(long)]
     pub no_gripper: bool,
 
@@ -57,7 +58,8 @@ pub struct Arguments {
     #[arg(long)]
     pub hand: bool,
 
-    /// A load on the flange, unknown to the robot until a client declares it, in kilograms.
+    /// Mass of a load on the flange, in kilograms. The robot does not know the load until a client
+    /// declares it.
     #[arg(long, value_name = "KG", value_parser = mass, default_value = "0", allow_hyphen_values = true)]
     pub payload: f64,
 
@@ -66,26 +68,26 @@ pub struct Arguments {
     pub payload_com: [f64; 3],
 
     /// The arm: the middle of one of the families `nominal`, `realistic` and `bad`, or of the
-    /// family in a JSON file; or `ideal`, without stiction, delay and noise, unlike any real arm.
-    /// The book (docs/src/real-arm.md) has the parameters.
+    /// family in a JSON file; or `ideal`, which has no stiction, delay and noise, unlike any real
+    /// arm. The book (docs/src/real-arm.md) lists the parameters.
     #[arg(long, value_name = "ARM|FILE.json", default_value = "realistic")]
     pub arm: String,
 
-    /// Draws an arm from the family by this seed, instead of using its middle.
+    /// Draws an arm from the family with this seed, instead of the middle arm.
     #[arg(long, value_name = "N")]
     pub arm_seed: Option<u64>,
 
-    /// Joint limits of the robot's system, in place of the arm's own (FR3 only).
+    /// Joint limits of a system version, instead of the limits of the arm (FR3 only).
     #[arg(long, value_enum)]
     pub limits: Option<LimitsKind>,
 
-    /// Geometry of the reported poses and of the robot's inverse kinematics, in place of the arm's
-    /// own: `recorded` for an FR3, `described` for an FER and for `--arm ideal`. The served
-    /// description has its lengths. Errors of the links themselves come from --arm.
+    /// Geometry of the reported poses and of the robot's inverse kinematics, instead of the
+    /// geometry of the arm. An FR3 has `recorded`; an FER and `--arm ideal` have `described`. The
+    /// served description contains its lengths. Errors of the links themselves come from --arm.
     #[arg(long, value_enum)]
     pub state_geometry: Option<GeometryKind>,
 
-    /// Adds noise to the sensors, in place of the arm's own.
+    /// Uses noisy sensors, but keeps the sensor offsets of the arm.
     #[arg(long)]
     pub noise: bool,
 
@@ -100,8 +102,8 @@ pub struct Arguments {
     pub scene: Option<PathBuf>,
 
     /// A file with the model library that the robot serves (FER only), for clients that require
-    /// one. The library is the vendor's and cannot be distributed here. Without this option the
-    /// robot answers that it has no library.
+    /// one. The vendor's library cannot be distributed here. Without this option, the robot answers
+    /// that it has no library.
     #[arg(long, value_name = "FILE")]
     pub model_library: Option<PathBuf>,
 
@@ -109,52 +111,52 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
     pub network: NetworkKind,
 
-    /// Seed of all randomness.
+    /// Seed of all random numbers.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 
-    /// True if commands and motions beyond the limits end in a reflex, as on a robot. With `false`
-    /// the arm does what it physically can.
+    /// True if commands and motions beyond the limits cause a reflex, as on a real robot. With
+    /// `false`, only physics limits the arm.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
     pub enforce_motion_limits: bool,
 
-    /// Factor on the bounds of acceleration and jerk for commanded joints. Use a value above 1 for
-    /// clients that are rougher than a robot allows; a robot would stop with a discontinuity error.
+    /// Factor on the acceleration and jerk limits of commanded joints. Use a value above 1 for
+    /// clients that a real robot would stop with a discontinuity error.
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
     pub joint_discontinuity_scale: f64,
 
-    /// True if 20 missing commands in a row end in a reflex, as on a robot. With `false` the robot
-    /// waits for them: for slow or debugged clients.
+    /// True if 20 missing commands in a row cause a reflex, as on a real robot. With `false`, the
+    /// robot waits for slow or debugged clients.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
     pub enforce_comm_constraints: bool,
 
-    /// Enforces neither limits nor missing commands, so that the robot does not stop for them.
+    /// Accepts commands beyond the limits and missing commands, without a stop of the robot.
     #[arg(long)]
     pub permissive: bool,
 
-    /// Requests a real-time priority (SCHED_FIFO) for the thread that keeps the millisecond, which
-    /// requires the right to one. Without the right, the simulator prints a warning and continues.
+    /// Requests a real-time priority (SCHED_FIFO) for the simulator's thread, which requires the
+    /// right to such a priority. Without the right, the simulator prints a warning and continues.
     #[arg(long)]
     pub realtime: bool,
 
-    /// Follows the wall clock even if the host delays the simulator. States that are due then come
-    /// in a burst, and answers that come too late for them count as lost. Without this option the
-    /// robot's clock slips by the host's delay. The log reports at the end how often that happened.
+    /// Follows the wall clock even if the host delays the simulator. Due states then arrive in a
+    /// burst, and late answers count as lost. Without this option, the robot's clock falls behind
+    /// by the host's delay. The log reports at the end how often the host was late.
     #[arg(long)]
     pub strict_clock: bool,
 
-    /// Waits for late commands, each for this many seconds at most, while the robot's clock is
-    /// stopped: for clients on a busy machine.
+    /// Waits for each late command, up to this number of seconds, and stops the robot's clock
+    /// during the wait. Use this option for clients on a busy machine.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["strict_clock", "virtual_time"])]
     pub wait_for_commands: Option<Duration>,
 
-    /// Advances the robot's time as fast as the client answers, not by the wall clock. In a motion
-    /// the next millisecond begins when the answer to the last state arrives, or counts as missing
-    /// after this many seconds. For tests, and for clients slower than a robot allows.
+    /// Advances the robot's time as fast as the client answers, not with the wall clock. In a
+    /// motion, the next millisecond begins when the answer to the last state arrives. The answer
+    /// counts as missing after this number of seconds. Use this option for tests and slow clients.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["realtime", "strict_clock"])]
@@ -170,10 +172,10 @@ pub enum Kind {
     Fer,
 }
 
-/// Systems whose joint limits differ.
+/// System versions with different joint limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum LimitsKind {
-    /// From 5.9 on: wider ranges, less speed near their ends
+    /// 5.9 and later: wider ranges, lower speed near their ends
     #[value(name = "5.9")]
     From5_9,
     /// Before 5.9
@@ -181,14 +183,15 @@ pub enum LimitsKind {
     Before5_9,
 }
 
-/// Geometries of the robot's own poses.
+/// Geometries from which the robot computes its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum GeometryKind {
     /// The vendor's description: upper arm 0.316 m, forearm 0.384 m
     Described,
     /// The recorded Franka Research 3: 0.3162 m and 0.3842 m
     Recorded,
-    /// The vendor's description with 1 mm and 3 mrad of errors by --seed, which no client knows
+    /// The vendor's description with errors of 1 mm and 3 mrad, drawn from --seed, which no client
+    /// knows
     Random,
 }
 
@@ -204,13 +207,14 @@ pub enum PlantKind {
 /// Networks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum NetworkKind {
-    /// Nothing
+    /// No delay and no loss
     Perfect,
-    /// The robot's network interface stalls for 2 to 7 ms seven times a second, as an FER's does
+    /// The robot's network interface stalls seven times a second for 2 to 7 ms, like an FER's
+    /// interface
     FerStalls,
     /// One packet in a hundred is lost, in either direction
     Lossy,
-    /// The same loss rate, eight in a row on average
+    /// One packet in a hundred is lost, in bursts of eight on average
     Bursts,
 }
 
@@ -263,8 +267,8 @@ mod tests {
     #[test]
     fn arguments_that_make_no_robot_are_refused() {
         let patience = |arguments| parse(arguments).ok().and_then(|parsed| parsed.virtual_time);
-        // libfranka drops a connection when no state comes for a second. A client that skips an
-        // answer must not lose its connection for this reason.
+        // libfranka closes a connection after a second without a state. A client that skips an
+        // answer must not lose its connection.
         let default = patience(&["--virtual-time"]);
         assert_eq!(default, Some(Duration::from_millis(500)));
         let short = patience(&["--virtual-time=0.1"]);

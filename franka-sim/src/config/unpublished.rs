@@ -3,7 +3,7 @@
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
-/// Assumptions about properties of the robot that are not published. None has been measured. If a
+/// Assumptions that replace unpublished properties of the robot. None has been measured. If a
 /// client depends on a value, test it with other values, too.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {

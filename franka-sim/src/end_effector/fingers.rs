@@ -12,7 +12,7 @@ use crate::plant::FingerDrive;
 /// fingers and objects: see [`Robot::couple`](crate::Robot::couple).
 ///
 /// libfranka documents the known behaviour of real hands. All other behaviour is a choice of the
-/// simulator, and has not been measured. Each choice is marked.
+/// simulator, not measured, and marked as a choice.
 ///
 /// * Before the first homing, `max_width` is 0, and the hand refuses every larger width.
 /// * If an object blocks a move, the hand continues to push, and the move fails after

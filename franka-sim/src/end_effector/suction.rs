@@ -8,8 +8,8 @@ use super::{Mechanism, towards};
 
 /// A pump that builds up a vacuum on an object, and a valve that ends the vacuum.
 ///
-/// All figures are choices of the simulator; none has been measured. The four profiles of the real
-/// device have the same effect in the simulator.
+/// All figures are choices of the simulator; none has been measured. The four profiles of the
+/// device have the same effect here.
 ///
 /// * A vacuum requires an object, and is at most [`Suction::MAX_VACUUM`]. A request is unsuccessful
 ///   if the vacuum is not reached in time.

@@ -159,13 +159,13 @@ impl Sim {
         self
     }
 
-    /// Listens on `address` (IPv4 or IPv6). Port 0 selects a free port. Real robots use port 1337.
+    /// Listens on `address`. Port 0 selects a free port. Real robots use port 1337.
     pub fn bind(mut self, address: SocketAddr) -> Self {
         self.bind = address;
         self
     }
 
-    /// Uses this plant (physics), not the rigid-body plant: see [`Robot::with_plant`].
+    /// Replaces the rigid-body plant (the physics) by this plant: see [`Robot::with_plant`].
     pub fn plant(mut self, plant: impl Plant) -> Self {
         self.plant = Some(Box::new(plant));
         self
@@ -261,9 +261,8 @@ impl Sim {
     ///   client that is too slow misses some of these states.
     ///
     /// The delays of a [`network`](Self::network) are in robot time, in which the client needs no
-    /// time to answer. If a client measures time with its own clock instead of the time in the
-    /// states, it measures other durations than the robot. [`Running::set_speed`] slows down or
-    /// pauses robot time.
+    /// time to answer. A client that measures time with its own clock measures other durations than
+    /// the robot. [`Running::set_speed`] slows down or pauses robot time.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;

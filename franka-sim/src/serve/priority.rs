@@ -3,7 +3,7 @@
 /// Raises the calling thread to a real-time priority.
 ///
 /// # Errors
-/// Returns the host's error. The usual cause is that the user has no right to real-time priority.
+/// Returns the host's error, usually because the user lacks the right to this priority.
 #[cfg(target_os = "linux")]
 pub(super) fn raise() -> std::io::Result<()> {
     // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value. musl

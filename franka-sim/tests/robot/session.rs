@@ -180,8 +180,8 @@ fn first_state_of_a_motion_after_braking_can_be_answered() {
     pair.begin(request);
     pair.tick(Some(positions(&home.add_scalar(0.2))));
     pair.idle(200);
-    // The client finishes in the middle of the motion. The arm brakes, and the next motion waits
-    // until the arm has stopped.
+    // The client finishes in the middle of the motion. The next motion waits until the arm has
+    // stopped.
     pair.tick(Some(RobotCommand {
         motion_generation_finished: true,
         ..RobotCommand::default()
