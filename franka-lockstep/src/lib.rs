@@ -1,5 +1,5 @@
 //! The driver, the command session and the simulated robot in one thread, in virtual time. Runs
-//! need no waiting and can be repeated exactly.
+//! never wait, and can be repeated exactly.
 //!
 //! ```text
 //!   Lifecycle --requests--> client::Session ~~bytes~~> Robot (simulated)

@@ -25,7 +25,7 @@ pub struct Link {
 pub(super) struct Reception {
     pub(super) at: Duration,
     pub(super) datagram: Vec<u8>,
-    /// Number of older states that had also arrived and are skipped.
+    /// Number of older states that had also arrived, and that the client skips.
     pub(super) skipped: u64,
 }
 

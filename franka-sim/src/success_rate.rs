@@ -12,8 +12,8 @@ const WINDOW: u32 = 100;
 
 /// The last hundred cycles, newest in the lowest bit.
 ///
-/// Counting begins with the client's first command; before it the robot waits. A late command
-/// counts as the first command, which is a choice of the simulator.
+/// Counting begins with the client's first command. A late command counts as the first command,
+/// which is a choice of the simulator.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,

@@ -40,7 +40,7 @@ pub(super) enum Order {
 /// Largest number of datagrams read per cycle, because a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
-/// Largest number of orders per cycle, for the same reason.
+/// Largest number of orders per cycle, because a flood must not stop the clock.
 const ORDERS: usize = 32;
 
 /// Longest time for which the wait for a command may delay orders and jobs.

@@ -24,7 +24,7 @@ pub(super) fn raise() -> std::io::Result<()> {
     }
 }
 
-/// Always fails, because only Linux has this priority.
+/// Always fails, because only Linux is supported.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn raise() -> std::io::Result<()> {
     Err(std::io::ErrorKind::Unsupported.into())

@@ -332,8 +332,7 @@ fn states_to_clients_pass_the_simulated_network() {
     for _ in 0..20 {
         let asked = Instant::now();
         let published = newest();
-        // The answer may come in the middle of a cycle. The second state after it is certainly
-        // later.
+        // The answer may come within a cycle, so only the second state after it is certainly later.
         while client.state().message_id <= published + 1 {}
         assert!(asked.elapsed() >= delay, "{:?}", asked.elapsed());
     }

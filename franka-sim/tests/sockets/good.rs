@@ -76,7 +76,7 @@ pub(crate) fn assert_moves(binary: &Binary) {
     });
 }
 
-/// Clears errors that a delay of a client on a busy machine has caused.
+/// Clears errors that delays on a busy machine have caused.
 pub(crate) fn recover(binary: &Binary) {
     runtime().block_on(async {
         let robot = connect(binary).await;

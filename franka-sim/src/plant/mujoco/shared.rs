@@ -35,8 +35,8 @@ pub struct Mount {
 /// One of several arms in one world of MuJoCo; see [`shared_world`]. It is a plant like
 /// [`MujocoArm`](super::MujocoArm), without a hand.
 ///
-/// The robots that move the arms must not differ by more than 10 ms. If a robot is later, the world
-/// advances without it, and its drives keep their last torques.
+/// The times of the robots that move the arms must not differ by more than 10 ms. If a robot is
+/// later, the world advances without it, and its drives keep their last torques.
 /// [`Sim::in_step`](crate::Sim::in_step) keeps the robots in step.
 pub struct SharedArm {
     world: Arc<Mutex<World>>,
