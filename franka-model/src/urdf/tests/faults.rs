@@ -19,7 +19,7 @@ fn urdf_that_describes_no_arm_is_refused() {
         ),
         (
             "<robot name=\"tmr_base\"/>",
-            "the URDF describes the mobile robot 'tmr_base', expected an arm; libfranka: loadModel() is not",
+            "the URDF describes the mobile robot 'tmr_base', expected an arm (libfranka: loadModel() is not",
         ),
         (
             "<robot name=\"fr3\"/>",
