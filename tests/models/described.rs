@@ -67,7 +67,7 @@ async fn a_range_without_room_is_refused_while_connecting() {
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let error = builder.connect().await.expect_err("no room").to_string();
     assert!(
-        error.contains("joint joint1, -0.003 to 0.003 rad,") && error.contains("expected 0.2"),
+        error.contains("joint joint1, from -0.003 to 0.003 rad,") && error.contains("expected 0.2"),
         "{error}"
     );
 }
