@@ -227,7 +227,7 @@ fn simulate(arm: ArmKind, kind: RobotKind) -> Arm {
     }
 }
 
-/// Returns the network with these conditions; `None` if the conditions are those of the host.
+/// Returns the network with these conditions; `None` for the conditions of the host.
 fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
     let Conditions {
         loss,

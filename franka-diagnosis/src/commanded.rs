@@ -277,7 +277,7 @@ fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order:
     let (half, order) = match sample.before.motion_generator_mode {
         Generator::JointPosition => (half_digit(sample.command.q_c[i]), order),
         Generator::JointVelocity => (half_digit(sample.command.dq_c[i]), order - 1),
-        // Near a singularity, the joints move ten times as far as the pose.
+        // Near a singularity, the joints move ten times more than the pose.
         _ => (10.0 * half_digit(POSE), order),
     };
     2.0 * half / CYCLE.powi(order)

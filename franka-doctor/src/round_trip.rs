@@ -1,5 +1,5 @@
-//! Round-trip time of packets to the robot, measured with echo requests (ICMP) like those of
-//! `ping`.
+//! Round-trip time of packets to the robot, measured with echo requests (ICMP), as `ping`
+//! sends them.
 
 use core::time::Duration;
 use std::io;

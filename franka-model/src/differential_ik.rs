@@ -38,7 +38,7 @@ use crate::{Jacobian, JointVector, Twist};
 pub use crate::box_qp::{JointBox, Outcome, PASSES_MAX, Side};
 use crate::box_qp::{Problem, minimise};
 
-/// How the damping `λ` depends on the manipulability; see the [module](self).
+/// Dependence of the damping `λ` on the manipulability; see the [module](self).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
     /// Damping far from singularities, in radians per radian. The square of this value is the share

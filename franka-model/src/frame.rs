@@ -21,7 +21,7 @@ pub enum Frame {
     Joint6,
     /// Frame of link 7.
     Joint7,
-    /// Centre of the flange surface, 0.107 m along the axis of joint 7, oriented like link 7.
+    /// Centre of the flange surface, 0.107 m along the last axis, oriented like link 7.
     Flange,
     /// The end effector, at [`EndEffector::f_t_ee`] from the flange.
     EndEffector,

@@ -8,7 +8,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
-/// Base to shoulder, where axes 1, 2 and 3 meet, along the axis of joint 1, `[m]`.
+/// Base to shoulder, where the first three axes meet, along the axis of joint 1, `[m]`.
 pub const SHOULDER: f64 = 0.333;
 /// Shoulder to elbow, along the axis of joint 3, `[m]`.
 pub const UPPER_ARM: f64 = 0.316;
@@ -16,7 +16,7 @@ pub const UPPER_ARM: f64 = 0.316;
 pub const ELBOW: f64 = 0.0825;
 /// Elbow to wrist, along the axis of joint 5, `[m]`.
 pub const FOREARM: f64 = 0.384;
-/// Offset of the axis of joint 7 from the wrist, where axes 5 and 6 meet, `[m]`.
+/// Offset of the last axis from the wrist, where axes 5 and 6 meet, `[m]`.
 pub const WRIST: f64 = 0.088;
 /// Frame of link 7 to flange, along the axis of joint 7, `[m]`.
 pub const FLANGE: f64 = 0.107;
@@ -50,7 +50,7 @@ impl Lengths {
     /// All known sets of lengths.
     pub const KNOWN: [Self; 2] = [Self::DESCRIBED, Self::RECORDED_FR3];
 
-    /// Returns the origins of joints 1 to 7; the origin of joint 1 is in the base frame.
+    /// Returns the origins of the joints. The first origin is in the base frame.
     pub const fn joint_origins(&self) -> [JointOrigin; 7] {
         const fn origin(x: f64, y: f64, z: f64, roll: f64) -> JointOrigin {
             JointOrigin {

@@ -135,7 +135,7 @@ impl Member {
                 (member.take)()
             });
             let begun =
-                "got a motion that has already begun, expected one that was not awaited yet";
+                "got a motion that has already begun, expected a motion that was not awaited";
             let taken = taken.ok_or_else(|| PyValueError::new_err(begun))?;
             // It is awaited as a part of the joint motion.
             motion.call_method0("close")?;

@@ -107,7 +107,7 @@ pub enum Target {
     Pose(Isometry3<f64>),
 }
 
-/// How and when a goal ended.
+/// Time and kind of a goal's end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Number of the goal; 0 if the goal has no number.

@@ -78,7 +78,7 @@ pub struct Reception {
     pub foreign: u64,
     /// Number of datagrams from the robot that were too short for a state.
     pub short: u64,
-    /// Length of the last short datagram, in bytes; 0 if there was none.
+    /// Length of the last short datagram, in bytes; 0 before the first one.
     pub short_length: usize,
     /// `message_id` of the last state that was dropped because it was more than [`LEAP_MAX`] above
     /// the newest; `None` if there was no such state.

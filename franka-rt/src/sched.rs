@@ -19,7 +19,7 @@ pub use error::SchedError;
 pub use kernel::{Kernel, kernel_is_realtime};
 pub use stack::{DEFAULT as PREFAULT_DEFAULT, MAX as PREFAULT_MAX};
 
-/// What to do when the operating system refuses a request.
+/// Reaction if the operating system refuses a request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Realtime {
     /// Returns an error unless every request is granted and the kernel is a real-time kernel
@@ -33,7 +33,7 @@ pub enum Realtime {
 /// Requests to the operating system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scheduling {
-    /// What to do about refusals.
+    /// Reaction to refusals.
     pub realtime: Realtime,
     /// `SCHED_FIFO` priority, 1 to 99; the system's maximum if `None`.
     pub priority: Option<i32>,

@@ -60,7 +60,7 @@ impl WrenchTare {
     }
 
     /// Returns the largest change of any joint position since the tare, `[rad]`. The tare is
-    /// assumed to hold up to [`Self::NEAR`].
+    /// assumed to hold within [`Self::NEAR`].
     pub fn turned(&self, state: &RobotState) -> f64 {
         let turned = (0..7).map(|i| (state.q[i] - self.q[i]).abs());
         turned.fold(0.0, f64::max)

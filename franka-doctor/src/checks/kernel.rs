@@ -30,7 +30,7 @@ pub(super) fn version(readings: &Readings<'_>) -> Result<Judged, Unread> {
     Ok(Judged::info(release))
 }
 
-/// How to install a real-time kernel on a computer.
+/// Way to install a real-time kernel on a computer.
 enum Remedy {
     /// One command installs the kernel.
     Command(&'static str),

@@ -14,7 +14,7 @@ struct Case {
 }
 
 impl Case {
-    /// Returns a problem like those of differential IK, with rank 6 and damping. Some intervals
+    /// Returns a problem as in differential IK, with rank 6 and damping. Some intervals
     /// have no width, some bounds are infinite, and some bounds are at the free minimum.
     fn random(random: &mut Random, damping: f64) -> Self {
         let rows = Jacobian::from_fn(|_, _| random.uniform(-1.0, 1.0));

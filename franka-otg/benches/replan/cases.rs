@@ -56,7 +56,7 @@ pub(crate) fn clock() -> u64 {
 }
 
 /// States of motions to a sequence of targets, at random times of each motion: before, in and after
-/// the phase of constant velocity. From time to time, the limits change to those of another arm.
+/// the phase of constant velocity. From time to time, another arm's limits apply.
 pub(crate) struct Cases<const N: usize, L> {
     random: SmallRng,
     limits: L,

@@ -6,7 +6,7 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayOptions {
-    /// How exactly the client's messages must match the recorded messages.
+    /// Required match between the client's messages and the recorded messages.
     pub matching: Matching,
     /// Timing of the robot's messages.
     pub pace: Pace,
@@ -24,7 +24,7 @@ impl Default for PlayOptions {
     }
 }
 
-/// How exactly the client's messages must match the recorded messages.
+/// Required match between the client's messages and the recorded messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Matching {
     /// The client must send the recorded bytes, including every recorded command. Three values may

@@ -202,7 +202,7 @@ impl Files {
         self.take_missing_at_end(robot)
     }
 
-    /// Like [`Self::take_missing`], but for the end of a robot's cycles.
+    /// Does the same as [`Self::take_missing`] at the end of a robot's cycles.
     pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
         let robot = self.robots.get_mut(robot);
         robot.map_or(0, |robot| mem::take(&mut robot.missing))

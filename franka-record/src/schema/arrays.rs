@@ -24,7 +24,7 @@ pub(super) fn get<const N: usize>(message: &[f32]) -> [f64; N] {
     core::array::from_fn(|index| message.get(index).map_or(0.0, |&value| f64::from(value)))
 }
 
-/// Like [`get`], but for a field with full precision.
+/// Does the same as [`get`] for a field with full precision.
 pub(super) fn get_exact<const N: usize>(message: &[f64]) -> [f64; N] {
     core::array::from_fn(|index| message.get(index).copied().unwrap_or(0.0))
 }

@@ -65,7 +65,7 @@ pub enum Event {
 pub struct Ended {
     /// The motion.
     pub motion: MotionId,
-    /// How the motion ended.
+    /// End of the motion.
     pub ending: Ending,
     /// `robot_mode` of the newest state.
     pub robot_mode: RobotMode,
@@ -94,7 +94,7 @@ impl Ended {
     }
 }
 
-/// How a motion ended, as the thread saw it. The robot reports the end itself, in its last reply to
+/// End of a motion, as the thread saw it. The robot reports the end itself, in its last reply to
 /// the `Move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {

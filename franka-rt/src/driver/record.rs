@@ -17,7 +17,7 @@ pub struct Record {
     pub time: u64,
     /// Number of states that were lost or skipped just before this state.
     pub skipped: u64,
-    /// What the driver did in this cycle.
+    /// Activity of the driver in this cycle.
     pub activity: Activity,
     /// The robot's mode.
     pub robot_mode: RobotMode,
@@ -72,7 +72,7 @@ pub struct Record {
     pub slack: Option<Slack>,
 }
 
-/// What the driver did in a cycle.
+/// Activity of the driver in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -207,7 +207,7 @@ fn the_wait_follows_the_link_timeout() {
     let Bench { exchange, .. } = Bench::new();
     let wait = Duration::from_millis(5);
     let mut exchange = exchange.with_wait(wait).expect("an option");
-    // The kernel rounds the wait up, but not as far as a tick.
+    // The kernel rounds the wait up, by less than a tick.
     let option = exchange.socket.read_timeout().expect("an option");
     assert!(option >= Some(wait) && option < Some(TICK), "{option:?}");
     assert_eq!(exchange.receive().waited, wait);

@@ -31,7 +31,7 @@ pub(super) struct Handoff<T> {
     tick: Duration,
 }
 
-/// Where the value is.
+/// Place of the value.
 enum HandoffState<T> {
     /// The owner has the value.
     Running,

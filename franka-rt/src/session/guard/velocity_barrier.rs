@@ -9,10 +9,10 @@
 //! tau' = (1 - s) tau - s side clamp        s = smoothstep((side dq - onset) / (here - onset))
 //! ```
 //!
-//! `side` is the sign of `dq`, or of the nearer end of the range if the joint is slow. `here` is the
-//! limit of the velocity at the joint's position: near the end of its range a joint has a lower
-//! limit, the [velocity envelope](JointLimits::velocity_envelope). A robot without an envelope
-//! uses [`ENDS`].
+//! `side` is the sign of `dq`, or of the nearer end of the range if the joint is slow. `here` is
+//! the limit of the velocity at the joint's position: near the end of its range a joint has a lower
+//! limit, the [velocity envelope](JointLimits::velocity_envelope). Robots without an envelope use
+//! [`ENDS`].
 //!
 //! The braking begins at [`ONSET`] of the limit. Near an end it begins as far below `here`, but
 //! above the velocity of the reference, so a motion to the end arrives. A joint that is pushed
@@ -41,7 +41,7 @@ const BEYOND: f64 = 0.02;
 /// Rate at which [`FASTER`] decreases with the distance beyond that, `[1/s]`.
 const RETURN: f64 = 10.0;
 
-/// Envelope of robots that have none of their own: the decelerations of the Franka Research 3. At
+/// Envelope of robots without an envelope: the decelerations of the Franka Research 3. At
 /// rest, a joint is fully held 3 to 17 mrad before its end.
 const ENDS: BrakingEnvelope = BrakingEnvelope {
     deceleration: joint_vector([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0]),

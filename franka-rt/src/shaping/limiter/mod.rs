@@ -1,5 +1,5 @@
-//! Rate limiters. Each one moves the last command towards the given command, as far as the bounds
-//! on the derivatives allow.
+//! Rate limiters. Each one moves the last command towards the given command, within the bounds
+//! on the derivatives.
 //!
 //! | command | function | bounded quantity |
 //! |---|---|---|
