@@ -202,7 +202,8 @@ impl Arm {
     }
 
     /// Replaces the current goal by a pose or joint positions, and holds the arm there on arrival.
-    /// Returns as soon as the session has accepted the goal. Use it in loops with their own rate.
+    /// Returns as soon as the session has accepted the goal. Use it in a loop that sets its own
+    /// pace.
     ///
     /// If the target includes a velocity, the arm follows it without lag. If no new target comes,
     /// this target keeps moving for [`Target::MOVES_ON_MS`].
@@ -212,13 +213,13 @@ impl Arm {
     /// [deadman](Engage::deadman) holds the arm, and otherwise the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once polled, the goal takes effect even if the future is dropped.
+    /// Once the future has been polled, the goal takes effect, even if the future is then dropped.
     pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         self.take(destination.into()).await
     }
 
     /// Sets a goal as [`Self::set`] does, without waiting for an answer. Use it in plain threads,
-    /// callbacks, and loops with their own rate. If goals come faster than the session accepts
+    /// callbacks, and loops that set their own pace. If goals come faster than the session accepts
     /// them, only the newest one counts. This call checks the goal. If the session later refuses
     /// it, the refusal is only logged. This happens to a goal for a different [`Backend`], and to
     /// an offset that was set before the previous goal was accepted.
@@ -323,7 +324,7 @@ impl Arm {
     ///   control thread accepts them.
     ///
     /// # Cancel safety
-    /// Once polled, the chunk takes effect even if the future is dropped.
+    /// Once the future has been polled, the chunk takes effect, even if the future is then dropped.
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
         self.send_chunk(self.goal(chunk.target()), chunk).await
     }
@@ -351,7 +352,7 @@ impl Arm {
     /// See [`Self::set`].
     ///
     /// # Cancel safety
-    /// Once polled, guiding begins even if the future is dropped.
+    /// Once the future has been polled, guiding begins, even if the future is then dropped.
     pub async fn guide(&self, free: Free) -> Result<(), MotionError> {
         self.take(Target::Guide(free).into()).await
     }
@@ -388,7 +389,8 @@ impl Arm {
     /// Otherwise, returns the reason why the session ended.
     ///
     /// # Cancel safety
-    /// Once polled, the change takes effect even if the future is dropped.
+    /// Once the future has been polled, the change takes effect, even if the future is then
+    /// dropped.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
         let (id, kept) = (self.session.id(), self.session.tuning().clone());
         let tuning = Box::new(tuning);
@@ -411,7 +413,7 @@ impl Arm {
     /// [`Robot::stop`] ([`MotionError::Stopped`]).
     ///
     /// # Cancel safety
-    /// Once polled, the session ends even if the future is dropped.
+    /// Once the future has been polled, the session ends, even if the future is then dropped.
     pub async fn disengage(self) -> Result<MotionReport, MotionError> {
         let id = self.session.id();
         self.robot().send(Input::Disengage { id });

@@ -57,7 +57,7 @@ impl Connection {
     /// Closes the connection and returns once the socket is gone.
     ///
     /// # Cancel safety
-    /// Once polled, the connection closes even if the future is dropped.
+    /// Once the future has been polled, the connection closes, even if the future is then dropped.
     pub(crate) async fn close(self) {
         self.close.cancel();
         if let Err(error) = self.task.await {

@@ -108,7 +108,7 @@ impl Gripper {
     /// See [`Self::homing`].
     ///
     /// # Cancel safety
-    /// Once polled, the fingers stop even if the future is dropped.
+    /// Once the future has been polled, the fingers stop, even if the future is then dropped.
     pub async fn stop(&self) -> Result<bool, GripperError> {
         self.connection.act(Request::Stop).await
     }

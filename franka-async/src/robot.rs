@@ -274,8 +274,8 @@ impl Robot {
     ///   whether the arm rests.
     ///
     /// # Cancel safety
-    /// Once polled, the stop still brakes the arm if the future is dropped, but does not wait for
-    /// another connection.
+    /// Once the future has been polled, the stop brakes the arm even if the future is then dropped,
+    /// but does not wait for another connection.
     pub async fn stop(&self) -> Result<(), MotionError> {
         self.brake(false).await
     }
@@ -294,7 +294,8 @@ impl Robot {
     /// Returns the errors of [`Self::stop`], except [`MotionError::Superseded`].
     ///
     /// # Cancel safety
-    /// Once polled, the stop is latched and the arm is braked even if the future is dropped.
+    /// Once the future has been polled, the stop is latched and the arm is braked, even if the
+    /// future is then dropped.
     pub async fn latch_stop(&self) -> Result<(), MotionError> {
         self.brake(true).await
     }
@@ -354,7 +355,8 @@ impl Robot {
     /// rests.
     ///
     /// # Cancel safety
-    /// Once polled, the shutdown continues in the background.
+    /// Once the future has been polled, the shutdown continues in the background even if the future
+    /// is then dropped.
     pub async fn shutdown(&self) {
         let (reply, ended) = oneshot::channel();
         match &self.shared.shutdowns {

@@ -194,7 +194,8 @@ impl<const N: usize> Team<N> {
     /// single arms are refused. Returns the outcome of the stop of each arm.
     ///
     /// # Cancel safety
-    /// Once polled, the stops are latched and all arms are braked even if the future is dropped.
+    /// Once the future has been polled, the stops are latched and all arms are braked, even if the
+    /// future is then dropped.
     pub async fn latch_stop(&self) -> [Result<(), MotionError>; N] {
         self.coordinator.stop();
         let stops = self.arms.iter().map(|arm| arm.robot().latch_stop());
@@ -224,7 +225,7 @@ impl<const N: usize> Team<N> {
     /// with the outcome of each: see [`Arm::disengage`].
     ///
     /// # Cancel safety
-    /// Once polled, the sessions end even if the future is dropped.
+    /// Once the future has been polled, the sessions end, even if the future is then dropped.
     pub async fn disengage(self) -> [Outcome; N] {
         let ended = join_all(self.arms.map(Arm::disengage)).await;
         ended.try_into().expect("one for each arm")

@@ -83,7 +83,7 @@ impl VacuumGripper {
     /// See [`Self::vacuum`].
     ///
     /// # Cancel safety
-    /// Once polled, the gripper stops even if the future is dropped.
+    /// Once the future has been polled, the gripper stops, even if the future is then dropped.
     pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
         self.connection.act(Request::Stop).await
     }

@@ -29,8 +29,8 @@ pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
     }
 }
 
-/// Longest wait of [`Exchange::receive`]. So while the robot is silent, the thread receives an
-/// order or a request to stop within this time.
+/// Longest wait of [`Exchange::receive`]. Even if the robot is silent, the thread checks for orders
+/// and requests to stop at least this often.
 pub const TICK: Duration = Duration::from_millis(20);
 
 /// Returns the time to wait for a state so that a silence of `link_timeout` is noticed. It is a

@@ -118,7 +118,7 @@ impl Shape<'static> {
 impl Shape<'_> {
     /// Replaces any tool with the given capsules, in the flange frame.
     ///
-    /// The tool forms pairs with links 0 to 5.
+    /// Distances are computed between the tool and links 0 to 5.
     ///
     /// # Errors
     /// Returns [`ToolError`] if there are more than 8 capsules, if a number is not finite, or if a

@@ -5,11 +5,11 @@ use core::fmt;
 use super::Protocol;
 use crate::version::Version;
 
-/// The device uses another version than the client announced.
+/// The device uses a different protocol version from the version that the client announced.
 ///
-/// `Display` prints the text of the libfranka release with the client's version: 0.21 for protocol
-/// 10, and 0.9 for protocol 5. [`IncompatibleVersion::explanation`] describes the same problem in
-/// plain words.
+/// `Display` prints libfranka's message: the message of release 0.21 if the client uses protocol
+/// 10, and of release 0.9 if it uses protocol 5. [`IncompatibleVersion::explanation`] describes the
+/// same problem in plain words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct IncompatibleVersion<P: Protocol = Version> {
     /// The device's version.

@@ -91,7 +91,7 @@ impl TargetStatus {
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
     /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
-    /// Source: the same file.
+    /// Source: libfranka 0.21, `async_position_control_handler.hpp`.
     pub const REST: f64 = 0.01;
 
     /// Returns the status of the newest target, which a state of the motion shows.

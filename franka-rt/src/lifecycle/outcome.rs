@@ -468,7 +468,7 @@ pub struct ControlError {
 }
 
 impl ControlError {
-    /// Returns the robot's last reply about the motion.
+    /// Returns the reply with which the robot refused or ended the motion.
     pub fn refusal(&self) -> Refusal {
         self.failure.refusal
     }

@@ -42,7 +42,7 @@ pub enum SessionEvent {
     Restless,
 }
 
-/// Kind of a goal's end.
+/// Outcome of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settlement {

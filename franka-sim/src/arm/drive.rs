@@ -55,7 +55,7 @@ pub struct Ripple {
     /// | 5, 6 | 0.015 to 0.02 |
     /// | 7 | 0.003 |
     pub amplitude: JointVector,
-    /// Periods per turn of the joint. Source: the same logs, 239.5 to 243 and 160.
+    /// Periods per turn of the joint. Source: the logs of `amplitude`, 239.5 to 243 and 160.
     pub order: JointVector,
 }
 
