@@ -274,8 +274,8 @@ impl Robot {
     ///   whether the arm rests.
     ///
     /// # Cancel safety
-    /// Once the future has been polled, the stop brakes the arm even if the future is then dropped,
-    /// but does not wait for another connection.
+    /// Once the future has been polled, the stop brakes the arm even if the future is then dropped.
+    /// It then does not wait for a new connection.
     pub async fn stop(&self) -> Result<(), MotionError> {
         self.brake(false).await
     }
