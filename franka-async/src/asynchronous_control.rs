@@ -84,14 +84,13 @@ const FARTHEST: f64 = 20.0;
 
 impl Robot {
     /// Starts a motion in which the robot itself plans the way to sparse joint targets, and
-    /// resolves when the motion runs. Such motions exist only in protocol 10, and are experimental
-    /// there.
+    /// resolves when the motion runs. Such motions exist only in protocol 10, and are experimental.
     ///
     /// # Errors
     /// Returns [`MotionError::Unsupported`] if the protocol version has no such motions. Returns
     /// [`MotionError::Goal`] if a velocity or a tolerance is not positive, or exceeds the robot's
     /// limit. In both cases nothing was sent. Returns [`MotionError::Busy`] if anything else
-    /// controls the arm. Otherwise, returns the reason why the motion ended before it ran.
+    /// controls the arm. If the motion ended before it ran, returns the reason for its end.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.

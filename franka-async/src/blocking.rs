@@ -71,8 +71,8 @@ pub trait Wait: IntoFuture + Sized {
     /// Waits until the future resolves.
     ///
     /// # Panics
-    /// Panics on a thread that runs async tasks, because the wait would block them: use `.await`
-    /// there. Also panics if the system cannot start the background thread.
+    /// Panics on a thread that runs async tasks, because the wait would block them: use `.await` on
+    /// such a thread. Also panics if the system cannot start the background thread.
     fn wait(self) -> Self::Output {
         background().block_on(self.into_future())
     }

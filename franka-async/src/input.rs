@@ -108,8 +108,8 @@ impl Beginning {
         }
     }
 
-    /// Replaces the straight line by a motion of the joints to `q`, `[rad]`, if that is allowed.
-    /// Otherwise, the motion is refused with `error`.
+    /// Replaces the straight line by a motion of the joints to `q`, `[rad]`, if the options allow
+    /// this. If they do not, the motion is refused with `error`.
     pub(crate) fn lead_joints(&mut self, q: [f64; 7], error: GoalError, model: &Model) {
         let (NewMotion::Goal { goal, .. }, Some(options)) =
             (&mut self.motion, &self.joint_fallback)

@@ -55,7 +55,7 @@ impl Robot {
     /// the elbow moves to a posture that avoids this. If no such posture exists, nothing moves, and
     /// the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine). The error
     /// names joint positions that reach the pose. With [`Motion::joint_fallback`] the joints move
-    /// there instead.
+    /// to these positions instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
@@ -340,9 +340,9 @@ impl MotionHandle {
     }
 
     /// Makes the arm stop on its way until [`Self::resume`], within the limits of the motion, and
-    /// on its line if it follows one. Meanwhile the arm is held there. If the motion has not begun,
-    /// it is held at its start. A pause has no effect after the end of the motion, or once a newer
-    /// goal has come.
+    /// on its line if it follows one. During the pause, the arm is held at the place where it
+    /// stopped. If the motion has not begun, it is held at its start. A pause has no effect after
+    /// the end of the motion, or once a newer goal has come.
     ///
     /// The pause is part of the [duration](franka_rt::lifecycle::MotionReport::duration) of the
     /// motion, of its [`Progress::elapsed`], and of every time limit that the program sets.

@@ -102,8 +102,8 @@ impl Arm {
     ///
     /// # Errors
     /// Returns [`ReplayFailure::Refused`] if the arm cannot replay the motion; nothing has moved
-    /// then. Otherwise returns one of the errors above, or the error of the motion to the first
-    /// target or of the session.
+    /// then. If the arm has moved, returns one of the errors above, the error of the motion to the
+    /// first target, or the error of the session.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, and the session holds it.
@@ -173,7 +173,7 @@ impl Arm {
         }
     }
 
-    /// Returns a goal with other limits than the session's.
+    /// Returns a goal with its own limits in place of the session's limits.
     fn goal_within(&self, target: Target, budget: Budget) -> Goal {
         Goal {
             budget,

@@ -45,7 +45,7 @@ impl Pieces {
 }
 
 /// Brakes the task into its limits. Does nothing if the task is within its limits and can stay
-/// there.
+/// within them.
 pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     let mut pieces = Pieces::NONE;
     let mut task = task;

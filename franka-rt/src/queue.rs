@@ -22,7 +22,7 @@ use core::hint::black_box;
 use core::mem::MaybeUninit;
 
 /// Returns a queue for `capacity` values, or for one value if `capacity` is zero. Its memory is
-/// written to, so that no cycle causes a page fault there.
+/// written to, so that no cycle causes a page fault in it.
 pub fn queue<T>(capacity: usize) -> (Sender<T>, Receiver<T>) {
     let capacity = capacity.max(1);
     let (mut producer, consumer) = rtrb::RingBuffer::new(capacity);

@@ -45,9 +45,9 @@ pub struct Scheduling {
     /// fail.
     pub lock_memory: bool,
     /// Number of bytes of stack to touch before the loop starts, so that no cycle causes a page
-    /// fault there. At most 64 MiB (`PREFAULT_MAX`); 512 KiB by default (`PREFAULT_DEFAULT`). The
-    /// whole stack of the thread is larger by a reserve. The user's control functions run on this
-    /// stack.
+    /// fault on the stack. At most 64 MiB (`PREFAULT_MAX`); 512 KiB by default
+    /// (`PREFAULT_DEFAULT`). The whole stack of the thread is larger by a reserve. The user's
+    /// control functions run on this stack.
     pub prefault_stack: usize,
     /// Time for which a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`),
     /// in whole microseconds, at most 900 (`BUSY_POLL_MAX`). If `None`, receives do not poll.

@@ -150,8 +150,8 @@ impl Bridge {
         }
     }
 
-    /// Supersedes the pending paths of this session, or those outside of a session, because a goal
-    /// was accepted there.
+    /// Supersedes the pending paths of this session, or the pending paths outside of a session,
+    /// because a newer goal was accepted.
     pub(super) fn supersede_plans(&mut self, session: Option<GoalId>) {
         self.take_back_plans(MotionError::Superseded, |plan| plan.session() == session);
     }

@@ -162,8 +162,9 @@ impl Recorder {
     /// server listens.
     ///
     /// # Errors
-    /// Returns [`RecordError::Live`] if the server cannot listen there, [`RecordError::Option`] if
-    /// an option is out of range, and [`RecordError::Ended`] after the end.
+    /// Returns [`RecordError::Live`] if the server cannot listen at its address,
+    /// [`RecordError::Option`] if an option is out of range, and [`RecordError::Ended`] after the
+    /// end.
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
         self.inner.serve(live)

@@ -171,7 +171,7 @@ impl Identified {
     }
 
     /// Returns the initial values of the law for the robot's current state. The part of the load
-    /// that is not declared there counts as bias.
+    /// that is not declared in this state counts as bias.
     pub(crate) fn learned(&self, model: &Model, state: &RobotState) -> Learned {
         let IdentifiedLoad { mass, moment } = self.load;
         let [x, y, z] = moment.map(|of| of.value);

@@ -9,7 +9,7 @@
 //! acceleration if the chart is anchored at the beginning of the plan.
 //!
 //! A moving target is at rest in a frame that moves with the target. The plan is made in that
-//! frame. Once the pose has arrived there, it moves with the target.
+//! frame. Once the pose has arrived at the target, it moves with the target.
 
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;

@@ -19,7 +19,7 @@ pub enum SessionEvent {
     Settled {
         /// The goal.
         goal: GoalId,
-        /// Kind of the goal's end.
+        /// Outcome of the goal.
         settlement: Settlement,
         /// Time from the first cycle that saw the goal to the goal's end, `[ms]` of the robot's
         /// clock.

@@ -212,7 +212,7 @@ impl ReflexCase {
 
 impl Stage {
     /// Returns the stage that the policy requires for a reflex with these errors, on a robot that
-    /// may be another robot than before.
+    /// may differ from the robot before the reconnect.
     fn of(
         errors: Errors,
         is_unlike: bool,

@@ -261,8 +261,8 @@ impl Sim {
     ///   client that is too slow misses some of these states.
     ///
     /// The delays of a [`network`](Self::network) are in robot time, in which the client needs no
-    /// time to answer. A client that measures time with its own clock measures other durations than
-    /// the robot. [`Running::set_speed`] slows down or pauses robot time.
+    /// time to answer. A client that measures time with its own clock measures durations that
+    /// differ from the robot's durations. [`Running::set_speed`] slows down or pauses robot time.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;
