@@ -37,8 +37,8 @@ pub struct Engage {
 impl Engage {
     goal_options!();
 
-    /// Keeps the arm out of these regions, given in the base frame; by default, out of none. The
-    /// reference slows down on its way to a region, and stops
+    /// Keeps the arm out of these regions, which are given in the base frame. By default there are
+    /// no regions. The reference slows down on its way to a region, and stops
     /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal that a region blocks is
     /// given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it
     /// waits for other targets. An arm inside a region may leave it. The links of the arm and the
@@ -101,8 +101,8 @@ impl Engage {
 ///
 /// This is a cheap handle: clones share the session, and an awaited motion counts as a handle.
 /// Dropping the last handle brakes the arm and ends the session, in the background.
-/// [`Self::disengage`] does so and can be awaited. [`Robot::stop`] and a reflex end the session,
-/// too. Later calls return the reason why it ended.
+/// [`Self::disengage`] does the same and can be awaited. [`Robot::stop`] and a reflex end the
+/// session, too. Later calls return the reason why it ended.
 ///
 /// While a session controls the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
@@ -205,8 +205,8 @@ impl Arm {
     /// Returns as soon as the session has accepted the goal. Use it in a loop that sets its own
     /// pace.
     ///
-    /// If the target includes a velocity, the arm follows it without lag. If no new target comes,
-    /// this target keeps moving for [`Target::MOVES_ON_MS`].
+    /// If the target includes a velocity, the arm follows the moving target without lag. If no new
+    /// target comes, this target keeps moving for [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
     /// Returns [`MotionError::Goal`] if the goal is not accepted, [`MotionError::Held`] if a
@@ -304,10 +304,10 @@ impl Arm {
         }
     }
 
-    /// Begins to follow a chunk: a list of points with times, such as a learned controller (a
-    /// policy) predicts. Returns as soon as the chunk is accepted. If an earlier chunk is running,
-    /// the new chunk continues from it: see [`Chunk::blend`]. Use [`Chunk::observed_at`] to
-    /// compensate for the age of the observation. The arm stays within its limits, regardless of
+    /// Begins to follow a chunk: a list of timed points, for example the output of a learned
+    /// controller (a policy). Returns as soon as the chunk is accepted. If an earlier chunk is
+    /// running, the new chunk continues from it: see [`Chunk::blend`]. Use [`Chunk::observed_at`]
+    /// to compensate for the age of the observation. The arm stays within its limits, regardless of
     /// the points. It rests at the last point unless another chunk or goal follows.
     ///
     /// # Errors
@@ -329,7 +329,7 @@ impl Arm {
         self.send_chunk(self.goal(chunk.target()), chunk).await
     }
 
-    /// Sends a chunk with this goal; otherwise as [`Self::chunk`].
+    /// Sends a chunk with this goal. Apart from that, it is like [`Self::chunk`].
     pub(crate) async fn send_chunk(&self, goal: Goal, chunk: Chunk) -> Result<(), MotionError> {
         let id = self.session.id();
         let (goal, chunk) = (Box::new(goal), Box::new(chunk));
@@ -385,8 +385,8 @@ impl Arm {
     /// change over 0.3 s, so that neither the reference nor the torques step.
     ///
     /// # Errors
-    /// Returns [`MotionError::Goal`] if a value is out of its bounds; nothing changes then.
-    /// Otherwise, returns the reason why the session ended.
+    /// Returns [`MotionError::Goal`] if a value is out of its bounds; nothing changes then. If the
+    /// session has ended, returns the reason.
     ///
     /// # Cancel safety
     /// Once the future has been polled, the change takes effect, even if the future is then

@@ -14,7 +14,8 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 ///
 /// This is a cheap handle: all clones share one connection, and may be used from any task or
 /// thread. One action runs at a time: a newer action or [`Gripper::stop`], from any handle, aborts
-/// it. Dropping the last handle closes the connection; a grasped object stays grasped.
+/// the running action. Dropping the last handle closes the connection; a grasped object stays
+/// grasped.
 ///
 /// Actions have no deadline, because some take long: a blocked move takes minutes. To limit the
 /// time of an action, use `tokio::time::timeout`; when it expires, the fingers stop. If the Hand is

@@ -143,7 +143,7 @@ impl Motion {
     /// for obstacles near the line. [`Self::preview`] shows the path. If the joints have no path to
     /// the pose either, the motion is refused as
     /// [`GoalError::NoLine`](crate::error::GoalError::NoLine). In a session that commands poses to
-    /// the robot's own controller, it is refused as
+    /// the robot's own controller, the motion is refused as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     ///
     /// This option has no effect on motions through waypoints, on motions of joints, and on motions

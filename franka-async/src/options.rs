@@ -186,9 +186,9 @@ macro_rules! goal_options {
 
         /// Ends the motion early if a condition becomes true before the arrival. The arm then stops
         /// as quickly as the jerk limit allows. If a [`Reaction`](crate::condition::Reaction) has a
-        /// different target, the arm brakes and moves there. The control thread checks the
-        /// condition in every cycle until the motion has ended, and acts in the next cycle. This
-        /// replaces an earlier condition.
+        /// different target, the arm brakes and then moves to that target. The control thread
+        /// checks the condition in every cycle until the motion has ended, and acts in the next
+        /// cycle. This replaces an earlier condition.
         ///
         /// Both an arrival and a reaction resolve as `Ok`:
         /// [`MotionReport::reacted`](crate::MotionReport::reacted) distinguishes them. See

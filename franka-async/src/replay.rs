@@ -88,9 +88,9 @@ impl Robot {
 }
 
 impl Arm {
-    /// Moves to the first target of a recorded motion, as [`Arm::move_joints`] does, but at its
-    /// speed times the [speed of the plan](ReplayPlan::speed). Then the arm follows the targets at
-    /// their times, with all guards of the session and the limits of the
+    /// Moves to the first target of a recorded motion, as [`Arm::move_joints`] does, but with its
+    /// speed multiplied by the [speed of the plan](ReplayPlan::speed). Then the arm follows the
+    /// targets at their times, with all guards of the session and the limits of the
     /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last target. The report
     /// contains the distances from the recorded positions.
     ///

@@ -386,8 +386,9 @@ impl Robot {
 
     /// Returns the events of the robot from now on. They report connections lost and made, reflexes
     /// with their diagnosis, recoveries, the user stop, guiding, brakes, motions and loads. The
-    /// stream ends when there is no connection and there will be none. A robot that is not
-    /// supervised reports events, too. Changes that only a state shows are noticed within 50 ms.
+    /// stream ends when the connection has ended and no new connection will follow. A robot that is
+    /// not supervised reports events, too. Changes that only a state shows are noticed within 50
+    /// ms.
     pub fn events(&self) -> Events {
         self.shared.supervisor.events()
     }
@@ -401,9 +402,9 @@ impl Robot {
 
     /// Approves or rejects the recovery from the reflex with this number, if the
     /// [`Policy`](crate::supervision::Policy) asks before a recovery. Returns true if the
-    /// supervisor was waiting for the answer. Otherwise does nothing and returns false, for example
-    /// because the robot has left this reflex, or has a newer error. The number is in the event,
-    /// and in [`Health::reflex`].
+    /// supervisor was waiting for the answer. If it was not, does nothing and returns false, for
+    /// example because the robot has left this reflex, or has a newer error. The number is in the
+    /// event, and in [`Health::reflex`].
     ///
     /// The answer moves nothing. [`Self::recover`] also recovers a robot, under any policy.
     pub fn agree(&self, reflex: u64, agreed: bool) -> bool {

@@ -148,9 +148,9 @@ impl<const N: usize> Team<N> {
     }
 
     /// Returns a motion of all arms. `motion` is called for each member with its arm, and returns
-    /// the motion of that member. All motions begin together, once the goals of all have arrived;
-    /// until then, an arm that moves continues. If some members follow targets and others do not,
-    /// convert each motion `into` a [`MemberMotion`].
+    /// the motion of that member. All motions begin together, once the goals of all members have
+    /// arrived; until then, an arm that moves continues. If some members follow targets and others
+    /// do not, convert each motion `into` a [`MemberMotion`].
     ///
     /// If one member has a fault, the others brake and resolve as [`MotionError::Braked`] with
     /// [`Lapse::Team`](crate::error::Lapse::Team), which names the faulty member. All arms are held
@@ -210,13 +210,13 @@ impl<const N: usize> Team<N> {
         self.arms.iter().fold(false, release)
     }
 
-    /// Returns a handle that stops the team from elsewhere.
+    /// Returns a handle that stops the team from any task or thread.
     pub fn stopper(&self) -> Stopper {
         Stopper(self.coordinator.clone())
     }
 
     /// Returns the reason why the newest team motion, or a motion after it, was stopped; `None` if
-    /// none was stopped.
+    /// no such motion was stopped.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
     }
