@@ -26,8 +26,8 @@ impl Robot {
     /// reads and writes.
     ///
     /// # Errors
-    /// Returns [`MotionError::Busy`] if anything else controls the arm. Otherwise, returns the
-    /// reason why the motion ended before it ran.
+    /// Returns [`MotionError::Busy`] if anything else controls the arm. If the motion ended before
+    /// it ran, returns the reason for its end.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -303,8 +303,8 @@ impl<C: GeneratorCommand> Active<C> {
     }
 
     /// Sends a command to the motion generator together with torques, for an external controller.
-    /// If either is the last one, waits until the robot has ended the motion, and returns the
-    /// report.
+    /// If the command or the torques are the last, waits until the robot has ended the motion, and
+    /// returns the report.
     ///
     /// # Errors
     /// Returns the errors of [`Self::write_motion`]. If the motion accepts no torques, they are

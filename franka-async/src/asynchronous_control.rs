@@ -169,7 +169,7 @@ impl AsynchronousControl {
     /// robot knows the duration.
     ///
     /// # Errors
-    /// Returns the reason why the motion ended if it ended earlier. It never returns
+    /// Returns the reason why the motion ended if it ended earlier. This call never returns
     /// [`MotionError::Goal`], because the robot does the planning.
     ///
     /// # Cancel safety
