@@ -32,17 +32,17 @@ pub struct MotionReport {
     /// [`Settling::hold`](crate::session::Settling::hold) before the motion resolves. The duration
     /// does not include that time; the counts below include it.
     pub duration: Duration,
-    /// Distance between the measured end effector and its target; `None` for a motion without a
-    /// target.
+    /// Distance between the measured pose of the end effector and its target; `None` for a motion
+    /// without a target.
     pub final_error: Option<PoseError>,
     /// Distance from the target after the arm was released at the end of the motion. Then the
     /// robot's own controller takes over, which does not have this driver's compensation. `None`
     /// without a target, if the arm stays held, and if the robot's controller ran the motion.
     pub released_error: Option<PoseError>,
-    /// Greatest distance of the measured end effector from the straight line to its target, `[m]`.
-    /// The line begins at the place of the end effector when the motion began. `None` for a motion
-    /// without a line: a motion to joint positions, a motion through waypoints, a control function,
-    /// or a motion that has reacted to its condition.
+    /// Greatest distance of the end effector's measured position from the straight line to its
+    /// target, `[m]`. The line begins at the place of the end effector when the motion began.
+    /// `None` for a motion without a line: a motion to joint positions, a motion through waypoints,
+    /// a control function, or a motion that has reacted to its condition.
     pub line_deviation: Option<f64>,
     /// Torques that compensated the friction and bias of each joint at the arrival, `[N m]`, in
     /// addition to the springs. `None` under the robot's controller and for a control function,
@@ -455,8 +455,8 @@ pub struct ControlError {
     pub errors: Errors,
     /// Progress of the motion.
     pub stage: Stage,
-    /// The last cycles of the motion. The newest cycle shows its end. An option of the connection
-    /// sets the number of cycles.
+    /// The last cycles of the motion. The newest cycle shows the end of the motion. An option of
+    /// the connection sets the number of cycles.
     pub log: Arc<ControlLog>,
     /// Source of the commands of the motion.
     pub commander: Commander,

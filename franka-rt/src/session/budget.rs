@@ -66,9 +66,9 @@ impl Budget {
         }
     }
 
-    /// Lowest accepted velocity, acceleration and jerk of every axis, in its units. The default
-    /// budget at [`Self::SPEED_MIN`] is above these limits. With them a joint needs days for a
-    /// third of a radian.
+    /// Lowest accepted velocity, acceleration and jerk of every axis, in the units of the axis. The
+    /// default budget at [`Self::SPEED_MIN`] is above these limits. With them a joint needs days
+    /// for a third of a radian.
     pub const LIMITS_MIN: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
     /// Lowest factor that [`Self::at_speed`] accepts.

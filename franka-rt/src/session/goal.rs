@@ -188,9 +188,10 @@ pub struct Goal {
     /// Conditions under which the arm counts as settled.
     pub settling: Settling,
     /// Joint positions toward which the elbow moves, `[rad]`, while the end effector moves to a
-    /// pose. The joints get as near to them as the pose allows. With a posture, the elbow can also
-    /// move while the end effector rests, and a goal arrives when both rest. With `None`, the elbow
-    /// stays near its place at the session's start while the end effector moves.
+    /// pose. The joints get as near to these positions as the pose allows. With a posture, the
+    /// elbow can also move while the end effector rests, and a goal arrives when the elbow and the
+    /// end effector rest. With `None`, the elbow stays near its place at the session's start while
+    /// the end effector moves.
     pub posture: Option<[f64; 7]>,
     /// True if the goal follows a path to its target. The path is sent separately, as a chunk.
     /// Until the chunk arrives, the arm rests.

@@ -6,7 +6,8 @@
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Guard {
-    /// The reference was ahead of the measured arm by the length of the leash, and was held there.
+    /// The reference was ahead of the measured position by the length of the leash, and was held
+    /// there.
     Leash,
     /// On the way to a pose, a joint reached its limit of acceleration or jerk.
     InverseKinematics,

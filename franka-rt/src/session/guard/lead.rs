@@ -7,7 +7,7 @@ use nalgebra::Isometry3;
 use crate::session::Target;
 use crate::session::guard::leash;
 
-/// Greatest distance that a target may be ahead of the measured arm.
+/// Greatest distance that a target may be ahead of the measured position.
 ///
 /// A target that is further ahead is moved closer on the straight line to it. This is repeated in
 /// every cycle while targets arrive: until [`Self::FRESH_MS`] after the newest target, even if that

@@ -1,6 +1,6 @@
-//! The leash: limits how far the reference may be ahead of the measured arm. If something holds the
-//! arm back, its spring is stretched only by that distance, so the arm does not leap when it is
-//! released.
+//! The leash: limits how far the reference may be ahead of the measured position. If something
+//! holds the arm back, its spring is stretched only by that distance, so the arm does not leap when
+//! it is released.
 
 use franka_model::{JointVector, rotation};
 use franka_otg::PlanError;
@@ -12,9 +12,9 @@ use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
 
-/// Greatest distance that the reference may be ahead of the measured arm. An obstacle that holds
-/// the arm back meets springs that are stretched by this distance at most. If the leash is shorter
-/// than the arm's normal lag, it slows the motion.
+/// Greatest distance that the reference may be ahead of the measured position. An obstacle that
+/// holds the arm back meets springs that are stretched by this distance at most. If the leash is
+/// shorter than the arm's normal lag, it slows the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leash {
     /// Translation of the end effector while the reference follows poses, `[m]`.
@@ -82,8 +82,8 @@ pub(crate) struct Held {
     pose: Option<Isometry3<f64>>,
 }
 
-/// Keeps the reference within the leash of the measured arm. Returns the parts that were held back,
-/// from which the course must continue. Returns `None` if the leash held nothing back.
+/// Keeps the reference within the leash of the measured position. Returns the parts that were held
+/// back, from which the course must continue. Returns `None` if the leash held nothing back.
 pub(crate) fn hold(
     leash: &Leash,
     course: &Course,

@@ -45,8 +45,8 @@ impl RunningSession {
         };
     }
 
-    /// Updates the greatest distance with the measured arm of one cycle. A chunk follows its own
-    /// points, so it does not count.
+    /// Updates the greatest distance with the measured position of one cycle. A chunk follows its
+    /// own points, so it does not count.
     pub(super) fn watch_line(&mut self) {
         if matches!(self.route.course, Course::Chunk(_)) {
             self.line = None;

@@ -143,7 +143,7 @@ enum Drive {
 /// Prepared values for the answer to the next state.
 #[derive(Debug, Default)]
 struct Next {
-    /// Step of the course; `None` if the reference follows the measured arm.
+    /// Step of the course; `None` if the reference follows the measured position.
     step: Option<CourseStep>,
     /// The guards that have limited the command so far.
     bindings: Bindings,

@@ -126,9 +126,9 @@ impl RunningSession {
         }
     }
 
-    /// Returns the distance of the measured arm from its target, in any unit; infinite for a target
-    /// without a place. A chunk has its remaining time instead, since its points may lead away from
-    /// its end.
+    /// Returns the distance of the measured position from the target, in any unit; infinite for a
+    /// target without a place. A chunk has its remaining time instead, since its points may lead
+    /// away from its end.
     fn distance(&self, now: u64) -> f64 {
         let arm = &self.arm;
         match (&self.route.course, self.heading()) {
