@@ -7,10 +7,11 @@
 //! down, in closed form (`extremal_profile`). Therefore:
 //!
 //! - two evaluations show if the interval of a duration contains the target, and the duration is
-//! feasible if it does; - as the duration grows, the ends of the interval pass the target only a
-//! few times. Feasibility can change only at these durations. Each end is monotone between its
-//! turning points, which also have closed forms. One bracketed search per monotone piece finds the
-//! least duration and the ends of the blocked intervals (`feasible_durations`);
+//!   feasible if it does;
+//! - as the duration grows, the ends of the interval pass the target only a few times, and
+//!   feasibility can change only at these durations. Each end is monotone between its turning
+//!   points, which also have closed forms. One bracketed search per monotone piece finds the least
+//!   duration and the ends of the blocked intervals (`feasible_durations`);
 //! - each feasible duration has a profile: the mean of the two extremal motions, weighted so that
 //!   it ends at the target. A mean of motions within convex limits is also within these limits, so
 //!   such a profile always exists. If a motion through a constant velocity fits, that motion is

@@ -45,16 +45,16 @@ pub struct Unpublished {
     /// `[rad/s]`. Infinity permits every velocity. Default 0.1. Under an internal controller, real
     /// robots are known to refuse a motion that finishes while the arm moves.
     pub finish_velocity: f64,
-    /// Stiffness of the internal joint impedance controller until a client sets another,
+    /// Stiffness of the internal joint impedance controller until a client sets a different one,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
     pub joint_stiffness: JointVector,
-    /// Stiffness of the internal Cartesian impedance controller until a client sets another, in
-    /// stiffness-frame axes, `[N/m, N·m/rad]`. Default: the values of libfranka 0.21,
+    /// Stiffness of the internal Cartesian impedance controller until a client sets a different
+    /// one, in stiffness-frame axes, `[N/m, N·m/rad]`. Default: the values of libfranka 0.21,
     /// `examples_common.cpp`.
     pub cartesian_stiffness: Twist,
-    /// Thresholds of contact and collision until a client sets others. The defaults for contact are
-    /// close to the values in the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N
-    /// and 25 N·m). The defaults for collision are twice these values.
+    /// Thresholds of contact and collision until a client sets its own thresholds. The defaults for
+    /// contact are close to the values in the vendor's examples (20 N·m falling to 12 N·m at the
+    /// wrist, 20 N and 25 N·m). The defaults for collision are twice these values.
     pub thresholds: CollisionBehavior,
     /// Joint acceleration above which the thresholds for acceleration phases apply, `[rad/s²]`. The
     /// robot compares the desired acceleration under its own controllers, and the measured

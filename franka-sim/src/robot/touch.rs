@@ -151,8 +151,8 @@ impl Touch {
 
     /// A wall or table: the touched point cannot move behind the plane through `point`, `[m]`.
     /// `normal` points to the free side. The wall has no friction and yields by a millimetre at 20
-    /// N. When an arm leaves the wall, the wall adds 0.1 kg to its apparent mass for a quarter of a
-    /// millisecond.
+    /// N. When an arm leaves the wall, the wall adds 0.1 kg to the arm's apparent mass for a
+    /// quarter of a millisecond.
     ///
     /// # Panics
     /// Panics if the length of the normal is zero.

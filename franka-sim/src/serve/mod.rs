@@ -256,9 +256,9 @@ impl Sim {
     ///   client has received nothing for half a second. Half a second is a good choice for
     ///   `patience`: libfranka considers a connection lost after a second without a state. A client
     ///   that skips an answer waits for `patience` until it receives the next state.
-    /// * Otherwise the robot sends up to ten states per millisecond of the wall clock: at rest,
-    ///   while it brakes, in a recovery, while a hand grasps, and in an asynchronous motion. A
-    ///   client that is too slow misses some of these states.
+    /// * In all other cases, the robot sends up to ten states per millisecond of the wall clock: at
+    ///   rest, while it brakes, in a recovery, while a hand grasps, and in an asynchronous motion.
+    ///   A client that is too slow misses some of these states.
     ///
     /// The delays of a [`network`](Self::network) are in robot time, in which the client needs no
     /// time to answer. A client that measures time with its own clock measures durations that
