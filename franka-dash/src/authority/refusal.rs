@@ -29,7 +29,7 @@ pub(crate) enum Refusal {
     Latency(Duration),
     #[error("another motion was running and was stopped: press again")]
     Holding,
-    #[error("no motion is running: press again")]
+    #[error("the motion has already ended: release the button, and press it again")]
     NoHold,
     #[error("only a simulated robot can be disturbed")]
     NoSimulator,

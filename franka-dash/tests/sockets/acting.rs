@@ -184,7 +184,7 @@ fn the_speed_of_a_hold_changes_while_it_goes_on() {
     };
     let up = json!({"kind": "translate", "direction": [0, 0, 1], "axes": "base"});
     viewer.send(json!({"type": "speed", "speed": 0.02}));
-    assert!(viewer.refusal().contains("no motion is running"));
+    assert!(viewer.refusal().contains("the motion has already ended"));
     let next = viewer.hold_until(&up, fast(0.08, 0.12));
     viewer.send(json!({"type": "speed", "speed": 0.02}));
     let next = viewer.go_on_until(next, fast(0.015, 0.025));

@@ -77,8 +77,8 @@ impl ModelLibrary {
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
         let mut pose = Matrix4::zeros();
         let out = pose.as_mut_slice().as_mut_ptr();
-        // SAFETY: the caller of `load` guarantees the signatures. The function reads
-        // and writes arrays of these lengths, and the library stays loaded as long as `self` exists.
+        // SAFETY: the caller of `load` guarantees the signatures. The function reads and writes
+        // arrays of these lengths, and the library stays loaded as long as `self` exists.
         unsafe {
             match on_flange(frame, ee) {
                 Some(f_t_frame) => {
