@@ -1,4 +1,5 @@
-//! Every golden suite on the project's own vectors.
+//! Every golden suite on the project's own vectors. The suites are in `src/golden`, for example
+//! `wire` for messages and datagrams.
 
 use std::path::Path;
 

@@ -2,9 +2,9 @@
 //!
 //! A motion towards goals brakes within the robot's limits, and so does a session before it ends. A
 //! control function or a program ends because the robot is stopped. Each request is one input to
-//! the bridge, which acts after `cancel` or `drop` has returned. The `Drop` of a motion's future is
-//! the `Drop` of `Moving`, in `motion`. Handles that cancel when dropped are in `session`,
-//! `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
+//! the bridge, which acts after `cancel` or `drop` has returned. The future of a
+//! motion is `Moving`; its `Drop` is in `move_to`. Handles that cancel when dropped are in
+//! `session`, `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
 //! `franka_rt::lifecycle::goals`, decides what happens.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -1,5 +1,5 @@
 //! Motions under way: their futures, handles and progress; motions of several robots that begin
-//! together.
+//! together. The module `cancel` describes what happens if such a future is dropped.
 
 pub use crate::cancel::Canceller;
 pub use crate::follow::Follow;

@@ -1,4 +1,5 @@
 //! The task of a supervised robot: it reconnects, recovers the robot, and asks for permission.
+//! `franka_rt::supervision::policy` decides when.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! Errors of connecting.
+//! Errors of connecting. If the robot already has a client, the error is `ConnectionClosed`; see
+//! `likely_taken`.
 
 use std::io;
 use std::net::SocketAddr;

@@ -1,5 +1,5 @@
-//! Clearance: the reference slows down when it approaches the arm itself or a keep-out region, and
-//! stops before it is too near.
+//! Clearance: decides whether the reference may make its next step without coming too near to the
+//! arm itself or to a keep-out region. `obstacle_braking` then slows down or brakes the reference.
 //!
 //! The whole path to rest must be clear. Before the reference makes a step, the brake after that
 //! step is planned. Two of its postures are checked with the arm's shape: at rest, and half way

@@ -1,4 +1,5 @@
-//! A course that keeps the arm clear of itself and of keep-out regions.
+//! A course that slows down and brakes before the arm comes too near to itself or to a keep-out
+//! region. `clearance` decides how near is too near.
 
 use franka_model::{EndEffector, Model};
 
