@@ -202,7 +202,9 @@ async fn a_second_client_is_refused_and_the_first_is_not_disturbed() {
         .realtime(Realtime::Ignore)
         .connect()
         .await;
-    let error = second.expect_err("the robot has a client").to_string();
+    let error = second.expect_err("the robot has a client");
+    assert_eq!(error.entry(), "closed-by-peer", "{error}");
+    let error = error.to_string();
     assert!(error.contains("another client may be connected"), "{error}");
     let up = franka_async::Pose::translation(0.0, 0.0, 0.02) * robot.pose();
     robot.move_to(up).await.unwrap();

@@ -324,6 +324,8 @@ fn bad_goals_are_named_and_change_nothing() {
     let (mut lockstep, goal) = moving(&Lockstep::ready);
     let mut beyond: [f64; 7] = READY.into();
     beyond[3] = 0.5;
+    let mut degrees: [f64; 7] = READY.into();
+    degrees[1] = -45.0;
     let mut nan: [f64; 7] = READY.into();
     nan[2] = f64::NAN;
     let far = Translation3::new(2.0, 0.0, 0.0) * lockstep.arm_pose();
@@ -331,6 +333,10 @@ fn bad_goals_are_named_and_change_nothing() {
         (
             Target::Joints(beyond),
             "the target of joint 4 is 0.5 rad, expected between -3.0642 and -0.1297 rad",
+        ),
+        (
+            Target::Joints(degrees),
+            "the target of joint 2 is -45 rad, expected between -1.8280 and 1.8280 rad (are these degrees?)",
         ),
         (
             Target::Joints(nan),
