@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import begun, connection
+from conftest import PATIENT, begun, connection
 
 from franka_async import ControlError, Robot, Sim, sync
 
@@ -65,8 +65,10 @@ def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, na
 
 def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
     chapter = run("from-franky.md", skipped=1)  # the first is a table of both packages
-    with sync.Robot(live.address, realtime="ignore") as robot:
-        assert chapter["up"](robot).duration < 2.0
+    with sync.Robot(live.address, **PATIENT) as robot:
+        before = robot.pose()
+        chapter["up"](robot)
+        assert robot.pose()[2, 3] - before[2, 3] == pytest.approx(0.1, abs=0.002)
         chapter["waypoints"](robot)
         chapter["until_contact"](robot)
         start = robot.pose()

@@ -60,20 +60,20 @@ def test_it_is_as_its_options_say() -> None:
 
 def test_the_limits_are_those_of_the_system() -> None:
     q = [2.9, -0.7, 0.0, -2.0, 0.0, 2.0, 0.0]
-    with Sim.fr3(virtual_time=True, ideal=True, q=q) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with Sim.fr3(virtual_time=True, ideal=True, q=q) as sim, sync.Robot(sim.address, **PATIENT) as robot:
         limits = robot.model().joint_limits
         np.testing.assert_allclose(limits.upper, [2.9007, 1.8361, 2.9007, -0.1169, 2.8763, 4.6216, 3.0508], atol=1e-12)
-    with Sim.fr3(virtual_time=True, ideal=True, limits="before-5.9") as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with Sim.fr3(virtual_time=True, ideal=True, limits="before-5.9") as sim, sync.Robot(sim.address, **PATIENT) as robot:
         assert robot.model().joint_limits.upper[0] == 2.7437
 
 
 def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
-    with Sim.fr3(virtual_time=True) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with Sim.fr3(virtual_time=True) as sim, sync.Robot(sim.address, **PATIENT) as robot:
         state = robot.state()
         np.testing.assert_allclose(robot.model().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
         assert np.abs(Model.fr3().pose("ee", state.q, state.F_T_EE) - state.O_T_EE).max() > 5e-5
     described = Sim.fr3(virtual_time=True, state_geometry="described")
-    with described as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with described as sim, sync.Robot(sim.address, **PATIENT) as robot:
         state = robot.state()
         np.testing.assert_allclose(Model.fr3().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
 
@@ -85,7 +85,7 @@ def test_a_robot_with_an_unknown_geometry_is_refused_unless_that_is_accepted() -
         assert refused.value.entry == "connect-geometry"
         with sync.Robot(sim.address, realtime="ignore", accept_geometry_error=True) as robot:
             assert robot.geometry_residual is not None and robot.geometry_residual > 1e-5
-    with Sim.fr3(virtual_time=True, ideal=True) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with Sim.fr3(virtual_time=True, ideal=True) as sim, sync.Robot(sim.address, **PATIENT) as robot:
         assert robot.geometry_residual is not None and robot.geometry_residual < 2e-6
 
 
