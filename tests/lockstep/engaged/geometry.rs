@@ -180,6 +180,7 @@ fn an_arm_holds_still_whatever_its_states_are_computed_with() {
         lockstep.run(1000 * (seconds - 4));
         let last = mean(lockstep, 1000);
         let way = (last.translation.vector - first.translation.vector).norm();
+        println!("{}: {way:.1e} m in {seconds} s", case.name);
         let most = CREEP_MAX * (seconds - 3) as f64;
         assert!(way < most, "{}: {way:e} m in {seconds} s", case.name);
     });
