@@ -11,7 +11,8 @@ use crate::session::SessionEvent;
 use crate::stats::{MotionStatistics, MotionTimes};
 use crate::together::{StartFault, StartTicket};
 
-/// An event in the thread. Events arrive in order, and none is dropped.
+/// An event in the thread. Events arrive in order. Events are lost only if the receiver no longer
+/// takes them.
 #[derive(Debug)]
 pub enum Event {
     /// A state shows the modes of the motion, so the motion has started. The first command answers
