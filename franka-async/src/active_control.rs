@@ -157,8 +157,8 @@ impl<C> Active<C> {
     }
 
     /// Waits for the next state of the motion. Returns the state, and the robot's time since the
-    /// previous state that was read. This time is zero at first, and more than a millisecond after
-    /// a loss.
+    /// previous state that was read. This time is zero in the first call, and more than a
+    /// millisecond after a lost state.
     ///
     /// # Errors
     /// Returns [`ActiveError::Motion`] if the robot has ended the motion or has been silent for the
@@ -273,7 +273,7 @@ impl Active<Torques> {
     ///
     /// # Errors
     /// Returns [`ActiveError::Write`] if the torques cannot be sent; the motion continues. Returns
-    /// [`ActiveError::Motion`] if the robot ended the motion, but not as the program asked.
+    /// [`ActiveError::Motion`] if the motion ended in any other way.
     pub fn write_once(
         &mut self,
         torques: impl Into<Next<Torques>>,

@@ -43,8 +43,9 @@ impl Engage {
     /// given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it
     /// waits for other targets. An arm inside a region may leave it. The links of the arm and the
     /// Franka Hand are kept out, but no other tool. The session is refused as
-    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) for more than
-    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers or negative sides.
+    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) if there are more than
+    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, a number is not finite, or a side is
+    /// negative.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
         self
@@ -54,8 +55,9 @@ impl Engage {
     /// default, only the limits of the goals apply. On the way to a pose, the speed of the
     /// reference stays below 94 % of the cap, and at least 0.03 m/s below the cap. The arm may
     /// still be faster if its goal moves the joints, or if something pushes the arm. The goal is
-    /// then given up as [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes. Other
-    /// numbers are refused as [`GoalError::Number`](crate::error::GoalError::Number).
+    /// then given up as [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes. A
+    /// `speed` out of the range is refused as
+    /// [`GoalError::Number`](crate::error::GoalError::Number).
     pub fn speed_cap(mut self, speed: f64) -> Self {
         self.engagement.speed_cap = Some(speed);
         self
@@ -404,9 +406,9 @@ impl Arm {
             .await
     }
 
-    /// Brakes, releases the arm and ends the session; resolves when the session has ended. A goal
-    /// under way resolves as [`MotionError::Stopped`]. All other handles of the session are then
-    /// disengaged, too.
+    /// Brakes the arm, releases it, and ends the session. Resolves when the session has ended. A
+    /// goal under way resolves as [`MotionError::Stopped`]. All other handles of the session are
+    /// then disengaged, too.
     ///
     /// # Errors
     /// Returns [`MotionError`] if the session ended in any other way: by a reflex, or by

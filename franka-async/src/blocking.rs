@@ -25,9 +25,9 @@
 //! | with async | on a plain thread |
 //! |---|---|
 //! | a future, `.await` | `.wait()`, or `.wait_for(timeout)` |
-//! | a stream: states, events, health, of end effectors too | `for state in robot.states().wait_each()` |
+//! | a stream of states, events or health, also of end effectors | `for state in robot.states().wait_each()` |
 //! | [`Robot::records`](crate::Robot::records) | its `blocking_recv()` |
-//! | [`Robot::follow`](crate::Robot::follow) of a `watch` channel | of one of [`targets`] |
+//! | [`Robot::follow`](crate::Robot::follow) of a `watch` channel | `follow` of a channel that [`targets`] returns |
 //! | `set`, of an [`Arm`](crate::Arm) | `try_set`, which never waits |
 //! | `state`, `pose`, `target`, `reference`, `stats`; [`Deadman`](crate::goal::Deadman) | the same: none of them waits |
 //!

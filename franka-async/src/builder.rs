@@ -143,10 +143,10 @@ impl Builder {
     }
 
     /// Makes the control thread poll the network card for `duration` before each wait for a state
-    /// (`SO_BUSY_POLL`). The range is 1 to 900 us, in whole microseconds; by default, it does not
-    /// poll. The kernel requires `CAP_NET_ADMIN`. If the kernel refuses it, this is an error under
-    /// [`Realtime::Enforce`], and is ignored under [`Realtime::Ignore`]; [`Robot::granted`] reports
-    /// it.
+    /// (`SO_BUSY_POLL`). The range is 1 to 900 us, in whole microseconds; by default, the thread
+    /// does not poll. The kernel requires `CAP_NET_ADMIN`. A refusal by the kernel is an error
+    /// under [`Realtime::Enforce`], and is ignored under [`Realtime::Ignore`]; [`Robot::granted`]
+    /// reports the refusal.
     pub fn busy_poll(mut self, duration: Duration) -> Self {
         self.scheduling.busy_poll = Some(duration);
         self
@@ -156,8 +156,8 @@ impl Builder {
     /// 10 s, by default 1 s. Use longer timeouts only for a simulated robot on a busy host, whose
     /// states may come that late. Other values are refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). Detection may take
-    /// up to a quarter longer than the timeout. A motion that no state shows within 5 s fails
-    /// regardless of this timeout.
+    /// up to a quarter longer than the timeout. If no state shows a requested motion within 5 s,
+    /// the motion fails regardless of this timeout.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
@@ -174,8 +174,8 @@ impl Builder {
 
     /// Sets whether to connect to a robot whose reported poses disagree with its model for all
     /// known [lengths](crate::model::geometry::Lengths::KNOWN). This is off by default: such a
-    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If it
-    /// is accepted, goals move the arm to poses as the robot reports them; in simulation, the
+    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the
+    /// robot is accepted, goals move the arm to poses as the robot reports them; in simulation, the
     /// errors were up to 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by
     /// the geometric error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`)
     /// states it.
@@ -208,12 +208,12 @@ impl Builder {
     /// Supervises the robot: reconnects after the connection was lost, and recovers the robot from
     /// reflexes as the policy states. Handles stay valid across connections. [`Robot::events`] and
     /// [`Robot::health`] report reconnects and recoveries. Earlier motions do not resume. If
-    /// [`connect`](Self::connect) fails, it is not repeated.
+    /// [`connect`](Self::connect) fails, the driver does not try again.
     ///
     /// After each reconnect, once the robot is idle, the driver sends the settings of this program
     /// again (load, frames, thresholds, impedance, guiding mode, filters). It compares them with
-    /// the robot's states, if the states show them. Motions wait for this. If the robot does not
-    /// accept a setting, motions are refused as
+    /// the robot's states, if the states show them. Motions wait until this is done. If the robot
+    /// does not accept a setting, motions are refused as
     /// [`Unready::NotConfigured`](crate::error::Unready::NotConfigured) until it does; see
     /// [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
     pub fn supervise(mut self, policy: Policy) -> Self {
@@ -226,8 +226,8 @@ impl Builder {
     /// [diagnosis](crate::diagnosis::Diagnose). Implies
     /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a thread
     /// for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)). Only the recovery waits
-    /// for the answer, and so does dropping the runtime. An answer that comes too late has no
-    /// effect: see [`Robot::agree`]. If the function panics, it does not agree. Without
+    /// for the answer; dropping the runtime also waits for it. An answer that comes too late has no
+    /// effect: see [`Robot::agree`]. A panic of the function counts as a refusal. Without
     /// [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(

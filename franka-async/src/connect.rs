@@ -38,7 +38,7 @@ impl Builder {
     /// connection, and a third one for supervision.
     ///
     /// # Errors
-    /// Returns [`ConnectError`] if there is no connection. No step is repeated, even with
+    /// Returns [`ConnectError`] if there is no connection. A failed step is not repeated, even with
     /// supervision.
     ///
     /// # Cancel safety

@@ -56,8 +56,8 @@ impl Robot {
     /// the format of the system. Protocol 5 only.
     ///
     /// # Errors
-    /// Returns [`CommandError`]; without asking the robot, [`CommandError::Request`] if the version
-    /// has no such command.
+    /// Returns [`CommandError`]. If the version has no such command, returns
+    /// [`CommandError::Request`] without asking the robot.
     ///
     /// # Cancel safety
     /// Dropping the future loses only the answer.

@@ -21,9 +21,9 @@ use crate::user_value::UserValue;
 
 impl Robot {
     /// Returns a motion that `function` controls with torques alone. `function` receives every
-    /// state, and the robot's time since the previous state. This time is zero at first, and more
-    /// than a millisecond after a loss. `function` returns [`Torques`], or `torques.finish()` for
-    /// the last torques.
+    /// state, and the robot's time since the previous state. This time is zero in the first call,
+    /// and more than a millisecond after a lost state. `function` returns [`Torques`], or
+    /// `torques.finish()` for the last torques.
     ///
     /// `function` runs on the real-time thread once a millisecond, and has about 300 us to answer:
     /// it must not lock, allocate, print or wait. If it panics, the driver asks the robot to stop,

@@ -17,21 +17,22 @@ use crate::end_effector_pose::{pose_at, pose_of};
 pub enum Destination {
     /// A target.
     Target(Target),
-    /// A position of the end effector in the base frame, `[m]`; the orientation stays.
+    /// A position of the end effector in the base frame, `[m]`; the orientation does not change.
     Position(Vector3<f64>),
-    /// An orientation of the end effector in the base frame; the position stays.
+    /// An orientation of the end effector in the base frame; the position does not change.
     Orientation(UnitQuaternion<f64>),
     /// A pose at an offset from the present target, or from the arm.
     Offset(Offset),
 }
 
 impl Destination {
-    /// Returns a position of the end effector in the base frame, `[m]`; the orientation stays.
+    /// Returns a position of the end effector in the base frame, `[m]`; the orientation does not
+    /// change.
     pub fn position(position: impl Into<Vector3<f64>>) -> Self {
         Self::Position(position.into())
     }
 
-    /// Returns an orientation of the end effector in the base frame; the position stays.
+    /// Returns an orientation of the end effector in the base frame; the position does not change.
     pub fn orientation(orientation: UnitQuaternion<f64>) -> Self {
         Self::Orientation(orientation)
     }

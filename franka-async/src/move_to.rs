@@ -65,8 +65,8 @@ impl Robot {
     /// are [rounded](Waypoint::blend). The whole motion has one outcome. If a waypoint is out of
     /// reach, or if the arm cannot follow a line between two poses, the motion is refused as
     /// [`MotionError::Path`] before anything moves. If something holds the arm back, the path
-    /// waits: no waypoint is left out. Planning takes the task of the connection tens of
-    /// milliseconds.
+    /// waits: no waypoint is left out. Planning takes tens of milliseconds, on a thread for
+    /// blocking work.
     ///
     /// ```no_run
     /// # use franka_async::{Error, Robot};
@@ -187,7 +187,7 @@ impl Motion {
 
     /// Begins the motion without a future: the motion continues, and its outcome is only logged. A
     /// detached motion does not count as a handle: dropping the last handle of its session or robot
-    /// brakes it.
+    /// brakes the arm.
     pub fn detach(mut self) {
         match self.begin() {
             Ok(mut motion) => {
@@ -341,8 +341,8 @@ impl MotionHandle {
 
     /// Makes the arm stop on its way until [`Self::resume`], within the limits of the motion, and
     /// on its line if it follows one. During the pause, the arm is held at the place where it
-    /// stopped. If the motion has not begun, it is held at its start. A pause has no effect after
-    /// the end of the motion, or once a newer goal has come.
+    /// stopped. If the motion has not begun, the arm is held at the start of the motion. A pause
+    /// has no effect after the end of the motion, or once a newer goal has come.
     ///
     /// The pause is part of the [duration](franka_rt::lifecycle::MotionReport::duration) of the
     /// motion, of its [`Progress::elapsed`], and of every time limit that the program sets.

@@ -88,8 +88,8 @@ impl Robot {
         self.set(Request::SetCartesianImpedance(stiffness)).await
     }
 
-    /// Sets the directions in which a hand can guide the arm: x, y, z, roll, pitch, yaw, and the
-    /// elbow.
+    /// Sets the directions in which a person can guide the arm by hand: x, y, z, roll, pitch, yaw,
+    /// and the elbow.
     ///
     /// # Errors
     /// See [`Self::set_collision_behavior`].

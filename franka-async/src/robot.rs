@@ -115,7 +115,8 @@ impl Robot {
 
     /// Returns a receiver that waits for newer states, whether the arm moves or not. It ends with
     /// the connection. For a supervised robot, it continues with the next connection, and ends when
-    /// there will be none. To receive every state, use [`Self::state_stream`] or [`Self::read`].
+    /// no further connection will follow. To receive every state, use [`Self::state_stream`] or
+    /// [`Self::read`].
     ///
     /// The receiver begins with the state that is newest at the call. As long as a [`States`]
     /// exists, a task is woken for every state; drop it when it is no longer needed.
@@ -186,9 +187,10 @@ impl Robot {
     /// sends a description of itself ([`Robot::urdf`]). The masses and limits come from this
     /// description, unless the feature `urdf` is off or
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
-    /// Emika Robot sends none. Its model, [`Model::fer`], contains the constants with which its own
-    /// library is known to compute. In both models, the lengths of the upper arm and the forearm
-    /// are the ones with which the robot computes its poses: see [`Self::geometry_check`].
+    /// Emika Robot sends no description. Its model, [`Model::fer`], contains the constants with
+    /// which its own library is known to compute. In both models, the lengths of the upper arm and
+    /// the forearm are the ones with which the robot computes its poses: see
+    /// [`Self::geometry_check`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }

@@ -58,9 +58,9 @@ impl Robot {
     /// than a second, states are missed; [`Self::state_stream`] reports their number.
     ///
     /// # Errors
-    /// Returns [`ReadError::LinkLost`] if the robot has been silent for the link timeout; at once
-    /// if it is silent already. Returns [`ReadError::ConnectionClosed`] if the connection has
-    /// ended.
+    /// Returns [`ReadError::LinkLost`] if the robot has been silent for the link timeout, and at
+    /// once if it has already been silent for that time. Returns [`ReadError::ConnectionClosed`] if
+    /// the connection has ended.
     ///
     /// # Cancel safety
     /// Dropping the future only ends the reading. No state is kept for a later call.

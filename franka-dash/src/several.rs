@@ -39,11 +39,11 @@ pub enum NameError {
 
 /// Returns a router with the pages of several robots. The page of each robot is at `/NAME/`, as
 /// served by [`router`](crate::router). The page at `/` shows all robots side by side, and its
-/// viewers can only watch and stop them. Each robot has a separate commander. Use the same token
-/// for all robots. Call this function within a Tokio runtime.
+/// viewers can only watch and stop them. For each robot, a different viewer can hold the lease that
+/// moves it. Use the same token for all robots. Call this function within a Tokio runtime.
 ///
 /// # Errors
-/// Returns [`NameError`] if a name is invalid. No robot has been started in this case.
+/// Returns [`NameError`] if a name is invalid. No page has been started in this case.
 pub fn several<N: Into<String>>(
     robots: impl IntoIterator<Item = (N, Robot, Options)>,
 ) -> Result<Router, NameError> {

@@ -51,8 +51,8 @@ impl Latencies {
     }
 
     /// Returns the quantile `part`, in `[0, 1]`, in whole microseconds; `None` without latencies.
-    /// The quantile is the smallest number that at least this share of the latencies does not
-    /// exceed. A result of 2000 means 2000 or more.
+    /// It is the smallest number of microseconds such that at least the share `part` of the
+    /// latencies is less than or equal to this number. A result of 2000 means 2000 or more.
     pub fn quantile(&self, part: f64) -> Option<u64> {
         let wanted = (part.clamp(0.0, 1.0) * self.count as f64).ceil().max(1.0) as u64;
         let mut seen = 0;

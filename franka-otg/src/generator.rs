@@ -62,7 +62,8 @@ impl<const N: usize> Generator<N> {
     ///
     /// # Errors
     /// Returns [`PlanError::NotFinite`] if a value of the state is not finite, and
-    /// [`PlanError::OutOfRange`] if the state and the limits differ by more than 100 decades.
+    /// [`PlanError::OutOfRange`] if a value of the state, in units of the limits, is beyond 100
+    /// orders of magnitude.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         Self::towards(state, limits, None)
     }

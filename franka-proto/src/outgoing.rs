@@ -22,7 +22,7 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// Size of the inline buffer in bytes. The buffer fits the longest fixed message.
+    /// Size of the inline buffer in bytes. It holds the longest message whose length is fixed.
     pub const CAPACITY: usize = 440;
 
     /// Creates a message of the robot's service: a header followed by `payload`. The header's size

@@ -15,9 +15,9 @@
 //! one.
 //!
 //! An open connection alone does not keep the lease: call [`Holder::keep_alive`] only for messages
-//! of the client's own program. When these calls stop, two clocks notice it. On the robot's clock,
-//! the control thread brakes the arm, even if the rest of the process hangs. On the host's clock,
-//! the lease becomes free, and later requests of the former holder are refused.
+//! of the client's own program. When these calls stop, two clocks notice the silence. On the
+//! robot's clock, the control thread brakes the arm, even if the rest of the process hangs. On the
+//! host's clock, the lease becomes free, and later requests of the former holder are refused.
 //!
 //! The lease binds clients, not the program itself: a motion that the program begins needs no
 //! lease. Nor does [`Robot::stop`], which is open to every client.

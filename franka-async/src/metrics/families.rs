@@ -1,4 +1,4 @@
-//! The metric families. Each contains the samples of all robots, because a family must not come
+//! The metric families. Each contains the samples of all robots, because a family must not appear
 //! twice.
 
 use std::fmt;

@@ -16,10 +16,10 @@
 //! | `franka_error_active` | gauge, 1 for each error of the newest state | `error` |
 //! | `franka_success_ratio` | gauge, the robot's `control_command_success_rate` | |
 //! | `franka_rt_granted` | gauge, 0 or 1 | `what`: `fifo`, `busy_poll` |
-//! | `franka_motions_total` | counter, motions that have ended; of a session, its goals, too | `outcome` |
-//! | `franka_reflexes_total` | counter, reflexes by error; one of several errors counts for each | `reason` |
-//! | `franka_recoveries_total`, `franka_reconnects_total` | counter, those of the supervisor | |
-//! | `franka_recovery_seconds`, `franka_reconnect_seconds` | gauge, how long the newest took; none before the first | |
+//! | `franka_motions_total` | counter, motions that have ended, and goals of sessions that have ended | `outcome` |
+//! | `franka_reflexes_total` | counter, reflexes by error; a reflex with several errors counts once for each error | `reason` |
+//! | `franka_recoveries_total`, `franka_reconnects_total` | counter, recoveries and reconnects by the supervisor | |
+//! | `franka_recovery_seconds`, `franka_reconnect_seconds` | gauge, duration of the newest; no sample before the first | |
 //! | `franka_cycles_total` | counter, states that the control thread took up | |
 //! | `franka_commands_total`, `franka_commands_late_total` | counter; late: after the next state was due | |
 //! | `franka_states_lost_total`, `franka_states_skipped_total`, `franka_states_stale_total` | counter | |

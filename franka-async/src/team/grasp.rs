@@ -41,9 +41,9 @@ impl<const N: usize> Team<N> {
     /// choice. The present positions of the arms determine the pose of the object in each hand.
     /// Nothing moves.
     ///
-    /// The springs of the arms carry weight that is not declared
-    /// ([`Robot::set_load`](crate::Robot::set_load)). If several arms hold a load, declare each
-    /// arm's share of it.
+    /// The springs of the arms carry any weight that is not declared with
+    /// [`Robot::set_load`](crate::Robot::set_load). If several arms hold a load, declare each arm's
+    /// share of it.
     ///
     /// # Errors
     /// Returns the reason why the session of an arm ended, if one has ended.

@@ -30,7 +30,8 @@ pub struct MoveRequest {
 }
 
 impl MoveRequest {
-    /// Creates a motion with libfranka's deviations and one command per cycle.
+    /// Creates a request with the allowed deviations that libfranka sends
+    /// ([`Deviation::LIBFRANKA`]), and with one command per cycle.
     #[must_use]
     pub fn new(controller: MoveControllerMode, generator: MoveGeneratorMode) -> Self {
         Self {

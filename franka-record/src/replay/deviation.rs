@@ -12,7 +12,7 @@ pub struct ReplayDeviation {
     position: Vec<f64>,
 }
 
-/// Distance of the arm from the recorded arm in one state.
+/// Distance of the arm from its recorded position, in one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// Largest distance of any joint from its recorded position, `[rad]`.

@@ -72,7 +72,8 @@ impl Arm {
         }
     }
 
-    /// The central arm of [`Family::nominal`]: a good arm, better than the arms that were measured.
+    /// The central arm of [`Family::nominal`] (see [`Self::central`]): a good arm, better than the
+    /// real arms for which measurements are published.
     pub fn nominal(kind: RobotKind) -> Self {
         Self::central(kind, &Family::nominal())
     }

@@ -13,7 +13,7 @@
 //! | one of them is another address, or a name given to [`Admission::host`] | refused | needs the token |
 //! | a header of a proxy, such as `Forwarded` or `X-Forwarded-For` | refused | needs the token |
 //! | any other name in `Host` or `:authority` | refused | refused |
-//! | a page of another origin, by `Origin` or `Sec-Fetch-Site` | refused | refused |
+//! | a page of another origin, according to `Origin` or `Sec-Fetch-Site` | refused | refused |
 //!
 //! Programs send the token as `Authorization: Bearer TOKEN`. A page in a browser cannot set headers
 //! of a WebSocket, so it sends the token as the subprotocol `token.TOKEN`.

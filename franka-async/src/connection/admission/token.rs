@@ -55,7 +55,7 @@ impl Token {
     ///
     /// # Errors
     /// Returns [`TokenError::Empty`], [`TokenError::Short`] or [`TokenError::Character`] if the
-    /// text is no token.
+    /// text is not a valid token.
     pub fn new(text: impl Into<String>) -> Result<Self, TokenError> {
         let text = text.into();
         let is_odd = |c: &char| !(c.is_ascii_alphanumeric() || "-_.~".contains(*c));
@@ -70,7 +70,7 @@ impl Token {
     /// Makes a random token of 128 bits.
     ///
     /// # Errors
-    /// Returns [`TokenError::Random`] if that fails.
+    /// Returns [`TokenError::Random`] if the operating system provides no random numbers.
     pub fn generate() -> Result<Self, TokenError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(|error| TokenError::Random {
