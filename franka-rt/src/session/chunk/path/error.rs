@@ -13,8 +13,8 @@ pub enum PathError {
     Empty,
     /// There are more waypoints than a path may have.
     #[error(
-        "the path has too many waypoints, expected {} at most: move through the rest as the next \
-         path",
+        "the path has too many waypoints, expected {} at most: put the other waypoints into the \
+         next path",
         Waypoint::COUNT_MAX
     )]
     TooMany,
