@@ -2,10 +2,12 @@
 
 use std::io::Read as _;
 
+use mcap::records::Record;
+
 use super::bytes::Bytes;
 use super::error::RecordingError;
 use super::index::ChunkEntry;
-use super::wire::{self, ChunkHeader, Fields, HEADER, op};
+use super::wire::{self, HEADER};
 
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
@@ -26,36 +28,28 @@ impl Chunk {
         let Some(record) = bytes.read(offset, entry.length)? else {
             return damaged("it extends beyond the end of the file");
         };
-        let Some((op::CHUNK, body, _)) = wire::split(&record) else {
-            return damaged("it is not a chunk");
+        let (header, data) = match wire::first(&record) {
+            Some(Record::Chunk { header, data }) => (header, data),
+            Some(_) => return damaged("it is not a chunk"),
+            None => return damaged("its header or its data is too short"),
         };
-        let mut fields = Fields(body);
-        let Some(header) = ChunkHeader::read(&mut fields) else {
-            return damaged("its header is too short");
-        };
-        let compressed = usize::try_from(header.compressed_size).ok();
-        let Some(data) = compressed.and_then(|length| fields.bytes(length)) else {
-            return damaged("its data is too short");
-        };
-        let records = match header.compression {
-            "" => data.to_vec(),
-            "lz4" => match decompress(data, header.size) {
+        let records = match header.compression.as_str() {
+            "" => data.into_owned(),
+            "lz4" => match decompress(&data, header.uncompressed_size) {
                 Ok(records) => records,
                 Err(reason) => return damaged(&reason),
             },
             ZSTD => {
-                return Err(RecordingError::Compression {
-                    offset,
-                    got: ZSTD.to_owned(),
-                });
+                let got = header.compression;
+                return Err(RecordingError::Compression { offset, got });
             }
             // The format defines no other compression.
             other => return damaged(&format!("its compression is called {other:?}")),
         };
-        if records.len() as u64 != header.size {
+        if records.len() as u64 != header.uncompressed_size {
             return damaged("the length of its data differs from its header");
         }
-        if header.crc != 0 && crc32fast::hash(&records) != header.crc {
+        if header.uncompressed_crc != 0 && crc32fast::hash(&records) != header.uncompressed_crc {
             return damaged("its checksum is wrong");
         }
         Ok(Self {

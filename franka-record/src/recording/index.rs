@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use mcap::MAGIC;
+use mcap::records::{Channel, Record, op};
+
 use super::bytes::Bytes;
 use super::error::RecordingError;
-use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
+use super::wire::{self, CHUNK_HEADER, Fields, HEADER};
 
 /// Positions of all parts of the file.
 #[derive(Clone, Debug, Default)]
@@ -67,34 +70,29 @@ impl Index {
         let Some(footer) = bytes.read(start, FOOTER_LENGTH)? else {
             return missing("the file became shorter during reading");
         };
-        let Some((op::FOOTER, body, magic)) = wire::split(&footer) else {
+        let Some(Record::Footer(end)) = wire::first(&footer) else {
             return missing("no footer");
         };
-        if magic != MAGIC {
+        if !footer.ends_with(MAGIC) {
             return missing("no magic bytes");
         }
-        let mut fields = Fields(body);
-        let (Some(summary_start), Some(_), Some(crc)) = (fields.u64(), fields.u64(), fields.u32())
-        else {
-            return missing("a short footer");
-        };
-        let length = start.checked_sub(summary_start);
-        let Some(length) = length.filter(|_| summary_start > 0) else {
+        let length = start.checked_sub(end.summary_start);
+        let Some(length) = length.filter(|_| end.summary_start > 0) else {
             return missing("no summary");
         };
-        let Some(summary) = bytes.read(summary_start, length)? else {
+        let Some(summary) = bytes.read(end.summary_start, length)? else {
             return missing("no summary");
         };
-        if crc != 0 {
+        if end.summary_crc != 0 {
             // The checksum covers the footer up to the checksum itself.
             let mut hasher = crc32fast::Hasher::new();
             hasher.update(&summary);
             hasher.update(&footer[..HEADER as usize + 16]);
-            if hasher.finalize() != crc {
+            if hasher.finalize() != end.summary_crc {
                 return Ok(Err("its summary is damaged".to_owned()));
             }
         }
-        Ok(Self::read_summary(&summary, summary_start)
+        Ok(Self::read_summary(&summary, end.summary_start)
             .ok_or_else(|| "its summary is damaged".to_owned()))
     }
 
@@ -153,11 +151,12 @@ impl Index {
             let length = end - offset;
             match kind {
                 op::CHUNK => {
-                    let part = body.min(ChunkHeader::LENGTH_MAX);
+                    let part = body.min(CHUNK_HEADER + COMPRESSION_MAX);
                     let part = bytes.read(offset + HEADER, part)?.unwrap_or_default();
                     // A chunk without a readable header is reported as damaged when it is read.
-                    let times = ChunkHeader::read(&mut Fields(&part));
-                    let (begin, end) = times.map_or((0, u64::MAX), |c| (c.begin, c.end));
+                    let (begin, end) = wire::chunk_header(&part).map_or((0, u64::MAX), |header| {
+                        (header.message_start_time, header.message_end_time)
+                    });
                     index.chunks.push(ChunkEntry {
                         offset,
                         length,
@@ -193,55 +192,37 @@ fn entry(fields: &mut Fields<'_>) -> Option<Entry> {
 /// Number of bytes in the footer and the magic bytes after it.
 const FOOTER_LENGTH: u64 = HEADER + 8 + 8 + 4 + 8;
 
-/// The channels of a recording, with the kinds of their messages.
+/// Longest name of a compression in a chunk whose times are read.
+const COMPRESSION_MAX: u64 = 16;
+
+/// The channels of a recording, and the names of their schemas.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Channels {
     schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, ChannelEntry>,
-}
-
-#[derive(Clone, Debug)]
-pub(super) struct ChannelEntry {
-    pub(super) name: String,
-    schema: u16,
-    protobuf: bool,
+    channels: BTreeMap<u16, Channel>,
 }
 
 impl Channels {
-    /// Processes a record that describes a schema or a channel, and ignores other records. Returns
-    /// true if the record was readable.
-    pub(super) fn take(&mut self, kind: u8, body: &[u8]) -> bool {
-        match kind {
-            op::SCHEMA => match wire::Schema::read(body) {
-                Some(schema) => {
-                    self.schemas.insert(schema.id, schema.name.to_owned());
-                    true
-                }
-                None => false,
-            },
-            op::CHANNEL => match wire::Channel::read(body) {
-                Some(channel) => {
-                    let entry = ChannelEntry {
-                        name: channel.topic.to_owned(),
-                        schema: channel.schema,
-                        protobuf: channel.encoding == "protobuf",
-                    };
-                    self.channels.insert(channel.id, entry);
-                    true
-                }
-                None => false,
-            },
-            _ => true,
+    /// Processes a record that describes a schema or a channel, and ignores other records.
+    pub(super) fn take(&mut self, kind: u8, body: &[u8]) {
+        match wire::parse(kind, body) {
+            Some(Record::Schema { header, .. }) => {
+                self.schemas.insert(header.id, header.name);
+            }
+            Some(Record::Channel(channel)) => {
+                self.channels.insert(channel.id, channel);
+            }
+            _ => {}
         }
     }
 
     pub(super) fn find(&self, name: &str, schema: &str) -> Option<u16> {
-        let fits = |channel: &ChannelEntry| {
-            channel.name == name
-                && channel.protobuf
-                && self.schemas.get(&channel.schema).map(String::as_str) == Some(schema)
-        };
-        let mut channels = self.channels.iter();
-        channels.find_map(|(id, channel)| fits(channel).then_some(*id))
+        let mut channels = self.channels.values();
+        let found = channels.find(|channel| {
+            channel.topic == name
+                && channel.message_encoding == "protobuf"
+                && self.schemas.get(&channel.schema_id).map(String::as_str) == Some(schema)
+        });
+        found.map(|channel| channel.id)
     }
 }

@@ -1,5 +1,6 @@
 //! The messages of one robot, read chunk by chunk.
 
+use mcap::records::{MessageHeader, op};
 use prost::Message as _;
 
 use super::RobotRecording;
@@ -7,7 +8,7 @@ use super::bytes::Bytes;
 use super::chunk::Chunk;
 use super::error::RecordingError;
 use super::index::ChunkEntry;
-use super::wire::{self, op};
+use super::wire;
 use crate::schema::{Topic, franka};
 use crate::{Cycle, Event, GripperState, HostTime};
 
@@ -45,7 +46,7 @@ impl Walk {
     /// value. Returns `None` at the end.
     fn next<T>(
         &mut self,
-        mut take: impl FnMut(wire::Message<'_>) -> Option<Result<T, (&'static str, String)>>,
+        mut take: impl FnMut(MessageHeader, &[u8]) -> Option<Result<T, (&'static str, String)>>,
     ) -> Option<Result<T, RecordingError>> {
         loop {
             let chunk = match &mut self.open {
@@ -63,10 +64,10 @@ impl Walk {
                 if kind != op::MESSAGE {
                     continue;
                 }
-                let Some(message) = wire::Message::read(body) else {
+                let Some((header, data)) = wire::message(body) else {
                     continue;
                 };
-                match take(message) {
+                match take(header, data) {
                     None => {}
                     Some(Ok(taken)) => return Some(Ok(taken)),
                     Some(Err((topic, reason))) => {
@@ -129,10 +130,10 @@ impl Iterator for Cycles {
         } = self;
         let (from, to) = (walk.from, walk.to);
         let wanted = |time| from <= time && time <= to;
-        walk.next(|message| {
-            let channel = Some(message.channel);
+        walk.next(|message, data| {
+            let channel = Some(message.channel_id);
             if channel == *tools {
-                match franka::Tool::decode(message.data) {
+                match franka::Tool::decode(data) {
                     Ok(read) => *tool = Some(read),
                     Err(error) => return Some(Err(("tool", error.to_string()))),
                 }
@@ -140,7 +141,7 @@ impl Iterator for Cycles {
             if channel != *cycles || !wanted(HostTime::from_nanos(message.log_time)) {
                 return None;
             }
-            Some(match franka::Cycle::decode(message.data) {
+            Some(match franka::Cycle::decode(data) {
                 Ok(read) => Ok(read.to_cycle(tool.as_ref())),
                 Err(error) => Err(("cycle", error.to_string())),
             })
@@ -169,12 +170,12 @@ impl Iterator for Events {
 
     fn next(&mut self) -> Option<Self::Item> {
         let (from, to, channel) = (self.walk.from, self.walk.to, self.channel);
-        self.walk.next(|message| {
+        self.walk.next(|message, data| {
             let time = HostTime::from_nanos(message.log_time);
-            if Some(message.channel) != channel || time < from || time > to {
+            if Some(message.channel_id) != channel || time < from || time > to {
                 return None;
             }
-            match franka::Event::decode(message.data) {
+            match franka::Event::decode(data) {
                 // Events of kinds that later versions added are ignored.
                 Ok(read) => read.to_event(time).map(Ok),
                 Err(error) => Some(Err(("event", error.to_string()))),
@@ -205,12 +206,12 @@ impl Iterator for GripperStates {
 
     fn next(&mut self) -> Option<Self::Item> {
         let (from, to, channel) = (self.walk.from, self.walk.to, self.channel);
-        self.walk.next(|message| {
+        self.walk.next(|message, data| {
             let time = HostTime::from_nanos(message.log_time);
-            if Some(message.channel) != channel || time < from || time > to {
+            if Some(message.channel_id) != channel || time < from || time > to {
                 return None;
             }
-            match franka::Gripper::decode(message.data) {
+            match franka::Gripper::decode(data) {
                 Ok(read) => read.to_state().map(|state| Ok((time, state))),
                 Err(error) => Some(Err(("gripper", error.to_string()))),
             }

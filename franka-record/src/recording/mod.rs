@@ -34,21 +34,23 @@ mod recover;
 mod resample;
 mod wire;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 
 use franka_model::RobotKind;
+use mcap::MAGIC;
+use mcap::records::Record;
 
 use self::bytes::Bytes;
 use self::chunk::Chunk;
 pub use self::error::RecordingError;
 use self::index::{Channels, Entry, Index};
 pub use self::messages::{Cycles, Events, GripperStates};
-pub(crate) use self::records::{Record, each_record};
+pub(crate) use self::records::each_record;
 pub use self::recover::Recovery;
 pub use self::resample::Resampled;
-use self::wire::{AttachmentHeader, Fields, MAGIC, op};
 use crate::HostTime;
 use crate::recorded_model::{self, RecordedModel};
 use crate::schema::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
@@ -133,12 +135,13 @@ impl Recording {
         let start = MAGIC.len() as u64;
         let length = self.bytes.length().saturating_sub(start).min(HEADER_MAX);
         let record = self.bytes.read(start, length)?;
-        let header = record.as_deref().and_then(wire::split);
-        let written = header.and_then(|(kind, body, _)| {
-            let mut fields = Fields(body);
-            let (profile, library) = (fields.text()?, fields.text()?);
-            (kind == op::HEADER).then_some((profile, library))
-        });
+        let header = match record.as_deref().and_then(wire::first) {
+            Some(Record::Header(header)) => Some((header.profile, header.library)),
+            _ => None,
+        };
+        let written = header
+            .as_ref()
+            .map(|(profile, library)| (&**profile, &**library));
         let is_whole = self.damage.is_none();
         Ok(match written {
             Some((_, library)) if library.starts_with(env!("CARGO_PKG_NAME")) => {
@@ -159,13 +162,10 @@ impl Recording {
         let mut others = Vec::new();
         for entry in &self.index.metadata {
             let record = self.bytes.read(entry.offset, entry.length)?;
-            let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
+            let Some(Record::Metadata(record)) = record.as_deref().and_then(wire::first) else {
                 continue;
             };
-            let mut fields = Fields(body);
-            let (Some(name), Some(metadata)) = (fields.text(), fields.map()) else {
-                continue;
-            };
+            let (name, metadata) = (record.name, record.metadata);
             if name == METADATA {
                 self.metadata = metadata;
             } else if let Some(robot) = name.strip_prefix(ROBOT_METADATA) {
@@ -179,7 +179,7 @@ impl Recording {
                     metadata,
                 });
             } else {
-                others.push(name.to_owned());
+                others.push(name);
             }
         }
         Ok(others)
@@ -276,7 +276,7 @@ impl Recording {
             if let Some(record) = self.bytes.read(entry.offset, entry.length)?
                 && let Some((name, _)) = attachment(&record)
             {
-                names.push(name.to_owned());
+                names.push(name);
             }
         }
         Ok(names)
@@ -301,7 +301,7 @@ impl Recording {
                 && let Some((found, data)) = attachment(&record)
                 && found == name
             {
-                return Ok(Some(data.to_owned()));
+                return Ok(Some(data.into_owned()));
             }
         }
         Ok(None)
@@ -316,17 +316,11 @@ impl Recording {
     }
 }
 
-fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
-    let (op::ATTACHMENT, body, _) = wire::split(record)? else {
-        return None;
-    };
-    let mut fields = Fields(body);
-    let name = AttachmentHeader::read(&mut fields)?.name;
-    let length = usize::try_from(fields.u64()?).ok()?;
-    let data = fields.bytes(length)?;
-    let checked = &body[..body.len() - fields.0.len()];
-    let crc = fields.u32()?;
-    (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
+fn attachment(record: &[u8]) -> Option<(String, Cow<'_, [u8]>)> {
+    match wire::first(record)? {
+        Record::Attachment { header, data, .. } => Some((header.name, data)),
+        _ => None,
+    }
 }
 
 /// Largest number of bytes that the reader reads from the first record. Longer texts are not shown.

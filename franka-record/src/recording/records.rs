@@ -1,29 +1,13 @@
 //! The records of a whole MCAP file in memory. The file may contain any bytes.
 
-use std::collections::BTreeMap;
+use mcap::MAGIC;
+use mcap::records::{Record, op};
 
 use super::bytes::Bytes;
 use super::chunk::Chunk;
 use super::error::RecordingError;
 use super::index::Index;
-use super::wire::{self, Fields, HEADER, MAGIC, op};
-
-pub(crate) enum Record<'a> {
-    Metadata {
-        name: &'a str,
-        entries: BTreeMap<String, String>,
-    },
-    Channel {
-        id: u16,
-        topic: &'a str,
-    },
-    Message {
-        channel: u16,
-        sequence: u32,
-        log_time: u64,
-        data: &'a [u8],
-    },
-}
+use super::wire::{self, Fields, HEADER};
 
 /// Calls `take` first with all metadata, and then with the channels and messages of every chunk, in
 /// the order of the file. Stops at the first damaged chunk. Returns a description of the file's
@@ -42,14 +26,10 @@ pub(crate) fn each_record<E: From<RecordingError>>(
     for entry in &index.metadata {
         let record = bytes.read(entry.offset, entry.length);
         let record = record.map_err(RecordingError::from)?;
-        let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
-            continue;
-        };
-        let mut fields = Fields(body);
-        let (Some(name), Some(entries)) = (fields.text(), fields.map()) else {
-            return Ok(Some(format!("metadata at byte {}", entry.offset)));
-        };
-        take(Record::Metadata { name, entries })?;
+        match record.as_deref().and_then(wire::first) {
+            Some(record) => take(record)?,
+            None => return Ok(Some(format!("metadata at byte {}", entry.offset))),
+        }
     }
     for entry in &index.chunks {
         let mut chunk = match Chunk::read(&bytes, entry) {
@@ -57,20 +37,10 @@ pub(crate) fn each_record<E: From<RecordingError>>(
             Err(error) => return Ok(Some(error.to_string())),
         };
         while let Some((kind, body)) = chunk.next() {
-            let record = match kind {
-                op::CHANNEL => wire::Channel::read(body).map(|channel| Record::Channel {
-                    id: channel.id,
-                    topic: channel.topic,
-                }),
-                op::MESSAGE => wire::Message::read(body).map(|message| Record::Message {
-                    channel: message.channel,
-                    sequence: message.sequence,
-                    log_time: message.log_time,
-                    data: message.data,
-                }),
-                _ => continue,
+            let (op::CHANNEL | op::MESSAGE) = kind else {
+                continue;
             };
-            let Some(record) = record else {
+            let Some(record) = wire::parse(kind, body) else {
                 let at = entry.offset;
                 return Ok(Some(format!("a short record in the chunk at byte {at}")));
             };

@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::BufWriter;
 use std::path::Path;
 
-use mcap::records::{MessageHeader, Metadata};
+use mcap::records::{Record, op};
 use mcap::{Attachment, Compression, McapError, WriteOptions};
 
 use super::Recording;
@@ -12,7 +12,7 @@ use super::bytes::Bytes;
 use super::chunk::Chunk;
 use super::error::RecordingError;
 use super::index::Index;
-use super::wire::{self, AttachmentHeader, Fields, op};
+use super::wire;
 
 /// Result of a recovery.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -105,11 +105,11 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
             .read(entry.offset, entry.length)
             .map_err(RecordingError::from)?
         {
-            copy_outside(&mut writer, &record)?;
+            copy(&mut writer, wire::first(&record))?;
         }
     }
     for (kind, body) in &index.described {
-        describe(&mut writer, *kind, body)?;
+        copy(&mut writer, wire::parse(*kind, body))?;
     }
     for entry in &index.chunks {
         let mut chunk = match Chunk::read(bytes, entry) {
@@ -122,10 +122,8 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
         };
         recovery.chunks += 1;
         while let Some((kind, body)) = chunk.next() {
-            if kind == op::MESSAGE {
-                recovery.messages += u64::from(copy_message(&mut writer, body)?);
-            } else {
-                describe(&mut writer, kind, body)?;
+            if let op::MESSAGE | op::SCHEMA | op::CHANNEL = kind {
+                recovery.messages += u64::from(copy(&mut writer, wire::parse(kind, body))?);
             }
         }
     }
@@ -133,70 +131,44 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
     Ok(recovery)
 }
 
-/// Copies a message, unless its channel is unknown. Returns true if it was copied.
-fn copy_message(writer: &mut Writer, body: &[u8]) -> Result<bool, McapError> {
-    let Some(message) = wire::Message::read(body) else {
-        return Ok(false);
+/// Copies a record. Omits damaged records, records that contradict earlier records, and messages
+/// without a channel. Returns true if it copied a message.
+fn copy(writer: &mut Writer, record: Option<Record<'_>>) -> Result<bool, McapError> {
+    let copied = match record {
+        Some(Record::Message { header, data }) => {
+            let copied = writer.write_to_known_channel(&header, &data);
+            return match copied {
+                Err(McapError::UnknownChannel(..)) => Ok(false),
+                copied => copied.map(|()| true),
+            };
+        }
+        Some(Record::Metadata(metadata)) => writer.write_metadata(&metadata),
+        Some(Record::Attachment { header, data, .. }) => writer.attach(&Attachment {
+            log_time: header.log_time,
+            create_time: header.create_time,
+            name: header.name,
+            media_type: header.media_type,
+            data,
+        }),
+        Some(Record::Schema { header, data }) => {
+            accepted(writer.add_schema_with_id(header.id, &header.name, &header.encoding, &data))
+        }
+        Some(Record::Channel(channel)) => accepted(writer.add_channel_with_id(
+            channel.id,
+            channel.schema_id,
+            &channel.topic,
+            &channel.message_encoding,
+            &channel.metadata,
+        )),
+        _ => Ok(()),
     };
-    let header = MessageHeader {
-        channel_id: message.channel,
-        sequence: message.sequence,
-        log_time: message.log_time,
-        publish_time: message.publish_time,
-    };
-    match writer.write_to_known_channel(&header, message.data) {
-        Ok(()) => Ok(true),
-        Err(McapError::UnknownChannel(..)) => Ok(false),
-        Err(error) => Err(error),
-    }
+    copied.map(|()| false)
 }
 
-/// Copies a schema or a channel. A record that contradicts an earlier record is omitted.
-fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError> {
-    let added = match kind {
-        op::SCHEMA => wire::Schema::read(body).map(|schema| {
-            writer.add_schema_with_id(schema.id, schema.name, schema.encoding, schema.data)
-        }),
-        op::CHANNEL => wire::Channel::read(body).map(|channel| {
-            writer.add_channel_with_id(
-                channel.id,
-                channel.schema,
-                channel.topic,
-                channel.encoding,
-                &channel.metadata,
-            )
-        }),
-        _ => None,
-    };
+/// Ignores that the writer refused a description.
+fn accepted<T>(added: Result<T, McapError>) -> Result<(), McapError> {
     match added {
-        Some(Err(error @ McapError::Io(_))) => Err(error),
+        Err(error @ McapError::Io(_)) => Err(error),
         _ => Ok(()),
     }
-}
-
-/// Copies metadata or an attachment. A damaged record is omitted.
-fn copy_outside(writer: &mut Writer, record: &[u8]) -> Result<(), McapError> {
-    match wire::split(record) {
-        Some((op::METADATA, body, _)) => {
-            let mut fields = Fields(body);
-            if let (Some(name), Some(metadata)) = (fields.text(), fields.map()) {
-                let name = name.to_owned();
-                writer.write_metadata(&Metadata { name, metadata })?;
-            }
-        }
-        Some((op::ATTACHMENT, body, _)) => {
-            let header = AttachmentHeader::read(&mut Fields(body));
-            if let (Some(header), Some((_, data))) = (header, super::attachment(record)) {
-                writer.attach(&Attachment {
-                    log_time: header.log_time,
-                    create_time: header.create_time,
-                    name: header.name.to_owned(),
-                    media_type: header.media_type.to_owned(),
-                    data: data.into(),
-                })?;
-            }
-        }
-        _ => {}
-    }
-    Ok(())
 }

@@ -1,29 +1,24 @@
-//! The MCAP records that the reader of recordings needs.
+//! Parses the MCAP records that the reader of recordings needs. Source: the MCAP format
+//! specification, version 0.
 //!
-//! This module replaces the crate `mcap` for reading, because it does not trust a length in a
-//! damaged file before it has read that many bytes. Source: the MCAP format specification, version
-//! 0.
+//! The types are those of the crate `mcap`. Version 0.26 of the crate does not parse damaged files
+//! safely, so the functions here do not trust a length before they have read that many bytes:
+//!
+//! * `parse_record` reserves memory for a text before it reads the text: for a damaged length, up to
+//!   4 GiB. `Summary::read`, `SummaryReader` and all readers of `mcap::read` call this function.
+//! * `parse_record` panics if an attachment ends within its checksum.
+//! * `LinearReader` subtracts with overflow if a record of an uncompressed chunk extends beyond its
+//!   data. With `prevalidate_chunk_crcs`, it allocates the size in the header of a compressed chunk,
+//!   up to `record_length_limit`. Otherwise it returns messages before it verifies their checksum.
+//! * `ChunkReader` and `MessageStream` have no limit, and panic at the largest lengths.
+//! * `IndexedReader` and `SummaryReader` do not verify checksums.
 
 use std::collections::BTreeMap;
 
-/// Bytes at the beginning and at the end of an MCAP file.
-pub(super) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
-
-/// Kinds of record.
-pub(super) mod op {
-    pub(in crate::recording) const HEADER: u8 = 0x01;
-    pub(in crate::recording) const FOOTER: u8 = 0x02;
-    pub(in crate::recording) const SCHEMA: u8 = 0x03;
-    pub(in crate::recording) const CHANNEL: u8 = 0x04;
-    pub(in crate::recording) const MESSAGE: u8 = 0x05;
-    pub(in crate::recording) const CHUNK: u8 = 0x06;
-    pub(in crate::recording) const CHUNK_INDEX: u8 = 0x08;
-    pub(in crate::recording) const ATTACHMENT: u8 = 0x09;
-    pub(in crate::recording) const ATTACHMENT_INDEX: u8 = 0x0a;
-    pub(in crate::recording) const METADATA: u8 = 0x0c;
-    pub(in crate::recording) const METADATA_INDEX: u8 = 0x0d;
-    pub(in crate::recording) const DATA_END: u8 = 0x0f;
-}
+use mcap::records::{
+    AttachmentHeader, Channel, ChunkHeader, Footer, Header, MessageHeader, Metadata, Record,
+    SchemaHeader, op,
+};
 
 /// Number of bytes of a record before its body: the record kind and the length of the body.
 pub(super) const HEADER: u64 = 9;
@@ -43,26 +38,133 @@ pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     Some((kind, body, rest))
 }
 
+/// Parses the first record; `None` if it is damaged.
+pub(super) fn first(bytes: &[u8]) -> Option<Record<'_>> {
+    let (kind, body, _) = split(bytes)?;
+    parse(kind, body)
+}
+
+/// Parses a record; `None` if it is damaged. A kind that the reader does not need is
+/// [`Record::Unknown`].
+pub(super) fn parse(kind: u8, body: &[u8]) -> Option<Record<'_>> {
+    let mut fields = Fields(body);
+    let fields = &mut fields;
+    Some(match kind {
+        op::HEADER => Record::Header(Header {
+            profile: fields.text()?,
+            library: fields.text()?,
+        }),
+        op::FOOTER => Record::Footer(Footer {
+            summary_start: fields.u64()?,
+            summary_offset_start: fields.u64()?,
+            summary_crc: fields.u32()?,
+        }),
+        op::SCHEMA => {
+            let header = SchemaHeader {
+                id: fields.u16()?,
+                name: fields.text()?,
+                encoding: fields.text()?,
+            };
+            let length = fields.u32()?.into();
+            let data = fields.bytes(length)?.into();
+            Record::Schema { header, data }
+        }
+        op::CHANNEL => Record::Channel(Channel {
+            id: fields.u16()?,
+            schema_id: fields.u16()?,
+            topic: fields.text()?,
+            message_encoding: fields.text()?,
+            metadata: fields.map()?,
+        }),
+        op::MESSAGE => {
+            let (header, data) = message(body)?;
+            let data = data.into();
+            Record::Message { header, data }
+        }
+        op::CHUNK => {
+            let header = chunk_header(body)?;
+            // The header takes as many bytes as its fields.
+            let length = CHUNK_HEADER as usize + header.compression.len();
+            let data = Fields(&body[length..]).bytes(header.compressed_size)?;
+            let data = data.into();
+            Record::Chunk { header, data }
+        }
+        op::ATTACHMENT => {
+            let header = AttachmentHeader {
+                log_time: fields.u64()?,
+                create_time: fields.u64()?,
+                name: fields.text()?,
+                media_type: fields.text()?,
+            };
+            let length = fields.u64()?;
+            let data = fields.bytes(length)?.into();
+            let checked = &body[..body.len() - fields.0.len()];
+            let crc = fields.u32()?;
+            if crc != 0 && crc32fast::hash(checked) != crc {
+                return None;
+            }
+            Record::Attachment { header, data, crc }
+        }
+        op::METADATA => Record::Metadata(Metadata {
+            name: fields.text()?,
+            metadata: fields.map()?,
+        }),
+        opcode => Record::Unknown {
+            opcode,
+            data: body.into(),
+        },
+    })
+}
+
+/// Parses the body of a message.
+pub(super) fn message(body: &[u8]) -> Option<(MessageHeader, &[u8])> {
+    let mut fields = Fields(body);
+    let header = MessageHeader {
+        channel_id: fields.u16()?,
+        sequence: fields.u32()?,
+        log_time: fields.u64()?,
+        publish_time: fields.u64()?,
+    };
+    Some((header, fields.0))
+}
+
+/// Parses the first bytes of the body of a chunk.
+pub(super) fn chunk_header(body: &[u8]) -> Option<ChunkHeader> {
+    let mut fields = Fields(body);
+    Some(ChunkHeader {
+        message_start_time: fields.u64()?,
+        message_end_time: fields.u64()?,
+        uncompressed_size: fields.u64()?,
+        uncompressed_crc: fields.u32()?,
+        compression: fields.text()?,
+        compressed_size: fields.u64()?,
+    })
+}
+
+/// Number of bytes of the header of a chunk, without the name of its compression.
+pub(super) const CHUNK_HEADER: u64 = 8 + 8 + 8 + 4 + 4 + 8;
+
 /// Reads fields in their order. Each method returns `None` if too few bytes are left.
-#[derive(Clone, Copy)]
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 
 impl<'a> Fields<'a> {
-    pub(super) fn bytes(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (bytes, rest) = self.0.split_at_checked(length)?;
+    fn bytes(&mut self, length: u64) -> Option<&'a [u8]> {
+        let (bytes, rest) = self.0.split_at_checked(usize::try_from(length).ok()?)?;
         self.0 = rest;
         Some(bytes)
     }
 
     fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.bytes(N)?.try_into().ok()
+        let (array, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*array)
     }
 
-    pub(super) fn u8(&mut self) -> Option<u8> {
+    fn u8(&mut self) -> Option<u8> {
         self.array().map(u8::from_le_bytes)
     }
 
-    pub(super) fn u16(&mut self) -> Option<u16> {
+    fn u16(&mut self) -> Option<u16> {
         self.array().map(u16::from_le_bytes)
     }
 
@@ -75,128 +177,20 @@ impl<'a> Fields<'a> {
     }
 
     /// Reads a text and the length before it.
-    pub(super) fn text(&mut self) -> Option<&'a str> {
-        let length = usize::try_from(self.u32()?).ok()?;
-        std::str::from_utf8(self.bytes(length)?).ok()
+    fn text(&mut self) -> Option<String> {
+        let length = self.u32()?.into();
+        std::str::from_utf8(self.bytes(length)?)
+            .ok()
+            .map(str::to_owned)
     }
 
-    pub(super) fn map(&mut self) -> Option<BTreeMap<String, String>> {
-        let length = usize::try_from(self.u32()?).ok()?;
+    fn map(&mut self) -> Option<BTreeMap<String, String>> {
+        let length = self.u32()?.into();
         let mut entries = Fields(self.bytes(length)?);
         let mut map = BTreeMap::new();
         while !entries.0.is_empty() {
-            let name = entries.text()?.to_owned();
-            map.insert(name, entries.text()?.to_owned());
+            map.insert(entries.text()?, entries.text()?);
         }
         Some(map)
-    }
-}
-
-pub(super) struct Schema<'a> {
-    pub(super) id: u16,
-    pub(super) name: &'a str,
-    pub(super) encoding: &'a str,
-    pub(super) data: &'a [u8],
-}
-
-impl<'a> Schema<'a> {
-    pub(super) fn read(body: &'a [u8]) -> Option<Self> {
-        let mut fields = Fields(body);
-        let (id, name, encoding) = (fields.u16()?, fields.text()?, fields.text()?);
-        let length = usize::try_from(fields.u32()?).ok()?;
-        Some(Self {
-            id,
-            name,
-            encoding,
-            data: fields.bytes(length)?,
-        })
-    }
-}
-
-pub(super) struct Channel<'a> {
-    pub(super) id: u16,
-    pub(super) schema: u16,
-    pub(super) topic: &'a str,
-    pub(super) encoding: &'a str,
-    pub(super) metadata: BTreeMap<String, String>,
-}
-
-impl<'a> Channel<'a> {
-    pub(super) fn read(body: &'a [u8]) -> Option<Self> {
-        let mut fields = Fields(body);
-        Some(Self {
-            id: fields.u16()?,
-            schema: fields.u16()?,
-            topic: fields.text()?,
-            encoding: fields.text()?,
-            metadata: fields.map()?,
-        })
-    }
-}
-
-#[derive(Clone, Copy)]
-pub(super) struct Message<'a> {
-    pub(super) channel: u16,
-    pub(super) sequence: u32,
-    pub(super) log_time: u64,
-    pub(super) publish_time: u64,
-    pub(super) data: &'a [u8],
-}
-
-impl<'a> Message<'a> {
-    pub(super) fn read(body: &'a [u8]) -> Option<Self> {
-        let mut fields = Fields(body);
-        Some(Self {
-            channel: fields.u16()?,
-            sequence: fields.u32()?,
-            log_time: fields.u64()?,
-            publish_time: fields.u64()?,
-            data: fields.0,
-        })
-    }
-}
-
-/// The header of a chunk, before its data.
-pub(super) struct ChunkHeader<'a> {
-    pub(super) begin: u64,
-    pub(super) end: u64,
-    pub(super) size: u64,
-    pub(super) crc: u32,
-    pub(super) compression: &'a str,
-    pub(super) compressed_size: u64,
-}
-
-impl<'a> ChunkHeader<'a> {
-    /// Largest length of the header, with any supported compression.
-    pub(super) const LENGTH_MAX: u64 = 8 + 8 + 8 + 4 + 4 + 16 + 8;
-
-    pub(super) fn read(fields: &mut Fields<'a>) -> Option<Self> {
-        Some(Self {
-            begin: fields.u64()?,
-            end: fields.u64()?,
-            size: fields.u64()?,
-            crc: fields.u32()?,
-            compression: fields.text()?,
-            compressed_size: fields.u64()?,
-        })
-    }
-}
-
-/// An attachment. The position of its data is relative to the record's body.
-pub(super) struct AttachmentHeader<'a> {
-    pub(super) log_time: u64,
-    pub(super) create_time: u64,
-    pub(super) name: &'a str,
-    pub(super) media_type: &'a str,
-}
-
-impl<'a> AttachmentHeader<'a> {
-    pub(super) fn read(fields: &mut Fields<'a>) -> Option<Self> {
-        Some(Self {
-            log_time: fields.u64()?,
-            create_time: fields.u64()?,
-            name: fields.text()?,
-            media_type: fields.text()?,
-        })
     }
 }

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
+use mcap::records::{MessageHeader, Record};
+
 use super::{CassetteError, END, START, VERSION};
 use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
-use crate::recording::{Record, each_record};
+use crate::recording::each_record;
 
 impl Cassette {
     /// Reads the file at `path`.
@@ -57,14 +59,10 @@ struct ReadChannel {
 impl Reading {
     fn on_record(&mut self, record: Record<'_>) -> Result<(), CassetteError> {
         match record {
-            Record::Metadata { name, entries } => self.on_metadata(name, &entries),
-            Record::Channel { id, topic } => self.on_channel(id, topic),
-            Record::Message {
-                channel,
-                sequence,
-                log_time,
-                data,
-            } => self.on_message(channel, sequence, log_time, data),
+            Record::Metadata(record) => self.on_metadata(&record.name, &record.metadata),
+            Record::Channel(channel) => self.on_channel(channel.id, &channel.topic),
+            Record::Message { header, data } => self.on_message(&header, &data),
+            _ => Ok(()),
         }
     }
 
@@ -118,26 +116,20 @@ impl Reading {
         Ok(())
     }
 
-    fn on_message(
-        &mut self,
-        channel: u16,
-        sequence: u32,
-        log_time: u64,
-        data: &[u8],
-    ) -> Result<(), CassetteError> {
+    fn on_message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), CassetteError> {
         let started = self.started.ok_or(CassetteError::NotACassette)?;
         // A message without a channel is a sign of damage and is ignored.
-        let Some(channel) = self.channels.get_mut(&channel) else {
+        let Some(channel) = self.channels.get_mut(&header.channel_id) else {
             return Ok(());
         };
         let Some((_, connection)) = self.connections.get_mut(&channel.connection) else {
             return Ok(());
         };
-        let missing = u64::from(sequence.wrapping_sub(channel.next));
-        channel.next = sequence.wrapping_add(1);
+        let missing = u64::from(header.sequence.wrapping_sub(channel.next));
+        channel.next = header.sequence.wrapping_add(1);
         connection.note_missing(channel.stream, missing);
         connection.events.push(Event {
-            at: Duration::from_nanos(log_time.saturating_sub(started)),
+            at: Duration::from_nanos(header.log_time.saturating_sub(started)),
             from: channel.from,
             what: match (channel.stream, data.is_empty()) {
                 (true, true) => Payload::End,
