@@ -7,6 +7,7 @@ mod exporting;
 mod feed;
 mod files;
 mod live;
+mod memory;
 mod reading;
 mod standard;
 mod viewers;
