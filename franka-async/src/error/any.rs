@@ -6,7 +6,7 @@ use franka_rt::lifecycle::{ControlError, MotionError, Party};
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 use super::ModelLibraryError;
 use super::{
-    ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, TareError,
+    ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, Row, TareError,
 };
 
 /// Any error of a robot or its end effectors. Every error of this crate converts into it, for
@@ -106,41 +106,30 @@ impl Error {
     /// );
     /// ```
     pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Connect(error) => error.entry(),
-            Self::Command(error) => error.entry(),
-            Self::Control(error) => error.entry(),
-            Self::Motion(error) => error.entry(),
-            Self::Active(error) => error.entry(),
-            Self::Identify(error) => error.entry(),
-            Self::Read(error) => error.entry(),
-            Self::Tare(error) => error.entry(),
-            Self::ConnectGripper(error) => error.entry(),
-            Self::Gripper(error) => error.entry(),
-            Self::ConnectVacuumGripper(error) => error.entry(),
-            Self::VacuumGripper(error) => error.entry(),
-            #[cfg(all(feature = "model-library", target_os = "linux"))]
-            Self::ModelLibrary(error) => error.entry(),
-        }
+        self.row().0
     }
 
     /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
+        self.row().1
+    }
+
+    fn row(&self) -> Row {
         match self {
-            Self::Connect(error) => error.party(),
-            Self::Command(error) => error.party(),
-            Self::Control(_) => Party::Robot,
-            Self::Motion(error) => error.party(),
-            Self::Active(error) => error.party(),
-            Self::Identify(error) => error.party(),
-            Self::Read(error) => error.party(),
-            Self::Tare(error) => error.party(),
-            Self::ConnectGripper(error) => error.party(),
-            Self::Gripper(error) => error.party(),
-            Self::ConnectVacuumGripper(error) => error.party(),
-            Self::VacuumGripper(error) => error.party(),
+            Self::Connect(error) => error.row(),
+            Self::Command(error) => error.row(),
+            Self::Control(error) => (error.entry(), Party::Robot),
+            Self::Motion(error) => (error.entry(), error.party()),
+            Self::Active(error) => error.row(),
+            Self::Identify(error) => error.row(),
+            Self::Read(error) => error.row(),
+            Self::Tare(error) => error.row(),
+            Self::ConnectGripper(error) => error.row(),
+            Self::Gripper(error) => error.row(),
+            Self::ConnectVacuumGripper(error) => error.row(),
+            Self::VacuumGripper(error) => error.row(),
             #[cfg(all(feature = "model-library", target_os = "linux"))]
-            Self::ModelLibrary(error) => error.party(),
+            Self::ModelLibrary(error) => error.row(),
         }
     }
 }

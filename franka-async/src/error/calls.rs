@@ -11,6 +11,8 @@ use franka_rt::lifecycle::{CloseReason, MotionError, Party};
 use franka_rt::tare::TareRefused;
 use franka_rt::thread::{BorrowError, WriteFault};
 
+use super::Row;
+
 /// Reason why a command other than a motion was not carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -65,29 +67,18 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Refused(refusal) | Self::InvalidArgument { refusal, .. } => refusal.entry(),
-            Self::Request(_) => "command-request",
-            Self::NotFinite { .. } => "command-not-finite",
-            Self::Timeout { .. } => "command-timeout",
-            Self::LinkLost { .. } => "command-link-lost",
-            Self::Violation(_) => "command-violation",
-            Self::ConnectionClosed { reason } => reason.entry(),
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Refused(_) => Party::Robot,
-            Self::Request(_) | Self::NotFinite { .. } | Self::InvalidArgument { .. } => {
-                Party::Caller
-            }
-            Self::Timeout { .. } | Self::LinkLost { .. } => Party::Link,
-            Self::ConnectionClosed { reason } => reason.party(),
-            Self::Violation(_) => Party::Peer,
+            Self::Refused(refusal) => (refusal.entry(), Party::Robot),
+            Self::InvalidArgument { refusal, .. } => (refusal.entry(), Party::Caller),
+            Self::Request(_) => ("command-request", Party::Caller),
+            Self::NotFinite { .. } => ("command-not-finite", Party::Caller),
+            Self::Timeout { .. } => ("command-timeout", Party::Link),
+            Self::LinkLost { .. } => ("command-link-lost", Party::Link),
+            Self::Violation(_) => ("command-violation", Party::Peer),
+            Self::ConnectionClosed { reason } => (reason.entry(), reason.party()),
         }
     }
 }
@@ -123,24 +114,15 @@ pub enum ActionError<C: ServiceCommand> {
 }
 
 impl<C: ServiceCommand> ActionError<C> {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Failure(_) => "action-failure",
-            Self::OutOfRange { .. } => "action-out-of-range",
-            Self::Request(_) => "action-request",
-            Self::Violation(_) => "action-violation",
-            Self::ConnectionClosed { reason } => reason.entry(),
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Failure(_) => Party::Robot,
-            Self::OutOfRange { .. } | Self::Request(_) => Party::Caller,
-            Self::Violation(_) => Party::Peer,
-            Self::ConnectionClosed { reason } => reason.party(),
+            Self::Failure(_) => ("action-failure", Party::Robot),
+            Self::OutOfRange { .. } => ("action-out-of-range", Party::Caller),
+            Self::Request(_) => ("action-request", Party::Caller),
+            Self::Violation(_) => ("action-violation", Party::Peer),
+            Self::ConnectionClosed { reason } => (reason.entry(), reason.party()),
         }
     }
 }
@@ -164,19 +146,12 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::LinkLost { .. } => "read-link-lost",
-            Self::ConnectionClosed { reason } => reason.entry(),
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::LinkLost { .. } => Party::Link,
-            Self::ConnectionClosed { reason } => reason.party(),
+            Self::LinkLost { .. } => ("read-link-lost", Party::Link),
+            Self::ConnectionClosed { reason } => (reason.entry(), reason.party()),
         }
     }
 }
@@ -204,23 +179,16 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Motion(error) => error.entry(),
-            Self::Ended(_) => "active-ended",
-            Self::Finished => "active-finished",
-            Self::Write(_) => "active-write",
-            Self::Borrow(_) => "active-borrow",
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Motion(error) => error.party(),
-            Self::Write(WriteFault::Link(_)) => Party::Link,
-            Self::Ended(_) | Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+            Self::Motion(error) => (error.entry(), error.party()),
+            Self::Ended(_) => ("active-ended", Party::Caller),
+            Self::Finished => ("active-finished", Party::Caller),
+            Self::Write(WriteFault::Link(_)) => ("active-write", Party::Link),
+            Self::Write(_) => ("active-write", Party::Caller),
+            Self::Borrow(_) => ("active-borrow", Party::Caller),
         }
     }
 }
@@ -259,21 +227,13 @@ pub enum IdentifyError {
 }
 
 impl IdentifyError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Moved { .. } => "identify-moved",
-            Self::Motion(error) => error.entry(),
-            Self::Fit(_) => "identify-fit",
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Moved { .. } => Party::Caller,
-            Self::Motion(error) => error.party(),
-            Self::Fit(_) => Party::Robot,
+            Self::Moved { .. } => ("identify-moved", Party::Caller),
+            Self::Motion(error) => (error.entry(), error.party()),
+            Self::Fit(_) => ("identify-fit", Party::Robot),
         }
     }
 }
@@ -291,19 +251,12 @@ pub enum TareError {
 }
 
 impl TareError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Refused(_) => "tare-refused",
-            Self::Read(error) => error.entry(),
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Refused(_) => Party::Caller,
-            Self::Read(error) => error.party(),
+            Self::Refused(_) => ("tare-refused", Party::Caller),
+            Self::Read(error) => error.row(),
         }
     }
 }
@@ -323,20 +276,15 @@ pub enum ModelLibraryError {
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Command(error) => error.entry(),
-            Self::Library(_) => "library-load",
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Command(error) => error.party(),
-            Self::Library(LibraryError::Load { .. } | LibraryError::Symbol { .. }) => Party::Peer,
-            Self::Library(_) => Party::Host,
+            Self::Command(error) => error.row(),
+            Self::Library(LibraryError::Load { .. } | LibraryError::Symbol { .. }) => {
+                ("library-load", Party::Peer)
+            }
+            Self::Library(_) => ("library-load", Party::Host),
         }
     }
 }

@@ -16,7 +16,7 @@ use franka_rt::session::geometry::RESIDUAL_MAX;
 use franka_rt::thread::{LinkFault, StartError};
 
 #[cfg(feature = "urdf")]
-use super::CommandError;
+use super::{CommandError, Row};
 use crate::endpoint::EndpointError;
 
 /// Hint for a program that connects to a simulator.
@@ -154,66 +154,46 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Realtime(error) => error.entry(),
-            Self::Endpoint(error) => error.entry(),
-            Self::LinkTimeout(_) => "connect-link-timeout",
-            Self::LogSize { .. } => "connect-log-size",
-            Self::Unsupervised => "connect-unsupervised",
-            Self::Known(_) => "connect-known",
-            Self::System(_) => "connect-system",
-            Self::Refused { .. } => "connect-refused",
-            Self::Timeout { .. } => "connect-timeout",
-            Self::Network { .. } => "connect-network",
-            Self::NoAddress { .. } => "connect-no-address",
-            Self::IncompatibleVersion(_) => "connect-incompatible-version",
-            Self::ConnectionClosed { reason } if likely_taken(reason) => "closed-by-peer",
-            Self::ConnectionClosed { reason } => reason.entry(),
-            Self::Datagram { .. } => "connect-datagram",
-            Self::Violation(_) => "connect-violation",
-            Self::Frame(_) => "connect-frame",
-            Self::HandshakeTimeout { .. } => "connect-handshake-timeout",
-            Self::NoState { .. } => "connect-no-state",
-            Self::Geometry { .. } => "connect-geometry",
-            #[cfg(feature = "urdf")]
-            Self::Model(error) => error.entry(),
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Endpoint(_)
-            | Self::LinkTimeout(_)
-            | Self::LogSize { .. }
-            | Self::Unsupervised
-            | Self::Known(_) => Party::Caller,
-            // A device that refuses exists, while the devices of the other addresses may not.
-            Self::NoAddress { attempts } => attempts
-                .iter()
-                .map(|attempt| attempt.error.party())
-                .find(|party| *party == Party::Robot)
-                .unwrap_or(Party::Link),
-            Self::Realtime(error) if error.is_misuse() => Party::Caller,
-            Self::Realtime(_) | Self::System(_) => Party::Host,
-            Self::Refused { .. } | Self::Geometry { .. } => Party::Robot,
-            Self::Timeout { .. }
-            | Self::Network { .. }
-            | Self::Datagram { .. }
-            | Self::HandshakeTimeout { .. }
-            | Self::NoState { .. } => Party::Link,
-            Self::ConnectionClosed { reason } => reason.party(),
+            Self::Realtime(error) if error.is_misuse() => (error.entry(), Party::Caller),
+            Self::Realtime(error) => (error.entry(), Party::Host),
+            Self::Endpoint(error) => (error.entry(), Party::Caller),
+            Self::LinkTimeout(_) => ("connect-link-timeout", Party::Caller),
+            Self::LogSize { .. } => ("connect-log-size", Party::Caller),
+            Self::Unsupervised => ("connect-unsupervised", Party::Caller),
+            Self::Known(_) => ("connect-known", Party::Caller),
+            Self::System(_) => ("connect-system", Party::Host),
+            Self::Refused { .. } => ("connect-refused", Party::Robot),
+            Self::Timeout { .. } => ("connect-timeout", Party::Link),
+            Self::Network { .. } => ("connect-network", Party::Link),
+            Self::NoAddress { attempts } => {
+                let mut parties = attempts.iter().map(|attempt| attempt.error.party());
+                // A device that refuses exists, while the devices of the other addresses may not.
+                let party = parties.find(|party| *party == Party::Robot);
+                ("connect-no-address", party.unwrap_or(Party::Link))
+            }
             Self::IncompatibleVersion(refusal) => {
-                match P::spoken().contains(&refusal.server_version) {
+                let party = match P::spoken().contains(&refusal.server_version) {
                     true => Party::Caller,
                     false => Party::Robot,
-                }
+                };
+                ("connect-incompatible-version", party)
             }
-            Self::Violation(_) | Self::Frame(_) => Party::Peer,
+            Self::ConnectionClosed { reason } if likely_taken(reason) => {
+                ("closed-by-peer", reason.party())
+            }
+            Self::ConnectionClosed { reason } => (reason.entry(), reason.party()),
+            Self::Datagram { .. } => ("connect-datagram", Party::Link),
+            Self::Violation(_) => ("connect-violation", Party::Peer),
+            Self::Frame(_) => ("connect-frame", Party::Peer),
+            Self::HandshakeTimeout { .. } => ("connect-handshake-timeout", Party::Link),
+            Self::NoState { .. } => ("connect-no-state", Party::Link),
+            Self::Geometry { .. } => ("connect-geometry", Party::Robot),
             #[cfg(feature = "urdf")]
-            Self::Model(error) => error.party(),
+            Self::Model(error) => error.row(),
         }
     }
 }
@@ -297,19 +277,12 @@ pub enum ModelError {
 
 #[cfg(feature = "urdf")]
 impl ModelError {
-    /// Returns the name of this error's row in the book's `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Command(error) => error.entry(),
-            Self::Urdf(_) => "model-urdf",
-        }
-    }
+    row_accessors!();
 
-    /// Returns the party that can act on this error.
-    pub fn party(&self) -> Party {
+    pub(super) fn row(&self) -> Row {
         match self {
-            Self::Command(error) => error.party(),
-            Self::Urdf(_) => Party::Peer,
+            Self::Command(error) => error.row(),
+            Self::Urdf(_) => ("model-urdf", Party::Peer),
         }
     }
 }

@@ -2,6 +2,21 @@
 //! libfranka has the same error. [`Error`](crate::Error) can hold any of them.
 //! [`MotionError`](crate::MotionError) is the reason why a motion ended before its goal.
 
+/// Defines the accessors of an error's method `row`.
+macro_rules! row_accessors {
+    () => {
+        /// Returns the name of this error's row in the book's `errors.md`.
+        pub fn entry(&self) -> &'static str {
+            self.row().0
+        }
+
+        /// Returns the party that can act on this error.
+        pub fn party(&self) -> Party {
+            self.row().1
+        }
+    };
+}
+
 pub(crate) mod any;
 mod calls;
 mod connecting;
@@ -42,6 +57,9 @@ pub use franka_rt::session::{
 pub use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;
+
+/// Name of an error's row in the book's `errors.md`, and the party that can act on the error.
+type Row = (&'static str, Party);
 
 /// Reason why an action of the Franka Hand returned neither true nor false.
 pub type GripperError = ActionError<gripper::Command>;

@@ -75,29 +75,25 @@ impl CloseReason {
 
     /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
-        match self {
-            Self::ClosedByUs => "closed-by-us",
-            Self::ClosedByPeer => "closed-by-peer",
-            Self::Io { .. } => "closed-io",
-            Self::Protocol { .. } => "closed-protocol",
-            Self::ThreadEnded { .. } => "closed-thread-ended",
-            Self::Silent { .. } => "closed-silent",
-            Self::GivenUp { .. } => "closed-given-up",
-            Self::AnotherRobot { .. } => "closed-another-robot",
-            Self::RuntimeEnded => "closed-runtime-ended",
-        }
+        self.row().0
     }
 
     /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
+        self.row().1
+    }
+
+    pub(super) fn row(&self) -> (&'static str, Party) {
         match self {
-            Self::ClosedByUs | Self::RuntimeEnded => Party::Caller,
-            Self::ClosedByPeer | Self::Io { .. } | Self::Silent { .. } | Self::GivenUp { .. } => {
-                Party::Link
-            }
-            Self::AnotherRobot { .. } => Party::Robot,
-            Self::Protocol { .. } => Party::Peer,
-            Self::ThreadEnded { .. } => Party::Host,
+            Self::ClosedByUs => ("closed-by-us", Party::Caller),
+            Self::ClosedByPeer => ("closed-by-peer", Party::Link),
+            Self::Io { .. } => ("closed-io", Party::Link),
+            Self::Protocol { .. } => ("closed-protocol", Party::Peer),
+            Self::ThreadEnded { .. } => ("closed-thread-ended", Party::Host),
+            Self::Silent { .. } => ("closed-silent", Party::Link),
+            Self::GivenUp { .. } => ("closed-given-up", Party::Link),
+            Self::AnotherRobot { .. } => ("closed-another-robot", Party::Robot),
+            Self::RuntimeEnded => ("closed-runtime-ended", Party::Caller),
         }
     }
 }

@@ -316,66 +316,53 @@ impl MotionError {
 
     /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Goal(error) => error.entry(),
-            Self::Path(_) => "motion-path",
-            Self::Superseded => "motion-superseded",
-            Self::Stopped => "motion-stopped",
-            Self::Held(lapse) | Self::Braked(lapse) => lapse.entry(),
-            Self::Disengaged => "motion-disengaged",
-            Self::Busy => "motion-busy",
-            Self::Start(fault) => fault.entry(),
-            Self::Unsupported(_) => "motion-unsupported",
-            Self::Invalid(_) => "motion-invalid",
-            Self::GivenUp { .. } => "motion-given-up",
-            Self::Panicked { .. } => "motion-panicked",
-            Self::Stalled { .. } => "motion-stalled",
-            Self::Hung { .. } => "motion-hung",
-            Self::Rejected(refusal) => refusal.entry(),
-            Self::Control(error) => error.entry(),
-            Self::NotReady { why, .. } => why.entry(),
-            Self::TargetNotReached(_) => "motion-target-not-reached",
-            Self::NotAtRest { .. } => "motion-not-at-rest",
-            Self::AfterReaction { error, .. } => error.entry(),
-            Self::LinkLost { .. } => "motion-link-lost",
-            Self::ConnectionClosed { reason } => reason.entry(),
-            Self::Violation(_) => "motion-violation",
-            Self::Protocol { .. } => "motion-protocol",
-        }
+        self.row().0
     }
 
     /// Returns the party that can act on this error.
     pub fn party(&self) -> Party {
+        self.row().1
+    }
+
+    fn row(&self) -> (&'static str, Party) {
         match self {
+            Self::Goal(error) => (error.entry(), Party::Caller),
+            Self::Path(_) => ("motion-path", Party::Caller),
+            Self::Superseded => ("motion-superseded", Party::Caller),
+            Self::Stopped => ("motion-stopped", Party::Caller),
             // A person at the robot pushed the arm.
-            Self::Held(Lapse::Displaced) | Self::Braked(Lapse::Displaced | Lapse::Unresponsive) => {
-                Party::Robot
+            Self::Held(lapse @ Lapse::Displaced)
+            | Self::Braked(lapse @ (Lapse::Displaced | Lapse::Unresponsive)) => {
+                (lapse.entry(), Party::Robot)
             }
-            Self::Goal(_)
-            | Self::Path(_)
-            | Self::Superseded
-            | Self::Stopped
-            | Self::Held(_)
-            | Self::Braked(_)
-            | Self::Disengaged
-            | Self::Busy
-            | Self::Start(_)
-            | Self::Unsupported(_)
-            | Self::Invalid(_)
-            | Self::GivenUp { .. }
-            | Self::Panicked { .. }
-            | Self::Stalled { .. }
-            | Self::Hung { .. } => Party::Caller,
-            Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,
-            Self::Rejected(_)
-            | Self::Control(_)
-            | Self::TargetNotReached(_)
-            | Self::NotAtRest { .. } => Party::Robot,
-            Self::AfterReaction { error, .. } => error.party(),
-            Self::LinkLost { .. } => Party::Link,
-            Self::NotReady { why, .. } => why.party(),
-            Self::ConnectionClosed { reason } => reason.party(),
-            Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
+            Self::Held(lapse) | Self::Braked(lapse) => (lapse.entry(), Party::Caller),
+            Self::Disengaged => ("motion-disengaged", Party::Caller),
+            Self::Busy => ("motion-busy", Party::Caller),
+            Self::Start(fault) => (fault.entry(), Party::Caller),
+            Self::Unsupported(_) => ("motion-unsupported", Party::Caller),
+            Self::Invalid(_) => ("motion-invalid", Party::Caller),
+            Self::GivenUp { .. } => ("motion-given-up", Party::Caller),
+            Self::Panicked { .. } => ("motion-panicked", Party::Caller),
+            Self::Stalled { .. } => ("motion-stalled", Party::Caller),
+            Self::Hung { .. } => ("motion-hung", Party::Caller),
+            Self::Rejected(refusal) => (refusal.entry(), Party::Robot),
+            Self::Control(error) => (error.entry(), Party::Robot),
+            Self::NotReady { why, .. } => why.row(),
+            Self::TargetNotReached(short) => {
+                let is_limited = short.limited.is_some();
+                let party = if is_limited {
+                    Party::Caller
+                } else {
+                    Party::Robot
+                };
+                ("motion-target-not-reached", party)
+            }
+            Self::NotAtRest { .. } => ("motion-not-at-rest", Party::Robot),
+            Self::AfterReaction { error, .. } => error.row(),
+            Self::LinkLost { .. } => ("motion-link-lost", Party::Link),
+            Self::ConnectionClosed { reason } => reason.row(),
+            Self::Violation(_) => ("motion-violation", Party::Peer),
+            Self::Protocol { .. } => ("motion-protocol", Party::Peer),
         }
     }
 }

@@ -66,36 +66,28 @@ impl Unready {
 
     /// Returns the name of this error's row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
-        match self {
-            Self::Disconnected => "unready-disconnected",
-            Self::Silent => "unready-silent",
-            Self::Recovering => "unready-recovering",
-            Self::AgreementAwaited => "unready-agreement-awaited",
-            Self::Unrecognised(_) => "unready-unrecognised",
-            Self::Configuring => "unready-configuring",
-            Self::NotConfigured(_) => "unready-not-configured",
-            Self::Reflex => "unready-reflex",
-            Self::UserStopped => "unready-user-stopped",
-            Self::Guided => "unready-guided",
-            Self::Braked => "unready-braked",
-            Self::StopLatched => "unready-stop-latched",
-        }
+        self.row().0
     }
 
     /// Returns the party that can act on this error.
     pub fn party(self) -> Party {
+        self.row().1
+    }
+
+    pub(super) fn row(&self) -> (&'static str, Party) {
         match self {
-            Self::Disconnected | Self::Silent => Party::Link,
-            Self::Recovering
-            | Self::AgreementAwaited
-            | Self::Unrecognised(_)
-            | Self::Configuring
-            | Self::NotConfigured(_)
-            | Self::Reflex
-            | Self::UserStopped
-            | Self::Guided
-            | Self::Braked => Party::Robot,
-            Self::StopLatched => Party::Caller,
+            Self::Disconnected => ("unready-disconnected", Party::Link),
+            Self::Silent => ("unready-silent", Party::Link),
+            Self::Recovering => ("unready-recovering", Party::Robot),
+            Self::AgreementAwaited => ("unready-agreement-awaited", Party::Robot),
+            Self::Unrecognised(_) => ("unready-unrecognised", Party::Robot),
+            Self::Configuring => ("unready-configuring", Party::Robot),
+            Self::NotConfigured(_) => ("unready-not-configured", Party::Robot),
+            Self::Reflex => ("unready-reflex", Party::Robot),
+            Self::UserStopped => ("unready-user-stopped", Party::Robot),
+            Self::Guided => ("unready-guided", Party::Robot),
+            Self::Braked => ("unready-braked", Party::Robot),
+            Self::StopLatched => ("unready-stop-latched", Party::Caller),
         }
     }
 }

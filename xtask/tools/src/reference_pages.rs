@@ -108,7 +108,7 @@ fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The names that methods `entry` return: all texts in functions of that name.
+/// The names that methods `entry` return: all texts in functions called `entry` or `row`.
 fn entries(directories: &[impl AsRef<Path>]) -> anyhow::Result<BTreeSet<String>> {
     let mut texts = String::new();
     for directory in directories {
@@ -117,12 +117,12 @@ fn entries(directories: &[impl AsRef<Path>]) -> anyhow::Result<BTreeSet<String>>
     Ok(texts_of_entries(&texts).into_iter().collect())
 }
 
-/// The texts in the bodies of functions called `entry`, which rustfmt has laid out.
+/// The texts in the bodies of functions called `entry` or `row`, which rustfmt has laid out.
 fn texts_of_entries(source: &str) -> Vec<String> {
     let mut texts = Vec::new();
     let mut end = None;
     for line in source.lines() {
-        if line.contains("fn entry(") {
+        if line.contains("fn entry(") || line.contains("fn row(&self)") {
             let indent = line.len() - line.trim_start().len();
             end = Some(format!("{}}}", " ".repeat(indent)));
         } else if end.as_deref() == Some(line) {
@@ -153,8 +153,9 @@ mod tests {
     fn entries_are_the_texts_of_their_functions() {
         let source = "impl A {\n    fn text() { \"no\" }\n    pub fn entry(&self) -> &'static str {\n        \
                       match self {\n            A => \"a-b\",\n            B => \"c\",\n        }\n    }\n    \
+                      fn row(&self) -> Row {\n        match self {\n            A => (\"d\", B),\n        }\n    }\n    \
                       fn other() { \"no\" }\n}\n";
-        assert_eq!(texts_of_entries(source), ["a-b", "c"]);
+        assert_eq!(texts_of_entries(source), ["a-b", "c", "d"]);
     }
 
     #[test]
