@@ -69,7 +69,6 @@ pub use record::{Activity, Record};
 
 use event::EventQueue;
 use motion::{Execution, Phase, UNWANTED_STATES};
-use program::CycleOutcome;
 
 /// State machine of one robot's control thread, without I/O.
 #[derive(Debug)]
@@ -335,7 +334,7 @@ impl Driver {
         }
         (motion.phase, self.record.activity) = (Phase::Running, Activity::Running);
         match outcome {
-            CycleOutcome::Command { command, finished } => {
+            Ok(Some((command, finished))) => {
                 match command.datagram(state.message_id, finished) {
                     Ok(sent) => motion.sent = sent,
                     Err(invalid) => return self.fail(Failure::Invalid(invalid)),
@@ -349,8 +348,8 @@ impl Driver {
                 }
                 Some(motion.sent)
             }
-            CycleOutcome::Open => None,
-            CycleOutcome::Failed(failure) => self.fail(failure),
+            Ok(None) => None,
+            Err(failure) => self.fail(failure),
         }
     }
 

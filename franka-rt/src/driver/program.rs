@@ -23,16 +23,6 @@ pub enum Program {
     Asynchronous(AsynchronousPositions),
 }
 
-/// Answer of a program to a state.
-pub(super) enum CycleOutcome {
-    /// Send this command; it is the last one if `finished`.
-    Command { command: Command, finished: bool },
-    /// Send nothing now. The user's thread may write a command before the next state.
-    Open,
-    /// Send no command now or later.
-    Failed(Failure),
-}
-
 impl Program {
     /// True if all values of `state` that the program uses are finite. A command that was computed
     /// from other values must not reach the motors.
@@ -86,6 +76,11 @@ impl Program {
     /// Answers a state. While the gate of a common start is closed, it holds the arm. If the start
     /// has failed, it finishes at the current position. [`Command::datagram`] checks that the
     /// command is finite. Stores an event of the program in `event`.
+    ///
+    /// Returns the command, and true if it is the last one. Returns `None` if nothing is sent now.
+    ///
+    /// # Errors
+    /// Returns a [`Failure`] if no command can be sent now or later.
     pub(super) fn step(
         &mut self,
         gate: Gate,
@@ -93,7 +88,7 @@ impl Program {
         state: &RobotState,
         record: &mut Record,
         event: &mut Option<SessionEvent>,
-    ) -> CycleOutcome {
+    ) -> Result<Option<(Command, bool)>, Failure> {
         match self {
             Self::Target(session) => {
                 let step = session.answer(gate, state, event);
@@ -120,32 +115,22 @@ impl Program {
                 record.compensation = compensation.into();
                 record.bindings = bindings;
                 let command = match step.answer {
-                    SessionCommand::Torques(torques) => Ok(Command::torques(version, torques)),
+                    SessionCommand::Torques(torques) => Command::torques(version, torques),
                     SessionCommand::Setpoint(setpoint) => {
-                        setpoint.validate().map(|()| Command::setpoint(setpoint))
+                        setpoint.validate().map_err(Failure::Invalid)?;
+                        Command::setpoint(setpoint)
                     }
                 };
-                let finished = step.finished;
-                command.map_or_else(
-                    |invalid| CycleOutcome::Failed(Failure::Invalid(invalid)),
-                    |command| CycleOutcome::Command { command, finished },
-                )
+                Ok(Some((command, step.finished)))
             }
             Self::Callback(callback) => match gate {
-                Gate::Open => match callback.step(state) {
-                    Ok((command, finished)) => CycleOutcome::Command { command, finished },
-                    Err(failure) => CycleOutcome::Failed(failure),
-                },
-                Gate::Closed | Gate::Broken(_) => CycleOutcome::Command {
-                    command: callback.hold(state),
-                    finished: gate != Gate::Closed,
-                },
+                Gate::Open => callback.step(state).map(Some),
+                Gate::Closed => Ok(Some((callback.hold(state), false))),
+                Gate::Broken(_) => Ok(Some((callback.hold(state), true))),
             },
-            Self::Active(_) => CycleOutcome::Open,
-            Self::Asynchronous(positions) => match positions.step() {
-                Some((command, finished)) => CycleOutcome::Command { command, finished },
-                None => CycleOutcome::Open,
-            },
+            // The user's thread may write a command before the next state.
+            Self::Active(_) => Ok(None),
+            Self::Asynchronous(positions) => Ok(positions.step()),
         }
     }
 
