@@ -61,6 +61,20 @@ test("stop without an answer is shown, and sent by a new connection", () => {
   assert.match(notice().textContent, /received/);
 });
 
+test("stop whose connection ends before the answer is shown at once", () => {
+  for (const end of ["closed", "denied"]) {
+    newPage();
+    const connection = new Connection();
+    const stop = new Stop(connection);
+    stopControls([stop]);
+    stop.press();
+    assert.equal(notice().hidden, true);
+    connection.isOpen = false;
+    connection.tell(end);
+    assert.match(notice().textContent, /not sent yet.*user stop/, end);
+  }
+});
+
 test("stop with an answer shows nothing", () => {
   const connection = new Connection();
   const stop = new Stop(connection);
