@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::{env, fs, io};
+use std::{env, fs, io, process};
 
 use anyhow::Context;
 use clap::ValueEnum;
@@ -111,11 +111,19 @@ impl RobotsFile {
             if let Some(directory) = self.path.parent() {
                 fs::create_dir_all(directory)?;
             }
-            let new = self.path.with_extension("toml.new");
+            // No other running program uses this name.
+            let new = format!("toml.{}.new", process::id());
+            let new = self.path.with_extension(new);
             let mut file = fs::File::create(&new)?;
-            file.write_all(self.document.to_string().as_bytes())?;
-            file.sync_all()?;
-            fs::rename(&new, &self.path)
+            let text = self.document.to_string();
+            let written = file
+                .write_all(text.as_bytes())
+                .and_then(|()| file.sync_all())
+                .and_then(|()| fs::rename(&new, &self.path));
+            if written.is_err() {
+                let _ = fs::remove_file(&new);
+            }
+            written
         };
         write().with_context(|| format!("writing {}", self.path.display()))
     }
@@ -193,6 +201,27 @@ mod tests {
             let error = parse(text).expect_err(text);
             assert!(error.contains(expected), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn writing_leaves_the_files_of_other_programs() {
+        let folder = env::temp_dir().join(format!("franka-robots-{}", process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (path, other) = (folder.join("robots.toml"), folder.join("robots.toml.new"));
+        fs::write(&path, "").unwrap();
+        fs::write(&other, "unfinished").unwrap();
+        let text = "left = { address = 'a' }\n";
+        let (robots, document) = parse(text).unwrap();
+        let file = RobotsFile {
+            path,
+            robots,
+            document,
+        };
+        file.write().unwrap();
+        assert_eq!(fs::read_to_string(&file.path).unwrap(), text);
+        assert_eq!(fs::read_to_string(&other).unwrap(), "unfinished");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

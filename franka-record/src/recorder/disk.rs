@@ -270,7 +270,7 @@ impl DiskThread {
                 status.black_box_waits = false;
                 drop(status);
                 match written {
-                    Ok(()) => lock(&self.status).black_boxes.push(path),
+                    Ok(path) => lock(&self.status).black_boxes.push(path),
                     Err(source) => {
                         let source = source.into();
                         fail_black_box(&self.status, RecordError::BlackBox { path, source });
@@ -362,23 +362,40 @@ fn numbered(first: &Path, number: u32) -> PathBuf {
 /// Largest number of files of a recording, including files of other recordings with the same name.
 const NUMBER_MAX: u32 = 1_000_000;
 
-/// Writes a file under a temporary name, and renames the file once it is complete.
-fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Writes a file under a temporary name, and renames the file once it is complete. Replaces no
+/// file: if `path` exists, the file gets the first unused number. Returns the path of the file.
+fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     fs::create_dir_all(directory)?;
-    let part = path.with_extension("mcap.part");
-    let mut file = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&part)?;
-    let written = file
-        .write_all(bytes)
-        .and_then(|()| file.sync_data())
-        .and_then(|()| fs::rename(&part, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&part);
+    let prefix = path.with_extension("");
+    let mut builder = tempfile::Builder::new();
+    builder
+        .prefix(prefix.file_name().unwrap_or_default())
+        .suffix(".mcap.part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        // Normal permissions, minus the user's mask.
+        builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    sync_directory(path);
-    written
+    let mut file = builder.tempfile_in(directory)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_data()?;
+    let (mut name, mut number) = (path.to_owned(), 1);
+    loop {
+        match file.persist_noclobber(&name) {
+            Ok(_) => break,
+            Err(refused)
+                if refused.error.kind() == io::ErrorKind::AlreadyExists && number < NUMBER_MAX =>
+            {
+                file = refused.file;
+                number += 1;
+                name = numbered(path, number);
+            }
+            Err(refused) => return Err(refused.error),
+        }
+    }
+    sync_directory(&name);
+    Ok(name)
 }
 
 /// Deletes all black box files except the newest `keep`, and the incomplete files that crashes
@@ -404,7 +421,8 @@ fn delete_oldest(directory: &Path, keep: usize) {
     for part in parts.iter().filter(|entry| is_left(entry)) {
         let _ = fs::remove_file(part.path());
     }
-    whole.sort_unstable();
+    // By stem: a numbered file is newer than the file without a number.
+    whole.sort_unstable_by(|a, b| Path::new(a).file_stem().cmp(&Path::new(b).file_stem()));
     let surplus = whole.len().saturating_sub(keep);
     for name in &whole[..surplus] {
         let _ = fs::remove_file(directory.join(name));
@@ -427,6 +445,29 @@ mod tests {
         ] {
             assert_eq!(numbered(Path::new(first), 2), Path::new(second));
         }
+    }
+
+    #[test]
+    fn a_black_box_replaces_no_file_and_takes_the_next_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let first = path("20260301T120000.123Z-left-reflex.mcap");
+        // Another process may be writing an incident of the same millisecond.
+        fs::write(first.with_extension("mcap.part"), "part").unwrap();
+        let names = ["one", "two", "three"].map(|bytes| {
+            let written = write_whole(folder.path(), &first, bytes.as_bytes());
+            written.unwrap()
+        });
+        let second = path("20260301T120000.123Z-left-reflex-0002.mcap");
+        let third = path("20260301T120000.123Z-left-reflex-0003.mcap");
+        assert_eq!(names, [&first, &second, &third].map(PathBuf::clone));
+        for (path, bytes) in names.iter().zip(["one", "two", "three"]) {
+            assert_eq!(fs::read_to_string(path).unwrap(), bytes);
+        }
+        delete_oldest(folder.path(), 1);
+        let left = names.map(|path| path.exists());
+        assert_eq!(left, [false, false, true], "the newest");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]
