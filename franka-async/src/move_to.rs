@@ -273,6 +273,10 @@ impl Motion {
 
 /// Plans the straight line of a motion to a pose, from the arm's present place: see
 /// [`Goal::plan_line`].
+#[expect(
+    clippy::disallowed_methods,
+    reason = "in the caller's own task, and no task of a connection calls it"
+)]
 fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
     let (NewMotion::Goal { goal, .. }, Some(destination), None) =
         (&motion.motion, &motion.destination, &motion.path)

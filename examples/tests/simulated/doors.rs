@@ -113,6 +113,7 @@ fn services_with_a_token_refuse_clients_without_it() {
         let arm = Arm::by_the_clock("fr3");
         let (mut running, address) = Beside::serve(service, &arm.address, &["--new-token"]);
         let token = running.said("token ");
+        let start = arm.state();
         for offered in [
             "",
             "\r\nauthorization: Bearer",
@@ -131,8 +132,14 @@ fn services_with_a_token_refuse_clients_without_it() {
             assert_eq!(status(&address, order, &right), "101");
             stayed(arm, service);
         } else {
+            let refused = arm.state();
+            assert_eq!(refused.robot_mode, RobotMode::Idle);
             assert_eq!(status(&address, order, &right), "202");
-            arm.rests();
+            arm.wait_until_it_moves();
+            // The arm rises once, by the allowed request.
+            let [before, after] = [refused, arm.rests()].map(|it| it.O_T_EE[14] - start.O_T_EE[14]);
+            assert!(before.abs() < 1e-4, "{before} m");
+            assert!((after - 0.05).abs() < 2e-3, "{after} m");
         }
     }
 }

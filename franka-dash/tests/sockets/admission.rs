@@ -60,7 +60,7 @@ fn foreign_pages_names_and_proxies_are_refused_and_move_nothing() {
 #[test]
 fn a_token_is_asked_for() {
     let served = Served::new(|_| Options::default().allow_motion().token(token()));
-    let address = served.address;
+    let (address, start) = (served.address, served.height());
     let protocol = |token: &str| {
         format!("Sec-WebSocket-Protocol: franka-dash, token.{token}\r\nX-Forwarded-For: ::2")
     };
@@ -78,6 +78,7 @@ fn a_token_is_asked_for() {
     assert_eq!(status_of(address, "/", "Host: 192.168.0.7"), 200);
     let bearer = format!("Host: localhost\r\nAuthorization: Bearer {SECRET}");
     assert_eq!(status_of(address, "/access", &bearer), 204);
+    assert!((served.height() - start).abs() < 1e-3 && !served.robot.state().motion_running());
 }
 
 /// The client writes the header, so it is not evidence of the client's location.

@@ -2,12 +2,14 @@ use super::*;
 use crate::session::reference::Reference;
 use crate::session::tests::sample;
 use franka_model::collision::Body;
-use franka_model::{Model, READY, RobotKind};
+use franka_model::geometry::Lengths;
+use franka_model::{EndEffector, Frame, Model, READY, RobotKind};
+use franka_proto::RobotState;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-use crate::session::{Budget, course};
+use crate::session::{Budget, Goal, GoalId, OnArrival, Preview, Target, Waypoint, course};
 
 /// True if no obstacle is known to come near within `turns` of `q`.
 fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool {
@@ -201,5 +203,54 @@ fn regions_are_kept_out_of_by_their_own_distance() {
         let mut clearance = of(keep_out);
         assert_eq!(clearance.ahead(&READY, &READY, &lower), expected);
         assert_eq!(clearance.ahead(&lower, &lower, &READY), Ahead::Clear);
+    }
+}
+
+/// For the arm itself, keep-out regions and previews: an arm that is 0.2 mm longer per link.
+#[test]
+fn distances_and_previews_use_the_lengths_of_the_model() {
+    let ready: [f64; 7] = READY.into();
+    let rigid = Isometry3::<f64>::identity().to_homogeneous();
+    let rigid: [f64; 16] = rigid.as_slice().try_into().expect("sixteen numbers");
+    let state = RobotState {
+        q: ready,
+        F_T_EE: rigid,
+        EE_T_K: rigid,
+        ..RobotState::default()
+    };
+    let floor = Obstacle::floor(0.0);
+    let mut keep_out = KeepOut::default();
+    keep_out[0] = Some(floor);
+    for lengths in Lengths::KNOWN {
+        let model = &Model::fr3().clone().with_lengths(lengths);
+        let clearance = Clearance::new(model, true, keep_out);
+        let spaced = clearance.spacing.at(&READY);
+        let least = |region: Option<usize>| {
+            let items = clearance.spacing.items(CandidateMask::ALL);
+            let items = items.filter(|item| item.region() == region);
+            items
+                .map(|item| spaced.margin(item))
+                .fold(f64::INFINITY, f64::min)
+        };
+        let [arm, cover] = [Shape::vendor(), Shape::covering(RobotKind::Fr3)]
+            .map(|shape| shape.with_lengths(lengths).with_hand().at(&READY));
+        let far = |(a, b): (Body, Body)| b.number() - a.number() >= APART;
+        let pairs = arm.distances().filter(|(bodies, _)| far(*bodies));
+        let nearest = pairs.map(|(_, it)| it).fold(f64::INFINITY, f64::min);
+        assert!((least(None) - (nearest - SELF_STOP)).abs() < 1e-9);
+        let nearest = cover.to(&floor).map(|near| near.distance);
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!((least(Some(0)) - (nearest - KEEP_OUT_STOP)).abs() < 1e-9);
+
+        let pose = |q: &JointVector| model.pose(Frame::Flange, q, &EndEffector::default());
+        let mut there = pose(&READY);
+        there[(2, 3)] += 0.1;
+        let there = crate::session::rigid(&there);
+        let target = Target::Pose(there);
+        let goal = Goal::new(GoalId(1), target, OnArrival::Hold, model.joint_limits());
+        let preview = Preview::of(&[Waypoint::new(there)], &ready, &goal, model, &state);
+        let end = pose(&preview.expect("within reach").end().into());
+        let off = (end - there.to_homogeneous()).amax();
+        assert!(off < 2e-5, "{off}");
     }
 }
