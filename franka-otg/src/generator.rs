@@ -6,6 +6,7 @@ use crate::error::{PlanError, Quantity};
 use crate::limits::Limits;
 use crate::plan::{Plan, PlanStart, Synchronisation};
 use crate::state::{AxisState, State, check_finite};
+use crate::straight_line::StraightLine;
 
 /// Moves `N` axes to a target that may change at any time, within limits of velocity, acceleration
 /// and jerk.
@@ -237,17 +238,51 @@ impl<const N: usize> Generator<N> {
     /// Returns [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`] if no plan exists. After an
     /// error, the current motion continues.
     pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
+        let line = self.plan.line_at(self.elapsed());
         let state = State {
             velocity: self.state.velocity.map(|velocity| share * velocity),
             ..self.state
         };
-        let line = self.plan.line_at(self.elapsed());
+        let line = line.map(|(line, along)| {
+            let velocity = share * along.velocity;
+            (line, AxisState { velocity, ..along })
+        });
+        self.go_on_from(state, line)
+    }
+
+    /// Moves the output back on its straight line to the place nearest to `position`, multiplies
+    /// the velocity by `share`, from 0 to 1, and creates a new plan to the target, or a stop if no
+    /// target is set. The output does not move forward. Returns `false` and changes nothing if the
+    /// motion is not on a straight line.
+    ///
+    /// The output jumps, so the caller must ensure that it is close to `position` and that `share`
+    /// is close to 1.
+    ///
+    /// # Errors
+    /// Returns [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`] if no plan exists. After an
+    /// error, the current motion continues.
+    pub fn hold_back(&mut self, position: &[f64; N], share: f64) -> Result<bool, PlanError> {
+        let Some((line, mut along)) = self.plan.line_at(self.elapsed()) else {
+            return Ok(false);
+        };
+        let back = line.nearest(position) - along.position;
+        if back * along.velocity < 0.0 {
+            along.position += back;
+        }
+        along.velocity *= share;
+        self.go_on_from(line.state(along), Some((line, along)))?;
+        Ok(true)
+    }
+
+    /// Creates a plan from `state`, which is at this state of a straight line if it moves on one.
+    fn go_on_from(
+        &mut self,
+        state: State<N>,
+        line: Option<(StraightLine<N>, AxisState)>,
+    ) -> Result<(), PlanError> {
         let start = PlanStart {
             state,
-            line: line.map(|(line, along)| {
-                let velocity = share * along.velocity;
-                (line, AxisState { velocity, ..along })
-            }),
+            line,
             limits: &self.limits,
         };
         match &self.heading {

@@ -73,6 +73,16 @@ impl<const N: usize> StraightLine<N> {
         })
     }
 
+    /// Returns the place on the line that is nearest to `position`.
+    pub(crate) fn nearest(&self, position: &[f64; N]) -> f64 {
+        let [mut way, mut size] = [0.0; 2];
+        for i in 0..N {
+            way += (position[i] - self.origin[i]) * self.direction[i];
+            size += self.direction[i] * self.direction[i];
+        }
+        way / size
+    }
+
     /// Returns the state along the line for a `target` that is on the line and moves along the
     /// line.
     pub(crate) fn state_of(&self, target: &State<N>) -> Option<AxisState> {

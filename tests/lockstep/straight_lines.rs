@@ -9,6 +9,7 @@ use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::condition::elapsed;
 use franka_rt::session::{GoalError, Hindrance, Lapse, OnArrival, PoseError, SELF_STOP, Target};
+use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Tool};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use rand::rngs::SmallRng;
@@ -122,41 +123,55 @@ fn assert_near(lockstep: &Lockstep, there: &Isometry3<f64>) {
     assert!(off.translation < 1e-3 && off.rotation < 5e-3, "{off:?}");
 }
 
-/// Distance of the hand from its straight line, `[m]`, on motions that are not refused.
+/// Greatest distance of the hand from its straight line, `[m]`. Near singular postures, friction
+/// turns into large distances.
 const ASTRAY: f64 = 0.06;
 
-/// A motion to a pose is refused before it begins, or ends there.
+/// Returns joint positions in which the arm is clear of itself and of the table, away from the ends
+/// of the joints' ranges.
+fn free_posture(random: &mut SmallRng, kind: RobotKind, hand: &EndEffector) -> JointVector {
+    let limits = Model::of(kind).joint_limits();
+    loop {
+        let q = JointVector::from_fn(|i, _| {
+            random.random_range(limits.lower[i] + 0.15..limits.upper[i] - 0.15)
+        });
+        if self_distance(&q) > SELF_STOP && pose_of(&q, hand).translation.z > 0.05 {
+            return q;
+        }
+    }
+}
+
+/// From a random posture, a motion to a random pose arrives on its line, or is refused before it
+/// begins. The refusal names joint positions that are then reached.
+///
+/// Of a thousand accepted motions per robot, a few still fail near singular postures: the arm
+/// swings at its target, or friction holds it too far from its reference.
 #[test]
 fn random_reachable_poses_are_reached_or_refused() {
     let seed = 10;
-    let cases = if franka_tests::thorough() { 200 } else { 20 };
+    let cases = if franka_tests::thorough() { 1000 } else { 20 };
     for kind in RobotKind::ALL {
         let mut random = SmallRng::seed_from_u64(seed);
-        let model = Model::of(kind);
-        let limits = model.joint_limits();
         let hand = EndEffector {
             f_t_ee: Tool::hand().f_t_ne,
             ..EndEffector::default()
         };
-        let [mut reached, mut ended, mut crowded, mut lost] = [0; 4];
+        let [mut accepted, mut failed, mut ended, mut crowded, mut lost] = [0; 5];
         let mut astray = 0.0_f64;
         for case in 0..cases {
-            let posture = loop {
-                let q = JointVector::from_fn(|i, _| {
-                    random.random_range(limits.lower[i] + 0.15..limits.upper[i] - 0.15)
-                });
-                if self_distance(&q) > SELF_STOP && pose_of(&q, &hand).translation.z > 0.05 {
-                    break q;
-                }
-            };
-            let target = pose_of(&posture, &hand);
-            let mut lockstep = Lockstep::ready_of(kind);
+            let [from, to] = [(); 2].map(|()| free_posture(&mut random, kind, &hand));
+            let target = pose_of(&to, &hand);
+            let mut lockstep = insensitive(Config {
+                q: from.into(),
+                arm: Some(Arm::sample(kind, case, &Family::realistic())),
+                ..Lockstep::config_of(kind)
+            });
             let start = lockstep.arm_pose().translation.vector;
             let goal = lockstep.goal(Target::Pose(target), OnArrival::ReportAndFinish);
             let mut own = None;
             let id = match lockstep.submit(goal) {
                 Ok(id) => {
-                    reached += 1;
+                    accepted += 1;
                     let mut off = 0.0_f64;
                     let way = target.translation.vector - start;
                     while lockstep.client.outcome(id).is_none() {
@@ -187,22 +202,33 @@ fn random_reachable_poses_are_reached_or_refused() {
                 }
                 Err(error) => panic!("{kind:?}, seed {seed}, case {case}: {error}"),
             };
-            let outcome = lockstep.until_resolved(id, 60_000);
-            let report = outcome
-                .unwrap_or_else(|error| panic!("{kind:?}, seed {seed}, case {case}: {error}"));
-            assert_near(&lockstep, &target);
-            // A motion of joints has no line.
-            match (report.line_deviation, own) {
-                (Some(told), Some(own)) => assert!((told - own).abs() < 1e-3, "{told}, {own} m"),
-                (told, own) => assert_eq!((told, own), (None, None)),
+            match lockstep.until_resolved(id, 60_000) {
+                Ok(report) => {
+                    let off = PoseError::between(&lockstep.arm_pose(), &target);
+                    let near = off.translation < 4e-3 && off.rotation < 2e-2;
+                    assert!(near, "{kind:?}, seed {seed}, case {case}: {off:?}");
+                    // A motion of joints has no line.
+                    match (report.line_deviation, own) {
+                        (Some(told), Some(own)) => {
+                            assert!((told - own).abs() < 2e-3, "{told}, {own} m");
+                        }
+                        (told, own) => assert_eq!((told, own), (None, None)),
+                    }
+                }
+                Err(error) => {
+                    failed += 1;
+                    println!("{kind:?}, seed {seed}, case {case}: {error}");
+                    assert!(!matches!(error, MotionError::Control(_)), "a reflex");
+                }
             }
         }
         println!(
-            "{kind:?}: {reached} reached of {cases}; refused at the ends of ranges {ended}, near \
-             itself {crowded}, of these without a way over the joints {lost}; {:.1} mm off a line",
+            "{kind:?}: {accepted} accepted of {cases}, {failed} failed; refused at the ends of \
+             ranges {ended}, near itself {crowded}, of these without a way over the joints {lost}; \
+             {:.1} mm off a line",
             astray * 1e3
         );
-        assert!(reached >= cases * 6 / 10);
-        assert!(lost <= cases / 20 && astray < ASTRAY);
+        assert!(accepted >= cases / 4);
+        assert!(lost <= cases / 100 && failed <= accepted / 20 && astray < ASTRAY);
     }
 }

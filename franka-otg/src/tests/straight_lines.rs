@@ -83,6 +83,32 @@ proptest! {
     }
 
     #[test]
+    fn motion_held_back_stays_on_line_and_arrives(
+        start in point(), way in point(), aside in point(), held in 1..300_usize,
+    ) {
+        let limits = Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap();
+        let mut generator = Generator::new(State::at_rest(start), limits).unwrap();
+        let target = core::array::from_fn(|i| start[i] + way[i]);
+        prop_assert!(!generator.hold_back(&start, 1.0).unwrap(), "it rests");
+        generator.set_target(&target).unwrap();
+        let along = |at: &[f64; 3]| (0..3).map(|i| (at[i] - start[i]) * way[i]).sum::<f64>();
+        let mut cycles = 0;
+        while !generator.is_done() {
+            let before = generator.step().position;
+            // A place beside the line, 1 % behind or ahead.
+            let share = if cycles % 2 == 0 { 0.99 } else { 1.01 };
+            let place = core::array::from_fn(|i| start[i] + share * (before[i] - start[i]) + 1e-3 * aside[i]);
+            if cycles < held && generator.hold_back(&place, 0.98).unwrap() {
+                prop_assert!(along(&generator.state().position) <= along(&before) + 1e-12);
+            }
+            prop_assert!(distance_from_line(&start, &target, &generator.state().position) <= 1e-13);
+            cycles += 1;
+            prop_assert!(cycles < 60_000, "it never arrives");
+        }
+        prop_assert_eq!(generator.state().position, target);
+    }
+
+    #[test]
     fn line_is_as_fast_as_independent_axes_if_one_binds(start in point(), target in point()) {
         let limits = Limits::from_arrays([1.0; 3], [5.0; 3], [1000.0; 3]).unwrap();
         let duration = |synchronisation| {

@@ -67,6 +67,16 @@ impl Posture {
         }
     }
 
+    /// Returns the share of its velocity with which the elbow moves to the posture at `time` after
+    /// the start of a motion, `[s]`.
+    pub(super) fn begun(&self, time: f64) -> f64 {
+        if !self.asked {
+            return 1.0;
+        }
+        let t = time * EASE / CYCLE;
+        1.0 - (1.0 + t) * (-t).exp()
+    }
+
     /// Returns the velocity at which joints return to a kept posture, `[rad/s]`.
     fn back(&self, q: &JointVector, speed: f64) -> JointVector {
         (self.q - q) * (Self::KEPT * (speed / Self::SPEED).min(1.0))

@@ -159,6 +159,24 @@ impl PoseGenerator {
         self.begin_again(&start, target.after(self.time()), self.budget)
     }
 
+    /// Keeps the pose from running ahead of `behind`. A pose that moves on a line stays on it: it
+    /// goes back to the place nearest to `behind`, and slows down. Any other pose continues from
+    /// `behind` at its velocity.
+    ///
+    /// # Errors
+    /// As for [`Self::new`]; the motion in progress continues.
+    pub(crate) fn hold_back(&mut self, behind: Isometry3<f64>) -> Result<(), PlanError> {
+        if self.twist == Twist::zeros() {
+            let p = behind.translation.vector;
+            let turn = rotation::error(&behind.rotation, &self.anchor);
+            let place = [p.x, p.y, p.z, turn.x, turn.y, turn.z];
+            if self.axes.hold_back(&place, SLOWER)? {
+                return Ok(());
+            }
+        }
+        self.reanchor(behind)
+    }
+
     /// Continues at `share` of the present velocity. If the pose moves on a line, it stays on that
     /// line.
     ///
@@ -302,6 +320,9 @@ impl PoseGenerator {
         }
     }
 }
+
+/// Share of the velocity that a pose keeps per cycle while its joints cannot follow.
+const SLOWER: f64 = 0.98;
 
 /// Start values for the generator of the six axes, in the frame that moves with the target.
 struct Plan {

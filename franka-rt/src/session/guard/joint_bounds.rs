@@ -140,6 +140,13 @@ pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, Joint
     )
 }
 
+/// Returns the distance of each joint at `q` from the nearer end of its range, margin included,
+/// `[rad]`.
+pub(crate) fn distance_to_end(limits: &JointLimits, q: &JointVector) -> JointVector {
+    let (lower, upper) = room(limits, q);
+    upper.inf(&-lower)
+}
+
 /// Returns the first joint, from 1, that is at an end of its range, margin included, at `q`.
 pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
     let (lower, upper) = room(limits, q);

@@ -137,7 +137,7 @@ pub(crate) fn tether(
     reached: &Isometry3<f64>,
 ) -> Result<bool, PlanError> {
     match tethered(&generator.pose(), reached) {
-        Some(pose) => generator.reanchor(pose).map(|()| true),
+        Some(pose) => generator.hold_back(pose).map(|()| true),
         None => Ok(false),
     }
 }

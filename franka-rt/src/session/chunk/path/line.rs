@@ -31,14 +31,15 @@ impl Goal {
     /// with its elbow moved to another posture, sets that posture as the goal's
     /// [posture](Self::posture).
     ///
-    /// If the arm can reach the pose, but not on the line, the goal does not change. It also does
-    /// not change if it does not end at a pose, if it has a [reaction](Self::reaction) or an object
-    /// in the hand, or if [`check`](Self::check) refuses it. Keep-out regions are not considered.
+    /// The goal does not change if it does not end at a pose, if it has a
+    /// [reaction](Self::reaction) or an object in the hand, or if [`check`](Self::check) refuses
+    /// it. Keep-out regions are not considered.
     ///
     /// This usually takes a millisecond, and at most ten. Do not call it on the control thread.
     ///
     /// # Errors
-    /// Returns [`GoalError::NoLine`] if the arm does not reach the pose with any of these postures.
+    /// Returns [`GoalError::NoLine`] if the arm cannot follow the line with any of these postures,
+    /// even if it can reach the pose in another way.
     pub fn plan_line(
         &mut self,
         q: &[f64; 7],
@@ -77,9 +78,6 @@ impl Goal {
                 return Ok(());
             }
         }
-        if matches!(hindrance, Hindrance::Range(_)) && line.ends_there(&own) {
-            return Ok(());
-        }
         let reached = |to: &&JointVector| line.is_clear_over_joints(to);
         let p = there.translation.vector;
         Err(GoalError::NoLine {
@@ -97,6 +95,17 @@ const LED: usize = 8;
 
 /// Step length of the first, coarse check of a line, as a multiple of the usual step.
 const GLANCE: f64 = 4.0;
+
+/// Distance of each joint from the ends of its range along the line, `[rad]`, unless the joint is
+/// nearer at the start or at the target. In the motion, the joints differ slightly from the plan.
+const SPARE: f64 = 0.1;
+
+/// Least distance of each joint from the ends of its range, `[rad]`, even at the target, unless
+/// the joint is nearer at the start.
+const LEAST: f64 = 0.03;
+
+/// Part of the distance at the start or at the target that a joint may lose on the way, `[rad]`.
+const NEARER: f64 = 0.02;
 
 /// Greatest rotation of a joint between two checks of the arm's distance to itself, `[rad]`.
 const TURN: f64 = 0.03;
@@ -147,11 +156,14 @@ impl<'a> Line<'a> {
 
     /// Follows the line to its end. The steps are `stride` times as long as in a full check.
     fn follow(&self, posture: &Posture, stride: f64) -> Result<(), Hindrance> {
+        let limits = self.model.joint_limits();
         let mut last = self.q;
+        let mut least = joint_bounds::distance_to_end(limits, &last);
         let way = self.arm(posture, stride).along(&self.way, self.q, |step| {
             let before = core::mem::replace(&mut last, step.q);
+            least = least.inf(&joint_bounds::distance_to_end(limits, &last));
             if step.off.size() > 1.0 {
-                let joint = joint_bounds::at_end(self.model.joint_limits(), &step.q);
+                let joint = joint_bounds::at_end(limits, &step.q);
                 return ControlFlow::Break(Hindrance::Range(joint.map(|joint| joint as u8)));
             }
             match self.is_clear(&before, &step.q) {
@@ -159,22 +171,16 @@ impl<'a> Line<'a> {
                 false => ControlFlow::Break(Hindrance::Itself),
             }
         });
-        way.break_value().map_or(Ok(()), Err)
-    }
-
-    /// True if the arm reaches the end of the line without coming too near to itself, although it
-    /// may leave the line.
-    fn ends_there(&self, posture: &Posture) -> bool {
-        let (mut last, mut off) = (self.q, 0.0);
-        let way = self.arm(posture, 1.0).along(&self.way, self.q, |step| {
-            let before = core::mem::replace(&mut last, step.q);
-            off = step.off.size();
-            match self.is_clear(&before, &step.q) {
-                true => ControlFlow::Continue(()),
-                false => ControlFlow::Break(()),
-            }
+        if let ControlFlow::Break(hindrance) = way {
+            return Err(hindrance);
+        }
+        let start = joint_bounds::distance_to_end(limits, &self.q);
+        let end = joint_bounds::distance_to_end(limits, &last);
+        let strained = (0..7).find(|&i| {
+            let room = (start[i].min(end[i]) - NEARER).min(SPARE);
+            least[i] < room.max(LEAST.min(start[i] - NEARER))
         });
-        way.is_continue() && off <= 1.0
+        strained.map_or(Ok(()), |i| Err(Hindrance::Range(Some(i as u8 + 1))))
     }
 
     /// True if the arm keeps clear of itself while all joints move to `to` at the same time.

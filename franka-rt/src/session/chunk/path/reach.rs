@@ -152,10 +152,11 @@ impl Arm<'_> {
             let steps = steps.ceil().clamp(1.0, STEPS_MAX);
             for step in 1..=steps as usize {
                 let at = way.between(k, step as f64 / steps);
-                let (reached, off) = self.step(q, &at, duration / steps);
+                let time = times[0] + duration * step as f64 / steps;
+                let (reached, off) = self.step(q, &at, (time, duration / steps));
                 q = reached;
                 each(&Step {
-                    time: times[0] + duration * step as f64 / steps,
+                    time,
                     leg: way.legs[k],
                     pose: at.pose,
                     q,
@@ -168,7 +169,12 @@ impl Arm<'_> {
 
     /// Returns the joint positions with which the arm follows from `q` to the state `at` within
     /// `duration`, and their distance from that state.
-    fn step(&self, q: JointVector, at: &PoseState, duration: f64) -> (JointVector, Off) {
+    fn step(
+        &self,
+        q: JointVector,
+        at: &PoseState,
+        (time, duration): (f64, f64),
+    ) -> (JointVector, Off) {
         let speed = at.twist.fixed_rows::<3>(0).norm();
         let mut q = q;
         let mut attempt = 0;
@@ -185,7 +191,8 @@ impl Arm<'_> {
                 return (q, off);
             }
             let free = if attempt == 0 {
-                self.posture.velocity(&q, speed, &jacobian, self.budget) * duration
+                self.posture.velocity(&q, speed, &jacobian, self.budget)
+                    * (duration * self.posture.begun(time))
             } else {
                 JointVector::zeros()
             };
