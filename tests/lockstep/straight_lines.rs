@@ -123,9 +123,8 @@ fn assert_near(lockstep: &Lockstep, there: &Isometry3<f64>) {
     assert!(off.translation < 1e-3 && off.rotation < 5e-3, "{off:?}");
 }
 
-/// Greatest distance of the hand from its straight line, `[m]`. Near singular postures, friction
-/// turns into large distances.
-const ASTRAY: f64 = 0.06;
+/// Distance of the hand from its straight line that counts as leaving it, `[m]`.
+const ASTRAY: f64 = 0.01;
 
 /// Returns joint positions in which the arm is clear of itself and of the table, away from the ends
 /// of the joints' ranges.
@@ -144,8 +143,8 @@ fn free_posture(random: &mut SmallRng, kind: RobotKind, hand: &EndEffector) -> J
 /// From a random posture, a motion to a random pose arrives on its line, or is refused before it
 /// begins. The refusal names joint positions that are then reached.
 ///
-/// Of a thousand accepted motions per robot, a few still fail near singular postures: the arm
-/// swings at its target, or friction holds it too far from its reference.
+/// A few percent of the accepted motions still fail or leave their line near singular postures: the
+/// arm swings at its target, or friction holds it too far from its reference.
 #[test]
 fn random_reachable_poses_are_reached_or_refused() {
     let seed = 10;
@@ -156,8 +155,14 @@ fn random_reachable_poses_are_reached_or_refused() {
             f_t_ee: Tool::hand().f_t_ne,
             ..EndEffector::default()
         };
-        let [mut accepted, mut failed, mut ended, mut crowded, mut lost] = [0; 5];
-        let mut astray = 0.0_f64;
+        let [
+            mut accepted,
+            mut failed,
+            mut astray,
+            mut ended,
+            mut crowded,
+            mut lost,
+        ] = [0; 6];
         for case in 0..cases {
             let [from, to] = [(); 2].map(|()| free_posture(&mut random, kind, &hand));
             let target = pose_of(&to, &hand);
@@ -181,7 +186,7 @@ fn random_reachable_poses_are_reached_or_refused() {
                         let along = (p.dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
                         off = off.max((p - way * along).norm());
                     }
-                    astray = astray.max(off);
+                    astray += u64::from(off > ASTRAY);
                     own = Some(off);
                     id
                 }
@@ -223,12 +228,11 @@ fn random_reachable_poses_are_reached_or_refused() {
             }
         }
         println!(
-            "{kind:?}: {accepted} accepted of {cases}, {failed} failed; refused at the ends of \
-             ranges {ended}, near itself {crowded}, of these without a way over the joints {lost}; \
-             {:.1} mm off a line",
-            astray * 1e3
+            "{kind:?}: {accepted} accepted of {cases}, {failed} failed, {astray} left their line; \
+             refused at the ends of ranges {ended}, near itself {crowded}, of these without a way \
+             over the joints {lost}"
         );
-        assert!(accepted >= cases / 4);
-        assert!(lost <= cases / 100 && failed <= accepted / 20 && astray < ASTRAY);
+        assert!(accepted >= cases / 5 && lost <= cases / 100);
+        assert!(failed <= accepted / 20 && astray <= accepted / 20);
     }
 }
