@@ -250,10 +250,10 @@ impl<const N: usize> Generator<N> {
         self.go_on_from(state, line)
     }
 
-    /// Moves the output back on its straight line to the place nearest to `position`, multiplies
-    /// the velocity by `share`, from 0 to 1, and creates a new plan to the target, or a stop if no
-    /// target is set. The output does not move forward. Returns `false` and changes nothing if the
-    /// motion is not on a straight line.
+    /// Moves the output back on its straight line to the place nearest to `position`, and
+    /// multiplies the velocity by `share`, from 0 to 1. The output does not move forward. A new
+    /// plan begins there, to the target, or to a stop if no target is set. Returns `false` and
+    /// changes nothing if the motion is not on a straight line.
     ///
     /// The output jumps, so the caller must ensure that it is close to `position` and that `share`
     /// is close to 1.

@@ -1,17 +1,10 @@
 //! Parses the MCAP records that the reader of recordings needs. Source: the MCAP format
 //! specification, version 0.
 //!
-//! The types are those of the crate `mcap`. Version 0.26 of the crate does not parse damaged files
-//! safely, so the functions here do not trust a length before they have read that many bytes:
-//!
-//! * `parse_record` reserves memory for a text before it reads the text: for a damaged length, up to
-//!   4 GiB. `Summary::read`, `SummaryReader` and all readers of `mcap::read` call this function.
-//! * `parse_record` panics if an attachment ends within its checksum.
-//! * `LinearReader` subtracts with overflow if a record of an uncompressed chunk extends beyond its
-//!   data. With `prevalidate_chunk_crcs`, it allocates the size in the header of a compressed chunk,
-//!   up to `record_length_limit`. Otherwise it returns messages before it verifies their checksum.
-//! * `ChunkReader` and `MessageStream` have no limit, and panic at the largest lengths.
-//! * `IndexedReader` and `SummaryReader` do not verify checksums.
+//! The types come from the crate `mcap`. Its parsers do not suit damaged files: version 0.26
+//! reserves memory by lengths that it has not verified, may panic, and returns some data before it
+//! verifies the checksum. The functions here trust a length only once they have read that many
+//! bytes.
 
 use std::collections::BTreeMap;
 

@@ -27,7 +27,7 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
 const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 
 /// Largest deviation of a ratio. All ratios of the central arm of the family are within 0.05,
-/// except three under the softest spring: those of joints 1, 3 and 4 are too large by up to 0.072.
+/// except three under the softest spring. There, joints 1, 3 and 4 swing too far by up to 0.072.
 const OFF_MAX: f64 = 0.08;
 
 /// Period of the log, `[s]`.
