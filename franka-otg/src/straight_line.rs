@@ -75,12 +75,9 @@ impl<const N: usize> StraightLine<N> {
 
     /// Returns the place on the line that is nearest to `position`.
     pub(crate) fn nearest(&self, position: &[f64; N]) -> f64 {
-        let [mut way, mut size] = [0.0; 2];
-        for i in 0..N {
-            way += (position[i] - self.origin[i]) * self.direction[i];
-            size += self.direction[i] * self.direction[i];
-        }
-        way / size
+        let way = (0..N).map(|i| (position[i] - self.origin[i]) * self.direction[i]);
+        let size = self.direction.iter().map(|x| x * x);
+        way.sum::<f64>() / size.sum::<f64>()
     }
 
     /// Returns the state along the line for a `target` that is on the line and moves along the

@@ -167,7 +167,7 @@ fn random_reachable_poses_are_reached_or_refused() {
             let [from, to] = [(); 2].map(|()| free_posture(&mut random, kind, &hand));
             let target = pose_of(&to, &hand);
             let mut lockstep = insensitive(Config {
-                q: from.into(),
+                q: from,
                 arm: Some(Arm::sample(kind, case, &Family::realistic())),
                 ..Lockstep::config_of(kind)
             });
