@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import connection, outcome, until
+from conftest import PATIENT, connection, outcome, until
 
 from franka_async import ConnectError, ControlError, FrankaError, Gripper, Model, MotionError, Network, Robot, Sim, VacuumGripper, sync
 
