@@ -258,9 +258,13 @@ impl CommandTask {
             () = close.cancelled() => CloseReason::ClosedByUs,
         };
         // Note the reason before the queues close, so that a caller who finds them closed finds the
-        // reason.
+        // reason. A request that is being sent while its queue is dropped would stay in the queue,
+        // and its caller would wait forever. So wait for such requests, and drop them.
         let reason = closing.note(reason);
-        drop(queues);
+        let (mut motions, mut calls) = queues;
+        motions.close();
+        calls.close();
+        while motions.recv().await.is_some() || calls.recv().await.is_some() {}
         for (_, waiting) in self.pending.drain() {
             if let ReplyTo::Caller { answer, .. } = waiting.reply_to {
                 // This fails if the caller was dropped.
@@ -532,5 +536,33 @@ mod tests {
         assert_eq!(refusal.mode(), RobotMode::Reflex);
         connection.close().await;
         robot.await.expect("it saw the end of the stream");
+    }
+
+    /// A caller may have its place in the queue when the connection ends, and send its request
+    /// afterwards.
+    #[tokio::test(start_paused = true)]
+    async fn request_sent_while_the_connection_ends_is_answered() {
+        let (ours, theirs) = tokio::io::duplex(4096);
+        let stream: Stream = Box::new(ours);
+        let stream = Framed::new(stream, MessageCodec::ROBOT);
+        let session = Session::new(Version::V10);
+        let (channel, _connection, mut reports) =
+            Channel::start(stream, session, || RobotMode::Idle);
+        let place = channel.calls.reserve().await.expect("it is open");
+        drop(theirs);
+        while matches!(channel.closing.reason(), CloseReason::RuntimeEnded) {
+            tokio::task::yield_now().await;
+        }
+        let (answer, answered) = oneshot::channel();
+        let deadline = Duration::from_secs(1);
+        place.send(QueuedRequest {
+            request: Request::StopMove,
+            reply_to: ReplyTo::Caller { answer, deadline },
+        });
+        assert!(
+            answered.await.is_err(),
+            "the task that would answer is gone"
+        );
+        assert!(matches!(reports.recv().await, Some(Report::Closed { .. })));
     }
 }

@@ -323,6 +323,10 @@ impl<D: Device> DeviceTask<D> {
         // Note the reason before the answers are dropped, so that a caller who finds them dropped
         // finds the reason.
         closing.note(reason);
+        // A request that is being sent while the queue is dropped would stay in the queue, and its
+        // caller would wait forever.
+        calls.close();
+        while calls.recv().await.is_some() {}
     }
 
     /// Serves until the connection ends, and returns the reason as the error.
