@@ -260,7 +260,9 @@ fn blocked_arm_is_reported_and_released_without_reflex() {
         };
         assert_eq!(short.limited, None, "no torque limit binds");
         assert!(
-            error.to_string().contains("something holds the arm"),
+            error
+                .to_string()
+                .contains("something holds or moves the arm"),
             "{error}"
         );
         let error = short.error;

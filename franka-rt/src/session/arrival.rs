@@ -122,7 +122,8 @@ impl core::fmt::Display for Shortfall {
             Some(limited) => write!(f, ": {limited}"),
             None => write!(
                 f,
-                ": something holds the arm, or its load differs from the declared load"
+                ": something holds or moves the arm, its load differs from the declared load, or \
+                 its posture is nearly singular"
             ),
         }
     }

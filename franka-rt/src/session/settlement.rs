@@ -51,8 +51,9 @@ pub enum Settlement {
     /// The arm rests where it braked, or only the reference rests and something outside moves the
     /// arm.
     AtRest,
-    /// The reference reached the target but the arm did not. Something holds the arm, or its load
-    /// differs from the declared load.
+    /// The reference reached the target but the arm did not, or does not come to rest there.
+    /// Something holds or moves the arm, its load differs from the declared load, or its posture is
+    /// nearly singular.
     TargetNotReached(Shortfall),
     /// The goal was given up. The arm is held at the last target, or, if the deadman failed, where
     /// it stopped.
