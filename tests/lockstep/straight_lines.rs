@@ -213,7 +213,8 @@ fn random_reachable_poses_are_reached_or_refused() {
             match lockstep.until_resolved(id, 60_000) {
                 Ok(report) => {
                     let off = PoseError::between(&lockstep.arm_pose(), &target);
-                    let near = off.translation < 4e-3 && off.rotation < 2e-2;
+                    // The joint sensors of a sampled arm have offsets.
+                    let near = off.translation < 6e-3 && off.rotation < 2e-2;
                     assert!(near, "{kind:?}, seed {seed}, case {case}: {off:?}");
                     // A motion of joints has no line.
                     match (report.line_deviation, own) {
