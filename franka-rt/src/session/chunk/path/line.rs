@@ -157,14 +157,19 @@ impl<'a> Line<'a> {
     /// Follows the line to its end. The steps are `stride` times as long as in a full check.
     fn follow(&self, posture: &Posture, stride: f64) -> Result<(), Hindrance> {
         let limits = self.model.joint_limits();
+        let start = joint_bounds::distance_to_end(limits, &self.q);
+        let floor = start.map(|start| LEAST.min(start - NEARER));
         let mut last = self.q;
-        let mut least = joint_bounds::distance_to_end(limits, &last);
+        let mut least = start;
         let way = self.arm(posture, stride).along(&self.way, self.q, |step| {
             let before = core::mem::replace(&mut last, step.q);
             least = least.inf(&joint_bounds::distance_to_end(limits, &last));
             if step.off.size() > 1.0 {
                 let joint = joint_bounds::at_end(limits, &step.q);
                 return ControlFlow::Break(Hindrance::Range(joint.map(|joint| joint as u8)));
+            }
+            if let Some(i) = (0..7).find(|&i| least[i] < floor[i]) {
+                return ControlFlow::Break(Hindrance::Range(Some(i as u8 + 1)));
             }
             match self.is_clear(&before, &step.q) {
                 true => ControlFlow::Continue(()),
@@ -174,11 +179,10 @@ impl<'a> Line<'a> {
         if let ControlFlow::Break(hindrance) = way {
             return Err(hindrance);
         }
-        let start = joint_bounds::distance_to_end(limits, &self.q);
         let end = joint_bounds::distance_to_end(limits, &last);
         let strained = (0..7).find(|&i| {
             let room = (start[i].min(end[i]) - NEARER).min(SPARE);
-            least[i] < room.max(LEAST.min(start[i] - NEARER))
+            least[i] < room.max(floor[i])
         });
         strained.map_or(Ok(()), |i| Err(Hindrance::Range(Some(i as u8 + 1))))
     }
