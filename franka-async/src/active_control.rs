@@ -21,13 +21,13 @@ use crate::input::unserved;
 use crate::robot::Robot;
 
 impl Robot {
-    /// Begins torque control by a thread of the caller, and resolves when the motion runs. The
-    /// first command is due within a few milliseconds. Pass the result at once to the thread that
-    /// reads and writes.
+    /// Begins a motion in which a thread of the program commands torques, and resolves when the
+    /// motion runs. The first command is due within a few milliseconds. Pass the result at once to
+    /// the thread that reads and writes.
     ///
     /// # Errors
-    /// Returns [`MotionError::Busy`] if anything else controls the arm. If the motion ended before
-    /// it ran, returns the reason for its end.
+    /// Returns [`MotionError::Busy`] if anything else controls the arm. If the motion ends before
+    /// the robot runs it, returns the reason.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -37,9 +37,9 @@ impl Robot {
         Active::begin(self, request).await
     }
 
-    /// Begins control by joint positions, with the given controller. With
-    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Apart from
-    /// that, it is like [`Self::active_torques`].
+    /// Begins a motion in which the thread commands joint positions, which `controller` follows.
+    /// With [`MoveControllerMode::ExternalController`], every command also needs torques. Apart
+    /// from that, it is like [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -53,7 +53,7 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by joint velocities. Apart from that, it is like
+    /// Begins a motion in which the thread commands joint velocities. Apart from that, it is like
     /// [`Self::active_joint_positions`].
     ///
     /// # Errors
@@ -68,8 +68,8 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by poses of the end effector. Apart from that, it is like
-    /// [`Self::active_joint_positions`].
+    /// Begins a motion in which the thread commands poses of the end effector. Apart from that, it
+    /// is like [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -83,8 +83,8 @@ impl Robot {
         self.active_motion(controller).await
     }
 
-    /// Begins control by twists of the end effector. Apart from that, it is like
-    /// [`Self::active_joint_positions`].
+    /// Begins a motion in which the thread commands twists of the end effector. Apart from that, it
+    /// is like [`Self::active_joint_positions`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -132,7 +132,7 @@ pub struct Active<C> {
     lease: Option<Lease>,
     /// Receives the outcome; `None` once the motion has ended.
     outcome: Option<oneshot::Receiver<Outcome>>,
-    /// Reason why the motion ended; `None` if it ended as asked.
+    /// Reason why the motion ended; `None` if it ended with the last command.
     error: Option<MotionError>,
     /// `message_id` of the newest state read.
     previous: Option<u64>,
@@ -273,7 +273,7 @@ impl Active<Torques> {
     ///
     /// # Errors
     /// Returns [`ActiveError::Write`] if the torques cannot be sent; the motion continues. Returns
-    /// [`ActiveError::Motion`] if the motion ended in any other way.
+    /// [`ActiveError::Motion`] if the motion ended for any reason other than the last torques.
     pub fn write_once(
         &mut self,
         torques: impl Into<Next<Torques>>,

@@ -26,7 +26,7 @@ use crate::session::Session;
 use crate::user_value::UserValue;
 
 /// Options of a session of target control; see [`Robot::engage`]. By default, the session uses the
-/// default gains for each kind of goal, and the default budget.
+/// default gains for each kind of goal, and the default limits ([`Budget`](crate::goal::Budget)).
 #[derive(Debug, Default)]
 #[must_use = "options do nothing until `Robot::engage` takes them"]
 pub struct Engage {
@@ -38,14 +38,14 @@ impl Engage {
     goal_options!();
 
     /// Keeps the arm out of these regions, which are given in the base frame. By default there are
-    /// no regions. The reference slows down on its way to a region, and stops
-    /// [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal that a region blocks is
-    /// given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A stream is not given up; it
-    /// waits for other targets. An arm inside a region may leave it. The links of the arm and the
-    /// Franka Hand are kept out, but no other tool. The session is refused as
-    /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) if there are more than
-    /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, a number is not finite, or a side is
-    /// negative.
+    /// no regions. The reference (the commanded motion) slows down on its way to a region, and
+    /// stops at the distance [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) from it. A goal that a
+    /// region blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked). A motion that
+    /// follows a stream is not given up; it waits for other targets. An arm inside a region may
+    /// leave it. The links of the arm and the Franka Hand are kept out; other tools are not
+    /// checked. The session is refused as [`GoalError::KeepOut`](crate::error::GoalError::KeepOut)
+    /// if there are more than [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, a number is not
+    /// finite, or a side is negative.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.engagement.keep_out = Some(regions.into_iter().collect());
         self
@@ -53,19 +53,20 @@ impl Engage {
 
     /// Limits the speed of all joints, the flange and the end effector, `[m/s]`, from 0.1 to 3. By
     /// default, only the limits of the goals apply. On the way to a pose, the speed of the
-    /// reference stays below 94 % of the cap, and at least 0.03 m/s below the cap. The arm may
-    /// still be faster if its goal moves the joints, or if something pushes the arm. The goal is
-    /// then given up as [`Lapse::TooFast`](crate::error::Lapse::TooFast), and the arm brakes. A
-    /// `speed` out of the range is refused as
+    /// reference (the commanded motion) stays below 94 % of the cap, and at least 0.03 m/s below
+    /// the cap. The arm may still exceed the cap on the way to joint positions, or if something
+    /// pushes it. The goal is then given up as [`Lapse::TooFast`](crate::error::Lapse::TooFast),
+    /// and the arm brakes. A `speed` out of the range is refused as
     /// [`GoalError::Number`](crate::error::GoalError::Number).
     pub fn speed_cap(mut self, speed: f64) -> Self {
         self.engagement.speed_cap = Some(speed);
         self
     }
 
-    /// Binds the session to a deadman. If the deadman's timer has run out, or the deadman was
-    /// dropped, the arm brakes and holds, and every goal resolves as [`MotionError::Held`]. The
-    /// timer must be 10 ms or longer. See [`Deadman::new`](crate::goal::Deadman::new).
+    /// Binds the session to a deadman, whose timer the program must restart regularly. If the timer
+    /// has expired, or the deadman was dropped, the arm brakes and holds, and every goal resolves
+    /// as [`MotionError::Held`]. The timer must be 10 ms or longer. See
+    /// [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
         self
@@ -116,11 +117,13 @@ pub struct Arm {
 
 impl Robot {
     /// Begins a session of target control that holds the arm where it is, and resolves when the
-    /// session has begun. A dropped motion or session first brakes and releases the arm.
+    /// session has begun. If an earlier motion or session was dropped, waits until it has braked
+    /// and released the arm.
     ///
     /// # Errors
     /// Returns [`MotionError::Busy`] if anything else controls the arm, [`MotionError::Goal`] if
-    /// gains or limits are not accepted, and otherwise the robot's refusal.
+    /// gains or limits are not accepted, and the robot's refusal if the robot does not start the
+    /// session.
     ///
     /// # Cancel safety
     /// Dropping the future ends the session, in the background.
@@ -181,8 +184,8 @@ impl Arm {
         self.move_to(q.into())
     }
 
-    /// Returns a motion of the end effector by `offset` from the present target, or from the arm.
-    /// Apart from that, it is like [`Self::move_to`].
+    /// Returns a motion of the end effector by `offset` from the present target, or from the
+    /// measured pose if there is no target. Apart from that, it is like [`Self::move_to`].
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -197,8 +200,8 @@ impl Arm {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// Returns a motion that brakes the arm and resolves when the arm rests. It may begin at any
-    /// time.
+    /// Returns a motion that brakes the arm and resolves when the arm rests. Like every newer
+    /// motion, it supersedes the current one.
     pub fn hold(&self) -> Motion {
         self.move_to(Target::Rest)
     }
@@ -255,7 +258,8 @@ impl Arm {
         self.session.link().course.target().filter(|_| !ended)
     }
 
-    /// Returns the reference of the current cycle; `None` once the session has ended.
+    /// Returns the reference (the commanded motion) of the current cycle; `None` once the session
+    /// has ended.
     pub fn reference(&self) -> Option<Reference> {
         let ended = self.session.has_ended();
         self.robot().reference().filter(|_| !ended)
@@ -317,7 +321,7 @@ impl Arm {
     ///
     /// - [`MotionError::Held`] or [`MotionError::Braked`] in the first call after a guard ended the
     ///   previous chunk;
-    /// - [`GoalError::Late`](crate::error::GoalError::Late) if all points have passed;
+    /// - [`GoalError::Late`](crate::error::GoalError::Late) if the times of all points have passed;
     /// - [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation time is more than
     ///   60 s in the robot's future, for example because it comes from a different clock;
     /// - [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation of the
@@ -383,8 +387,8 @@ impl Arm {
     }
 
     /// Changes the tuning of the session's current goal and later goals. Options that are `None`
-    /// stay as they are. Options of a single motion take precedence. Gains, force cap and leash
-    /// change over 0.3 s, so that neither the reference nor the torques step.
+    /// stay as they are. Options of a single motion take precedence. The gains, the force cap and
+    /// the [leash](Engage::leash) change over 0.3 s, so neither the reference nor the torques jump.
     ///
     /// # Errors
     /// Returns [`MotionError::Goal`] if a value is out of its bounds; nothing changes then. If the
@@ -407,11 +411,11 @@ impl Arm {
     }
 
     /// Brakes the arm, releases it, and ends the session. Resolves when the session has ended. A
-    /// goal under way resolves as [`MotionError::Stopped`]. All other handles of the session are
+    /// motion under way resolves as [`MotionError::Stopped`]. All other handles of the session are
     /// then disengaged, too.
     ///
     /// # Errors
-    /// Returns [`MotionError`] if the session ended in any other way: by a reflex, or by
+    /// Returns [`MotionError`] if the session ended for a different reason: a reflex, or
     /// [`Robot::stop`] ([`MotionError::Stopped`]).
     ///
     /// # Cancel safety

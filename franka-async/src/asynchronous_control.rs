@@ -21,8 +21,8 @@ use crate::robot::Robot;
 pub struct AsynchronousOptions {
     /// Limits of the joint velocities, `[rad/s]`.
     pub maximum_joint_velocities: [f64; 7],
-    /// Largest distance of the desired joint positions from the target at which the target counts
-    /// as reached, as a Euclidean norm, `[rad]`. The maximum is 20, which is more than the distance
+    /// The target counts as reached if the robot's desired joint positions are at most this far
+    /// from it: a Euclidean norm, `[rad]`. The maximum is 20, which is more than the distance
     /// between any two postures.
     pub goal_tolerance: f64,
 }
@@ -90,7 +90,7 @@ impl Robot {
     /// Returns [`MotionError::Unsupported`] if the protocol version has no such motions. Returns
     /// [`MotionError::Goal`] if a velocity or a tolerance is not positive, or exceeds the robot's
     /// limit. In both cases nothing was sent. Returns [`MotionError::Busy`] if anything else
-    /// controls the arm. If the motion ended before it ran, returns the reason for its end.
+    /// controls the arm. If the motion ends before the robot runs it, returns the reason.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -196,7 +196,7 @@ impl AsynchronousControl {
     /// refuse to end a motion while the arm moves.
     ///
     /// # Errors
-    /// Returns the reason if the motion ended in any other way.
+    /// Returns the reason if the motion ends in any other way, for example with a reflex.
     ///
     /// # Cancel safety
     /// Once the future has been polled, the motion ends in any case. If you then drop the future

@@ -66,7 +66,8 @@ use tokio::sync::watch;
 
 use crate::world;
 
-/// Waits for a future on the calling thread, for everything in this crate that can be awaited.
+/// Extends everything in this crate that can be awaited with methods that wait on the calling
+/// thread.
 pub trait Wait: IntoFuture + Sized {
     /// Waits until the future resolves.
     ///
@@ -91,7 +92,7 @@ pub trait Wait: IntoFuture + Sized {
 
 impl<F: IntoFuture> Wait for F {}
 
-/// Iterates over a stream on the calling thread, for every stream of this crate.
+/// Extends every stream of this crate with iteration on the calling thread.
 pub trait WaitEach: Stream + Unpin + Sized {
     /// Returns an iterator over the items of the stream. Each step waits for the next item, and the
     /// iterator ends with the stream.
@@ -117,8 +118,8 @@ impl<S: Stream + Unpin> Iterator for Each<S> {
     }
 }
 
-/// Sender of targets: a motion that follows the channel reads the newest one. Dropping the sender
-/// ends the motion at the last target.
+/// Sender of targets: a motion that follows the channel reads the newest target. Dropping the
+/// sender ends the motion at the last target.
 #[derive(Debug)]
 pub struct Targets<T>(watch::Sender<T>);
 
@@ -130,8 +131,8 @@ impl<T> Targets<T> {
     }
 }
 
-/// Returns a sender of targets, and a channel that contains the newest target, at first `first`.
-/// Pass the channel to [`Robot::follow`](crate::Robot::follow) or
+/// Returns a sender of targets, and a channel that contains the newest target. The channel begins
+/// with the target `first`. Pass the channel to [`Robot::follow`](crate::Robot::follow) or
 /// [`Arm::follow`](crate::Arm::follow).
 pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
     let (sender, receiver) = watch::channel(first);

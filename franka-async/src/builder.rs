@@ -91,9 +91,9 @@ impl Builder {
         self
     }
 
-    /// Sets whether connecting fails if the operating system refuses what the control thread
-    /// requests: `SCHED_FIFO` on a `PREEMPT_RT` kernel. The default is [`Realtime::Enforce`]; use
-    /// [`Realtime::Ignore`] for simulators.
+    /// Sets whether connecting fails if the control thread cannot run in real time. This needs a
+    /// `PREEMPT_RT` kernel, and the right to use `SCHED_FIFO`. The default is
+    /// [`Realtime::Enforce`]; use [`Realtime::Ignore`] for simulators.
     pub fn realtime(mut self, realtime: Realtime) -> Self {
         self.scheduling.realtime = realtime;
         self
@@ -134,8 +134,8 @@ impl Builder {
     }
 
     /// Sets how many bytes of the control thread's stack are paged in before the first cycle: 512
-    /// KiB by default, 64 MiB at most. The whole stack is larger than this by a reserve. Control
-    /// functions that use much stack need a larger value. A size out of range is refused as
+    /// KiB by default, 64 MiB at most. The whole stack is larger, because a reserve is added.
+    /// Control functions that use much stack need a larger value. A size out of range is refused as
     /// [`ConnectError::Realtime`](crate::error::ConnectError::Realtime).
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
@@ -172,13 +172,13 @@ impl Builder {
         self
     }
 
-    /// Sets whether to connect to a robot whose reported poses disagree with its model for all
-    /// known [lengths](crate::model::geometry::Lengths::KNOWN). This is off by default: such a
-    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the
-    /// robot is accepted, goals move the arm to poses as the robot reports them; in simulation, the
-    /// errors were up to 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by
-    /// the geometric error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`)
-    /// states it.
+    /// Sets whether to connect to a robot whose reported poses disagree with its model, regardless
+    /// of which known [link lengths](crate::model::geometry::Lengths::KNOWN) are assumed. This is
+    /// off by default: such a robot is refused as
+    /// [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the robot is accepted,
+    /// goals move the arm to poses as the robot reports them; in simulation, the errors were up to
+    /// 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by the geometric
+    /// error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`) states it.
     pub fn accept_geometry_error(mut self, accept: bool) -> Self {
         self.accept_geometry_error = accept;
         self
@@ -195,10 +195,10 @@ impl Builder {
         self
     }
 
-    /// Sets an earlier result of [`Robot::identify`] for this arm, so that the first motion is
-    /// compensated like later motions. Of the identified load, only the part that is not declared
-    /// when that motion begins counts. By default, nothing is known. A result of a different kind
-    /// of arm, or with implausible numbers, is refused as
+    /// Sets an earlier result of [`Robot::identify`] for this arm, so that the driver compensates
+    /// for friction and bias from the first motion on. A part of the identified load that is
+    /// declared when that motion begins is not counted again. By default, nothing is known. A
+    /// result of a different kind of arm, or with implausible numbers, is refused as
     /// [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
@@ -221,9 +221,9 @@ impl Builder {
         self
     }
 
-    /// Asks `agrees` before each recovery that the policy allows. The argument contains the reflex.
-    /// If the reflex ended a motion of this program, it also contains the log and the
-    /// [diagnosis](crate::diagnosis::Diagnose). Implies
+    /// Calls `agrees` before each recovery that the policy allows, to ask for permission. The
+    /// argument contains the reflex. If the reflex ended a motion of this program, it also contains
+    /// the log and the [diagnosis](crate::diagnosis::Diagnose). Implies
     /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). The function runs on a thread
     /// for blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)). Only the recovery waits
     /// for the answer; dropping the runtime also waits for it. An answer that comes too late has no

@@ -56,8 +56,8 @@ impl Robot {
     /// the format of the system. Protocol 5 only.
     ///
     /// # Errors
-    /// Returns [`CommandError`]. If the version has no such command, returns
-    /// [`CommandError::Request`] without asking the robot.
+    /// Returns [`CommandError`] if the robot does not send the library. If the version has no such
+    /// command, returns [`CommandError::Request`] without asking the robot.
     ///
     /// # Cancel safety
     /// Dropping the future loses only the answer.

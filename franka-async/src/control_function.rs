@@ -87,8 +87,8 @@ impl Robot {
     }
 }
 
-/// A motion that a function controls, before it begins: nothing is sent until this value is awaited
-/// or detached.
+/// A motion that a function controls, and that has not begun: nothing is sent until this value is
+/// awaited or detached.
 ///
 /// The future resolves when the function has finished and the robot has ended the motion. Unlike
 /// goals, a control function neither supersedes a motion nor is superseded. It is refused as
@@ -158,10 +158,10 @@ impl Control {
 
     /// Makes the motion begin together with the motions of other robots: see
     /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all
-    /// motions are ready. Until then, the driver holds the arm with the robot's own desired joint
-    /// positions or pose, with zero velocities, or with zero torques. With zero torques, only the
-    /// robot's gravity compensation holds the arm. The first call of the function still has a time
-    /// step of zero. The duration in the report includes the wait.
+    /// motions are ready. Until then, the driver sends commands of the motion's kind that hold the
+    /// arm: the robot's own desired joint positions or pose, zero velocities, or zero torques. With
+    /// zero torques, only the robot's gravity compensation holds the arm. The first call of the
+    /// function still has a time step of zero. The duration in the report includes the wait.
     ///
     /// # Cancel safety
     /// See [`Motion::start_with`](crate::Motion::start_with).

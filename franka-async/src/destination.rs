@@ -1,4 +1,5 @@
-//! Destinations of motions: a target, or an offset from the target or from the arm's current pose.
+//! Destinations of motions: a target, or an offset from the present target or from the arm's
+//! measured pose.
 
 use franka_model::Model;
 use franka_proto::RobotState;
@@ -8,10 +9,11 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use crate::end_effector_pose::{pose_at, pose_of};
 
 /// Destination of a motion. It is made from a [`Pose`](crate::Pose), joint positions `[rad]` or an
-/// [`Offset`], or by the functions here. For a target that moves, a pose or joint positions may
-/// come with a velocity.
+/// [`Offset`], or by the functions here. For a moving target, add its velocity to the pose or the
+/// joint positions.
 ///
-/// If a destination is not a whole pose, the present target completes it when the motion begins.
+/// A destination that is only a position or only an orientation is completed when the motion
+/// begins: the rest of the pose comes from the present target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Destination {
@@ -21,7 +23,7 @@ pub enum Destination {
     Position(Vector3<f64>),
     /// An orientation of the end effector in the base frame; the position does not change.
     Orientation(UnitQuaternion<f64>),
-    /// A pose at an offset from the present target, or from the arm.
+    /// A pose at an offset from the present target, or from the arm's measured pose.
     Offset(Offset),
 }
 
@@ -106,8 +108,8 @@ impl Now {
     }
 }
 
-/// An offset from the arm's present target, or from the arm's pose, along the axes of the base or
-/// the end effector.
+/// An offset along the axes of the base or the end effector. It starts at the arm's present target,
+/// or at its measured pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
     way: Isometry3<f64>,
@@ -122,8 +124,8 @@ enum Axes {
 }
 
 impl Offset {
-    /// Returns an offset along the axes of the base frame, `[m]`, with a rotation about these axes
-    /// through the end effector.
+    /// Returns an offset along the axes of the base frame, `[m]`, with a rotation about axes that
+    /// are parallel to them and pass through the end effector.
     pub fn base(way: impl Into<Isometry3<f64>>) -> Self {
         Self::along(Axes::Base, way.into())
     }

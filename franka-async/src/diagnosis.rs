@@ -1,4 +1,4 @@
-//! Explains why the robot ended a motion: the exceeded limit, the cycles before that, and the
+//! Explains why the robot ended a motion: the exceeded limit, the events before that, and the
 //! remedy.
 //!
 //! ```no_run

@@ -43,7 +43,7 @@ pub struct HostDiagnosis {
     pub evidence: Evidence,
     /// Diagnosis from the log of the motion, if the robot stopped itself.
     pub diagnosis: Option<Diagnosis>,
-    /// The two likeliest causes on this host, or fewer if not as many are found.
+    /// The two likeliest causes on this host, or fewer if fewer are found.
     pub causes: Vec<Finding>,
 }
 

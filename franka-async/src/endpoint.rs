@@ -5,18 +5,18 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
 /// Endpoint of a device: a host and a port. The default port depends on the device: 1337 for a
-/// robot, 1338 for a Franka Hand. For a vacuum gripper, it is 1339.
+/// robot, 1338 for a Franka Hand, and 1339 for a vacuum gripper.
 ///
 /// It is made from an [`IpAddr`], from a [`SocketAddr`], or from text:
 ///
 /// | text | means |
 /// |---|---|
-/// | `172.16.0.2`, `172.16.0.2:40123` | IPv4, as robots have it |
-/// | `fd00::2`, `[fd00::2]`, `[fd00::2]:40123` | IPv6; a port takes the brackets |
+/// | `172.16.0.2`, `172.16.0.2:40123` | an IPv4 address, which robots use |
+/// | `fd00::2`, `[fd00::2]`, `[fd00::2]:40123` | an IPv6 address; with a port, it needs brackets |
 /// | `fe80::2%eth0`, `[fe80::2%3]:40123` | a link-local address with its interface, by name or index |
 /// | `robot.lan`, `robot.lan:40123` | a host name; its addresses are tried in turn, IPv4 before IPv6 |
 ///
-/// Other text makes an endpoint, too. Connecting then refuses it as
+/// Any other text can also be converted, but connecting then refuses it as
 /// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To
 /// check a text at once, use `parse`.
 ///
@@ -81,7 +81,7 @@ pub enum EndpointError {
     /// The text looks like an address, but is not a valid one.
     #[error(
         "`{address}` is not an IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
-         port takes brackets, [fd00::2]:1337"
+         port needs brackets: [fd00::2]:1337"
     )]
     Address {
         /// Text in the place of the address.

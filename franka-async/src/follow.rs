@@ -40,7 +40,7 @@ pub struct Follow {
 
 impl Robot {
     /// Follows the newest target in `targets` (poses or joint positions `[rad]`) until the sender
-    /// is dropped, and then stops at the last target. Targets may come at any rate, and any
+    /// is dropped, and then stops at the last target. Targets may come at any rate, and may be any
     /// distance apart: the arm moves within its limits.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
@@ -88,9 +88,10 @@ impl Follow {
 
     goal_options!(target);
 
-    /// Limits how far ahead of the arm a target may be, in metres and radians above zero; unlimited
-    /// by default. While targets come, a target that is further ahead is moved closer in every
-    /// cycle. Therefore a wrong target cannot move the arm far once the stream stops.
+    /// Limits how far ahead of the arm a target may be, in metres and radians; both must be above
+    /// zero. By default, there is no limit. While targets come, a target that is further ahead is
+    /// moved closer in every cycle. Therefore a wrong target cannot move the arm far once the
+    /// stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
         self.lead = Some(lead);
         self
@@ -100,8 +101,9 @@ impl Follow {
     /// in whole milliseconds. The arm then continues to the last target ([`OnTimeout::Hold`]) or
     /// brakes at once ([`OnTimeout::Brake`]). When the arm rests, the future resolves as
     /// [`MotionError::Held`] or [`MotionError::Braked`], unless targets come again before that. A
-    /// target counts even if it equals the previous one. The control thread measures the silence.
-    /// Without a watchdog, the arm holds the last target indefinitely.
+    /// target counts even if it equals the previous one. The control thread measures this time, so
+    /// the watchdog acts even if the program hangs. Without a watchdog, the arm holds the last
+    /// target indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,

@@ -63,8 +63,8 @@ impl Gripper {
     }
 
     /// Measures the largest opening width of the fingers (`max_width` of the state). This is needed
-    /// once after power-on and after a change of fingers; until then, the Hand refuses wider grasps
-    /// and moves. Returns true on success.
+    /// once after power-on and after a change of fingers. Until then, the Hand refuses every width
+    /// above the old `max_width`. Returns true on success.
     ///
     /// # Errors
     /// Returns [`GripperError`] if the Hand does not carry out the action.

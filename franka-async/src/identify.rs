@@ -1,5 +1,5 @@
-//! Torques of an arm that its model does not contain, measured in a minute of small motions: see
-//! [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
+//! Measures the torques of an arm that its model does not contain, with small motions that take a
+//! minute: see [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
 
 use std::future::IntoFuture;
 use std::pin::pin;
@@ -26,10 +26,10 @@ pub struct Identify {
 }
 
 impl Robot {
-    /// Plans motions from the present position of the arm that identify its friction, its bias and
-    /// its load. In each of six poses, all joints move to and fro twice, by 0.2 rad at 0.2 rad/s.
-    /// The space around the arm must be free ([`Identify::reach`]), and the arm must carry the load
-    /// that you want to identify.
+    /// Plans motions that identify the friction, the bias and the load of the arm. They begin at
+    /// the arm's present position. In each of six poses, all joints move to and fro twice, by 0.2
+    /// rad at 0.2 rad/s. The space around the arm must be free ([`Identify::reach`]), and the arm
+    /// must carry the load that you want to identify.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::Error> {
@@ -63,19 +63,19 @@ impl Identify {
         self.plan.duration()
     }
 
-    /// Returns how far the motions take the arm from its present position. A compliant arm is some
-    /// millimetres away from its reference.
+    /// Returns how far the motions take the arm from its present position. Leave some more
+    /// millimetres free, because a compliant arm deviates from its commanded path.
     pub fn reach(&self) -> Reach {
         self.plan.reach()
     }
 
     /// Moves the arm and returns its identified values. This changes neither the robot nor this
-    /// connection, which learns in any motion anyway. Pass the result to
+    /// connection; the driver learns the values in every motion anyway. Pass the result to
     /// [`Builder::known`](crate::connection::Builder::known) for later connections, and declare the
     /// load with [`Robot::set_load`] if you like.
     ///
     /// # Errors
-    /// Returns [`IdentifyError`] if a motion fails, if the arm has left the position of the plan,
+    /// Returns [`IdentifyError`] if a motion fails, if the arm is no longer where the plan begins,
     /// or if something held or pushed the arm.
     ///
     /// # Cancel safety

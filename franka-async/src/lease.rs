@@ -148,8 +148,8 @@ impl Holder {
 
     /// Returns the deadman for a session: see [`Engage::deadman`](crate::Engage::deadman). The
     /// control thread brakes the arm when the holder has been silent for too long, and when the
-    /// lease is lost or dropped. A session accepts an allowed silence of [`Deadman::SILENCE_MIN`]
-    /// or more.
+    /// lease is lost or dropped. A session accepts the deadman only if the lease allows a silence
+    /// of [`Deadman::SILENCE_MIN`] or more.
     pub fn deadman(&self) -> DeadmanMonitor {
         self.monitor.clone()
     }

@@ -10,7 +10,7 @@
 //! # Connect
 //!
 //! ```toml
-//! [dependencies] # ours are not published yet: the path is that of a clone
+//! [dependencies] # our crates are not published yet: use the path of a clone
 //! anyhow = "1"
 //! franka-async = { path = "../franka-async/franka-async" }
 //! tokio = { version = "1", features = ["full"] }
@@ -26,7 +26,7 @@
 //! async fn main() -> anyhow::Result<()> {
 //!     let robot = Robot::connect("172.16.0.2").await?;
 //!     println!("hand at {}", robot.pose().translation);
-//!     robot.shutdown().await; // brakes what moves, and closes the connection
+//!     robot.shutdown().await; // brakes the arm, and closes the connection
 //!     Ok(())
 //! }
 //! ```
@@ -336,7 +336,7 @@
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; conditions that end a motion |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | motions of several arms, with one stop for all |
-//! | [`state`] | every state, or the newest state as it changes; external wrenches without the offset of an untouched arm |
+//! | [`state`] | every state, or the newest state as it changes; external wrenches after a tare |
 //! | [`error`], [`diagnosis`] | errors, grouped by who can act on them; why the robot ended a motion |
 //! | [`supervision`] | automatic reconnects, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by code of the program |
@@ -351,7 +351,7 @@
 //! | `cassette` | sessions recorded byte for byte, and played back as the robot (features `record`, `pcap`) |
 //! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
-//! | [`connection::lease`] | the right of one client of a service at a time to move the arm |
+//! | [`connection::lease`] | the right to move the arm, which one client of a service has at a time |
 //! | `connection::admission` | checks of the clients of a service (feature `admission`) |
 //! | `blocking` | calls for programs without async (feature `blocking`) |
 //!

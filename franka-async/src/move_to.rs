@@ -92,10 +92,10 @@ impl Robot {
         self.move_to(q.into())
     }
 
-    /// Returns a motion of the end effector by `offset` from the target, or from the measured pose
-    /// if no motion is under way. Apart from that, it is like [`Self::move_to`]. For several such
-    /// motions in a row, [engage](Self::engage) the arm, because the arm moves a little whenever it
-    /// is released.
+    /// Returns a motion of the end effector by `offset` from the present target, or from the
+    /// measured pose if no motion is under way. Apart from that, it is like [`Self::move_to`]. For
+    /// several such motions in a row, [engage](Self::engage) the arm, because the arm moves a
+    /// little whenever it is released.
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -142,8 +142,8 @@ impl Motion {
     /// the straight line of [`Robot::move_to`]. The end effector then moves along a curve, so check
     /// for obstacles near the line. [`Self::preview`] shows the path. If the joints have no path to
     /// the pose either, the motion is refused as
-    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine). In a session that commands poses to
-    /// the robot's own controller, the motion is refused as
+    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine). In a session that sends poses to the
+    /// robot's own controller, the motion is refused as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     ///
     /// This option has no effect on motions through waypoints, on motions of joints, and on motions
@@ -343,10 +343,10 @@ impl MotionHandle {
         self.0.cancel();
     }
 
-    /// Makes the arm stop on its way until [`Self::resume`], within the limits of the motion, and
-    /// on its line if it follows one. During the pause, the arm is held at the place where it
-    /// stopped. If the motion has not begun, the arm is held at the start of the motion. A pause
-    /// has no effect after the end of the motion, or once a newer goal has come.
+    /// Stops the arm on its way, and holds it there until [`Self::resume`]. The arm brakes within
+    /// the limits of the motion, and stays on its line if it follows one. If the motion has not
+    /// begun, the arm is held at the start of the motion. A pause has no effect after the end of
+    /// the motion, or once a newer goal has come.
     ///
     /// The pause is part of the [duration](franka_rt::lifecycle::MotionReport::duration) of the
     /// motion, of its [`Progress::elapsed`], and of every time limit that the program sets.

@@ -107,10 +107,11 @@ macro_rules! goal_options {
 
         /// Limits the force of the springs and dampers at the end effector, `[N]`, to a value
         /// between 5 and 200. The default is the cap of the session, or
-        /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). The weight of an
-        /// undeclared load counts: if it exceeds the cap, the arm sinks and the motion does not
-        /// arrive. [`Backend::RobotController`](crate::goal::Backend::RobotController) cannot limit
-        /// the force, so it refuses this option.
+        /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). The springs also
+        /// carry the weight of an undeclared load: if it exceeds the cap, the arm sinks and the
+        /// motion does not arrive.
+        /// [`Backend::RobotController`](crate::goal::Backend::RobotController) cannot limit the
+        /// force, so it refuses this option.
         pub fn force_cap(mut self, newtons: f64) -> Self {
             self.options.tuning.force_cap = Some(crate::goal::ForceCap::Newtons(newtons));
             self
@@ -124,7 +125,7 @@ macro_rules! goal_options {
             self
         }
 
-        /// Sets how far the reference may be ahead of the arm, between
+        /// Sets how far the reference (the commanded motion) may be ahead of the arm, between
         /// [`Leash::LEAST`](crate::goal::Leash::LEAST) and
         /// [`Leash::MOST`](crate::goal::Leash::MOST). The defaults are 25 mm and 0.15 rad for the
         /// end effector, and 0.1 rad for each joint. If the arm is blocked, its springs are
@@ -146,11 +147,11 @@ macro_rules! goal_options {
 
         /// Sets the posture that the arm approaches while it moves to poses and holds them: joint
         /// positions, `[rad]`. The posture acts in the null space, so it does not change the pose
-        /// of the end effector. The elbow uses at most half of the joints' budget, and an awaited
-        /// motion arrives only when the elbow rests, too. By default, the elbow stays near its
-        /// position at the start of the motion or session. An engaged arm keeps its posture until a
-        /// different one is set. Positions out of range are refused as
-        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// of the end effector. The elbow uses at most half of the limits in the joints'
+        /// [`Budget`](crate::goal::Budget). An awaited motion arrives only when the elbow rests,
+        /// too. By default, the elbow stays near its position at the start of the motion or
+        /// session. An engaged arm keeps its posture until a different one is set. Positions out of
+        /// range are refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self
@@ -167,18 +168,17 @@ macro_rules! goal_options {
             self
         }
 
-        /// Sets the distance from the target at which the arm has arrived; for a stream, the
-        /// distance from its last target. The default is the accuracy of the control law, or of the
-        /// robot's controller, on an arm with friction: see
-        /// [`Tolerance::of`](crate::goal::Tolerance::of) and
-        /// [`Tolerance::under`](crate::goal::Tolerance::under).
+        /// Sets how close to the target the arm must be to have arrived; for a stream, how close to
+        /// its last target. The default is the accuracy of the control law, or of the robot's
+        /// controller, on an arm with friction: see [`Tolerance::of`](crate::goal::Tolerance::of)
+        /// and [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
             self
         }
 
-        /// Sets how long the arm must rest at the target before it has arrived, and the time limit
-        /// for this wait. The defaults are 250 ms and 5 s.
+        /// Sets how long the arm must rest at the target before it counts as arrived, and the time
+        /// limit for this wait. The defaults are 250 ms and 5 s.
         pub fn settling(mut self, settling: crate::goal::Settling) -> Self {
             self.options.settling = Some(settling);
             self

@@ -1,4 +1,4 @@
-//! Conversions of poses between programs, and rotations of poses in place.
+//! Converts poses from and to the formats of other programs, and rotates poses in place.
 //!
 //! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`; for most tasks,
 //! multiply poses. `start` is a pose of the end effector in the base frame:

@@ -7,7 +7,7 @@ use franka_rt::driver::{ReferenceReader, ReferenceState};
 use franka_rt::session::{Bindings, GoalId, Target};
 use nalgebra::Isometry3;
 
-/// Reference of target control in the newest cycle.
+/// Reference of target control: the commanded motion in the newest cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {

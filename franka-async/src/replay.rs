@@ -25,9 +25,10 @@ use crate::robot::Robot;
 pub struct ReplayReport {
     /// Time from the first target to the last.
     pub duration: Duration,
-    /// Largest distance of any joint from its recorded position, in each state, `[rad]`.
+    /// Distance of the joints from their recorded positions, `[rad]`: in each state, of the joint
+    /// that is furthest off.
     pub joints: Spread,
-    /// Distance of the end effector from its recorded position, `[m]`.
+    /// Distance of the end effector from its recorded position in each state, `[m]`.
     pub position: Spread,
     /// Number of states that were compared.
     pub states: usize,

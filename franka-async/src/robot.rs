@@ -118,7 +118,7 @@ impl Robot {
     /// no further connection will follow. To receive every state, use [`Self::state_stream`] or
     /// [`Self::read`].
     ///
-    /// The receiver begins with the state that is newest at the call. As long as a [`States`]
+    /// The receiver begins with the newest state at the time of the call. As long as a [`States`]
     /// exists, a task is woken for every state; drop it when it is no longer needed.
     pub fn states(&self) -> States {
         let link = self.link();

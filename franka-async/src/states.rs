@@ -66,7 +66,7 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
     /// Returns [`ReadError::ConnectionClosed`] if the connection has ended.
     ///
     /// # Cancel safety
-    /// A later call tests none of the earlier states again, except the newest.
+    /// If the future is dropped, a later call begins with the newest state.
     pub async fn wait_for(
         &mut self,
         mut condition: impl FnMut(&S) -> bool,

@@ -56,7 +56,7 @@ type Outcome = Result<MotionReport, MotionError>;
 /// in which they were given.
 ///
 /// The [`arms`](Self::arms) can also be moved alone. Such a motion does not wait for the other
-/// arms, and its end does not affect them. But every motion of a member, also one outside a team
+/// arms, and its end does not affect them. But every motion of a member, even outside a team
 /// motion, brakes when the team is stopped. It also brakes when the session of another member ends
 /// in any way other than [`Arm::disengage`]. A motion that begins later is not affected.
 ///
@@ -293,8 +293,8 @@ impl MemberMotion {
 /// the newer team motion begins.
 ///
 /// # Cancel safety
-/// Dropping the future, at any time, brakes all arms, each within two of its cycles; the arms hold
-/// where they stop. Dropping it before the first poll has no effect.
+/// Dropping the future, at any time, brakes all arms, each within two of its cycles; the arms are
+/// then held where they stop. Dropping it before the first poll has no effect.
 ///
 /// # Panics
 /// Panics if polled after it has resolved, as futures may.

@@ -15,15 +15,15 @@
 //! one.
 //!
 //! An open connection alone does not keep the lease: call [`Holder::keep_alive`] only for messages
-//! of the client's own program. When these calls stop, two clocks notice the silence. On the
-//! robot's clock, the control thread brakes the arm, even if the rest of the process hangs. On the
-//! host's clock, the lease becomes free, and later requests of the former holder are refused.
+//! of the client's own program. When these calls stop, the silence is measured by two clocks. By
+//! the robot's clock, the control thread brakes the arm, even if the rest of the process hangs. By
+//! the host's clock, the lease becomes free, and later requests of the former holder are refused.
 //!
-//! The lease binds clients, not the program itself: a motion that the program begins needs no
-//! lease. Nor does [`Robot::stop`], which is open to every client.
+//! The lease restricts clients, not the program itself: a motion that the program begins needs no
+//! lease. [`Robot::stop`] needs no lease either, so the service can offer it to every client.
 //!
-//! Methods take the time as an argument, so that a test needs no clock. A time before the newest
-//! one counts as the newest one.
+//! Methods take the time as an argument, so a test needs no clock. A time that is earlier than in a
+//! previous call is replaced by the latest time so far.
 //!
 //! # Example
 //!

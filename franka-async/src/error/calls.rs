@@ -20,11 +20,11 @@ pub enum CommandError {
     /// Robot: it refused the command, or did not complete it.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Caller: the robot does not accept a number. Nothing has changed. A load that is impossible
-    /// for a rigid body also returns this error, before it is sent.
+    /// Caller: the robot does not accept a number. Nothing has changed. This is also the error for
+    /// a load that is impossible for a rigid body. Such a load is not sent.
     #[error("{refusal} ({why})")]
     InvalidArgument {
-        /// The robot's answer, or the answer that it would have given.
+        /// The robot's answer, or the answer that the robot would have given.
         refusal: Refusal,
         /// The value that was given, and the documented range.
         why: String,

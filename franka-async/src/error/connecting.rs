@@ -23,12 +23,12 @@ use crate::endpoint::EndpointError;
 const IGNORE: &str =
     " (for a simulator, use `Realtime::Ignore`, or in Python `realtime=\"ignore\"`)";
 
-/// Reason why a connection to a robot failed, or to a different device if `P` names one. Everything
-/// that was opened is closed again, and the program may retry.
+/// Reason why a connection to a device failed. `P` is the protocol of the device: by default, of a
+/// robot. Everything that was opened is closed again, and the program may retry.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: the operating system refuses a request of real-time control, see
+    /// Host: the control thread cannot run in real time, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
@@ -83,7 +83,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: connecting failed in any other way.
     #[error("libfranka: Connection error: {reason}")]
     Network {
-        /// Class of the failure.
+        /// Kind of failure.
         reason: String,
     },
     /// Robot or link: the host name has several addresses, and connecting failed for each of them.

@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | `franka_build_info` | info | `version`; without `robot` |
 //! | `franka_connected` | gauge, 0 or 1 | |
-//! | `franka_ready` | gauge, whether the robot takes motions | |
+//! | `franka_ready` | gauge, 1 if the robot accepts motions | |
 //! | `franka_robot_mode` | gauge, 1 for the mode of the newest state | `mode` |
 //! | `franka_error_active` | gauge, 1 for each error of the newest state | `error` |
 //! | `franka_success_ratio` | gauge, the robot's `control_command_success_rate` | |
@@ -19,14 +19,14 @@
 //! | `franka_motions_total` | counter, motions that have ended, and goals of sessions that have ended | `outcome` |
 //! | `franka_reflexes_total` | counter, reflexes by error; a reflex with several errors counts once for each error | `reason` |
 //! | `franka_recoveries_total`, `franka_reconnects_total` | counter, recoveries and reconnects by the supervisor | |
-//! | `franka_recovery_seconds`, `franka_reconnect_seconds` | gauge, duration of the newest; no sample before the first | |
-//! | `franka_cycles_total` | counter, states that the control thread took up | |
-//! | `franka_commands_total`, `franka_commands_late_total` | counter; late: after the next state was due | |
+//! | `franka_recovery_seconds`, `franka_reconnect_seconds` | gauge, duration of the newest recovery or reconnect; no sample before the first one | |
+//! | `franka_cycles_total` | counter, states that the control thread processed | |
+//! | `franka_commands_total`, `franka_commands_late_total` | counter, commands; late ones were sent after the next state was due | |
 //! | `franka_states_lost_total`, `franka_states_skipped_total`, `franka_states_stale_total` | counter | |
 //! | `franka_datagrams_refused_total` | counter | `reason`: `foreign`, `malformed` |
 //! | `franka_socket_errors_total` | counter | `call`: `receive`, `send` |
 //! | `franka_state_interval_seconds`, `franka_cycle_turnaround_seconds` | histogram | |
-//! | `franka_cycle_slack_seconds` | gauge, the least so far; negative for an overrun | |
+//! | `franka_cycle_slack_seconds` | gauge, the shortest time so far from a command until the next state was due; negative if a command was late | |
 //!
 //! The control thread's own histograms have finer buckets with other bounds. Therefore a bucket
 //! here counts all durations up to 15/16 of its bound, some of the durations up to the bound, and
@@ -63,15 +63,16 @@ impl Robot {
 }
 
 /// The metrics of one or more robots. An exporter holds a handle of each robot. If it holds the
-/// last handle, the connection ends when the exporter is dropped, or by [`Robot::shutdown`].
+/// last handle, the connection ends when the exporter is dropped, or when [`Robot::shutdown`] is
+/// called.
 #[derive(Clone, Debug)]
 pub struct Exporter {
     robots: Vec<(String, Robot)>,
 }
 
 impl Exporter {
-    /// Returns the metrics of these robots. Each comes with its value of the label `robot`. The
-    /// values must be distinct, and should be the same in every run of the program.
+    /// Returns the metrics of these robots. Each robot comes with its value of the label `robot`.
+    /// The values must be distinct, and should be the same in every run of the program.
     pub fn new<L: Into<String>>(robots: impl IntoIterator<Item = (L, Robot)>) -> Self {
         let robots = robots.into_iter();
         Self {

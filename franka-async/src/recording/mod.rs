@@ -163,8 +163,8 @@ impl Recorder {
     ///
     /// # Errors
     /// Returns [`RecordError::Live`] if the server cannot listen at its address,
-    /// [`RecordError::Option`] if an option is out of range, and [`RecordError::Ended`] after the
-    /// end.
+    /// [`RecordError::Option`] if an option is out of range, and [`RecordError::Ended`] if the
+    /// recording has ended.
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
         self.inner.serve(live)
@@ -223,7 +223,8 @@ impl Recorder {
         })
     }
 
-    /// Records the arms of a team, each as [`Self::attach`] does, with the member number of each.
+    /// Records the arms of a team, each as [`Self::attach`] does. A remark in the recording states
+    /// which member of the team each arm is.
     ///
     /// # Errors
     /// Returns the errors of [`Self::attach`]. Members before the failed member stay attached.

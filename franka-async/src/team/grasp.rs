@@ -9,19 +9,20 @@ use crate::move_to::Motion;
 use crate::robot::Pose;
 
 /// An object that all arms of a team hold, each in its hand. The destinations of motions are poses
-/// of the object. The poses of the hands relative to each other stay. [`Team::grasp`] makes one.
+/// of the object. The poses of the hands relative to each other do not change. [`Team::grasp`]
+/// returns such an object.
 ///
 /// Every real-time thread plans the same path of the object, with the same limits, and its own arm
 /// follows the path. The springs and the [force cap](Motion::force_cap) of each arm act at its
 /// hand. Except for inertia, the cap of an arm therefore limits the force between the arm and the
 /// object, and the force with which two arms pull at each other.
 ///
-/// An arm that an obstacle or its own limits hold back delays the others. While it is 15 mm behind
-/// its reference, all references stop on their lines, decelerating at 2.5 m/s^2. For rotations, a
-/// radian counts as 0.2 m. A reference that is more than 2 mm ahead of any other reference waits
-/// until the other one has caught up. If an arm does not catch up within 5 s, it stops, and its
-/// motion ends as [`MotionError::TargetNotReached`]. The motions of the other arms then end with an
-/// error, too.
+/// If an obstacle or its own limits hold back one arm, this arm delays the others. While it is 15
+/// mm behind its reference, all references stop on their lines, decelerating at 2.5 m/s^2. For
+/// rotations, a radian counts as 0.2 m. A reference that is more than 2 mm ahead of any other
+/// reference waits until the other one has caught up. If an arm does not catch up within 5 s, it
+/// stops, and its motion ends as [`MotionError::TargetNotReached`]. The motions of the other arms
+/// then end with an error, too.
 ///
 /// No arm knows exactly where its hand is, so the arms hold each other slightly away from their
 /// targets. By default, an arm that stops within 5 mm and 10 mrad of its target has arrived.

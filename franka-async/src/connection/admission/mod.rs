@@ -79,7 +79,7 @@ pub enum Refused {
     /// Without a token, only requests from this computer are answered.
     #[error(
         "got a request from another computer ({why}), expected one from this computer: start the \
-         service with a token to admit others"
+         service with a token to admit other computers"
     )]
     NeedsToken {
         /// Sign that the request comes from another computer.
@@ -160,9 +160,9 @@ impl Admission {
         }
     }
 
-    /// Checks a request that changes nothing and whose answer is not secret, such as for a file of
-    /// a page. `Origin` and the token are not checked, because other sites may link to the page,
-    /// and the page may then ask for the token.
+    /// Checks a request that changes nothing and whose answer is not secret, such as a request for
+    /// a file of a web page. `Origin` and the token are not checked, because other sites may link
+    /// to the page, and the page may then ask for the token.
     ///
     /// # Errors
     /// Returns [`Refused`], but never [`Refused::Origin`] or [`Refused::Token`].

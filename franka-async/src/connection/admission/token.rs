@@ -25,7 +25,7 @@ pub enum TokenError {
         got: usize,
     },
     /// The text contains a character that addresses and headers do not transmit unchanged.
-    #[error("the token has the character {got:?}, expected letters, digits and - _ . ~")]
+    #[error("the token contains the character {got:?}, expected letters, digits and - _ . ~")]
     Character {
         /// The first such character of the text.
         got: char,
@@ -96,9 +96,9 @@ impl Token {
         Self::new(text.trim())
     }
 
-    /// Reads the token from `file`, or without a file, from the environment variable
-    /// [`TOKEN_VARIABLE`]. Returns `None` if neither is given. Services should not take a token as
-    /// an argument: every user of the computer can read the arguments of its programs.
+    /// Reads the token from `file`. If there is no `file`, reads it from the environment variable
+    /// [`TOKEN_VARIABLE`]. Returns `None` if neither is set. Services should not take a token as an
+    /// argument: every user of the computer can read the arguments of its programs.
     ///
     /// # Errors
     /// Returns the errors of [`Self::from_file`], and [`TokenError::Variable`] if the variable is
@@ -156,11 +156,11 @@ mod tests {
             ),
             (
                 "comma,comma,comma",
-                "the token has the character ',', expected letters, digits and - _ . ~",
+                "the token contains the character ',', expected letters, digits and - _ . ~",
             ),
             (
                 "  white    space  ",
-                "the token has the character ' ', expected letters, digits and - _ . ~",
+                "the token contains the character ' ', expected letters, digits and - _ . ~",
             ),
         ] {
             let got = Token::new(text).expect_err(text).to_string();
