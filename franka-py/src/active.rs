@@ -21,13 +21,12 @@ use crate::operation::Operation;
 use crate::robot::Robot;
 use crate::state::RobotState;
 
-/// A motion under active control: from the first `read_once()` on, the thread that calls it is the
-/// control cycle. Each state must be answered within the millisecond. A thread that neither reads
-/// nor writes leaves the robot without commands, and the robot then stops. Commands pass no filter
-/// and no limiter.
+/// A motion under active control: from the first `read_once()` on, the thread that calls it runs
+/// the control cycle. The thread must answer each state within the millisecond. If it neither reads
+/// nor writes, the robot receives no commands and stops. Commands are neither filtered nor limited.
 ///
-/// As a context manager it stops the robot at the end of the block, unless the last command was
-/// written before. Only one thread at a time may use it.
+/// As a context manager, it stops the robot at the end of the block, unless the last command has
+/// been written. Only one thread at a time may use it.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct ActiveControl {
     kind: CommandKind,
@@ -159,8 +158,8 @@ impl ActiveControl {
     /// of joint 4.
     ///
     /// Raises `ValueError` for numbers that are not finite or of the wrong shape. Raises
-    /// `ActiveError` for a command that cannot be sent; others may follow. Raises `MotionError` if
-    /// the robot ended the motion in another way than requested.
+    /// `ActiveError` if the command cannot be sent; the motion then continues. Raises `MotionError`
+    /// if the motion ended for any reason other than the last command.
     #[pyo3(signature = (command, finished = false, *, torques = None, elbow = None))]
     fn write_once(
         &self,
@@ -186,8 +185,8 @@ impl ActiveControl {
         Ok(report.map(Report))
     }
 
-    /// Stops the robot, unless the last command was written before. Waits for a call of another
-    /// thread.
+    /// Stops the robot, unless the last command has been written. First waits until a call of
+    /// another thread has returned.
     fn stop(&self, py: Python<'_>) {
         py.detach(|| {
             let mut guard = self.cycle.lock().unwrap_or_else(PoisonError::into_inner);

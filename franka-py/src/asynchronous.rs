@@ -14,7 +14,7 @@ use crate::operation::Operation;
 use crate::robot::Robot;
 
 /// A motion between sparse joint targets that the robot itself plans. Any thread may set targets.
-/// `stop()`, or dropping it, stops the robot.
+/// The robot stops if you call `stop()` or drop this object.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct AsynchronousControl {
     /// `None` once it was stopped or finished.
@@ -74,7 +74,7 @@ impl AsynchronousControl {
         Ok((status.python_name(), reason))
     }
 
-    /// Waits until the newest target is reached. Raises the reason if the motion ends before.
+    /// Waits until the newest target is reached. Raises the reason if the motion ends earlier.
     /// Cancelling does not stop the robot.
     fn reached(&self) -> PyResult<Operation> {
         let control = self.control()?;
@@ -83,7 +83,7 @@ impl AsynchronousControl {
         }))
     }
 
-    /// Stops the robot. Without effect once it was stopped.
+    /// Stops the robot. A second call has no effect.
     fn stop(&self, py: Python<'_>) {
         let control = self.take();
         py.detach(|| drop(control));

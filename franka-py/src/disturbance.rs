@@ -81,10 +81,10 @@ fn touch(
 impl Sim {
     /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its
     /// axes, m. The push has a force, base axes, N, and a torque, N m, and lasts for `duration`
-    /// seconds of the robot's clock; until it is released if `None`. It begins now. With
-    /// `once_moving` it begins in the millisecond in which a joint is faster than 0.05 rad/s: in
-    /// virtual time, a motion may be over before a program sees it move. Without a motion it never
-    /// begins: see `waiting`.
+    /// seconds of the robot's clock; if `None`, until it is released. It begins now. With
+    /// `once_moving` it begins in the millisecond in which a joint becomes faster than 0.05 rad/s.
+    /// Use this in virtual time, where a motion can be over before a program sees the arm move.
+    /// Without a motion, the push never begins: see `waiting`.
     #[pyo3(signature = (force, torque = None, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn push(
         this: &Bound<'_, Self>,
@@ -101,7 +101,7 @@ impl Sim {
         touch(this, wrench, Some((at, offset)), (duration, once_moving))
     }
 
-    /// Pushes the joints with torques, 7 numbers, N m; otherwise like `push`.
+    /// Pushes the joints with torques, 7 numbers, N m. Apart from that, it is like `push`.
     #[pyo3(signature = (torques, *, duration = None, once_moving = false))]
     fn push_joints(
         this: &Bound<'_, Self>,
@@ -283,8 +283,8 @@ impl Sim {
         self.robot(py, move |robot| robot.attach(body))
     }
 
-    /// True pose of the end effector, base frame, `(4, 4)`: the robot's own joint sensors may
-    /// deviate.
+    /// True pose of the end effector, base frame, `(4, 4)`: the pose that the robot reports can
+    /// deviate, because its joint sensors have errors.
     fn true_pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pose = self.robot(py, |robot| robot.true_pose())?;
         Ok(pose_array(py, &pose))

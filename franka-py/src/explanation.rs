@@ -128,7 +128,7 @@ impl Explanation {
         self.0.cause.as_ref().map(|cause| &*cause.text)
     }
 
-    /// The errors named by the robot; none if a guard or a lost link ended the motion.
+    /// The errors named by the robot; empty if a guard or a lost link ended the motion.
     #[getter]
     fn errors(&self) -> Vec<String> {
         let cause = self.0.cause.as_ref();

@@ -39,7 +39,7 @@ pub(crate) fn motion(
 #[pymethods]
 impl Robot {
     /// A motion of the end effector to `target` in the base frame. A pose is `(4, 4)`, or 3 + 4
-    /// numbers with a quaternion `x y z w`, which may be a pair. 3 numbers are a position, reached
+    /// numbers with a quaternion `x y z w`, which can be a pair. 3 numbers are a position, reached
     /// with constant orientation. `(3, 3)` or 4 numbers are an orientation. `Joints` are joint
     /// positions. The path to a pose is a straight line.
     ///

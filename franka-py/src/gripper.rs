@@ -34,8 +34,8 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 #[pymethods]
 impl Robot {
     /// The Franka Hand of this robot, at its host and the port after the robot's, not yet
-    /// connected: `async with robot.gripper() as gripper:`. The Hand of a simulator on a free port
-    /// has another port, and another program may listen at this one: use
+    /// connected: `async with robot.gripper() as gripper:`. If a simulator listens on a free port,
+    /// its Hand has a different port, and another program could listen at this one. Then use
     /// `Gripper(sim.hand_address)` of a `Sim` with `hand=True`.
     fn gripper(&self) -> Gripper {
         Gripper::new(self.beside(1))

@@ -49,7 +49,7 @@ impl Arm {
     ///
     /// `speed` is 0.01 to 1, as a share of the recorded speed. `source` is `reference`, the
     /// commanded positions, or `measured`, the measured positions: for arms that were moved by
-    /// hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow may
+    /// hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow can
     /// differ.
     ///
     /// Raises `ReplayError` for a motion that is invalid for this arm, before the arm moves, and of

@@ -27,15 +27,15 @@ use crate::supervision::supervise_by;
 ///
 /// Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
 /// scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
-/// `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
-/// `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to
-/// each step of connecting. `link_timeout` is the silence of the robot after which a motion fails
-/// with `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy
-/// hosts. `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the
-/// vendor's constants instead of the robot's description. `accept_geometry_error` connects to a
-/// robot whose poses have another geometry than its model; `geometry_residual` is the difference.
-/// `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default
-/// one: lost connections are restored, and the robot is recovered according to the policy.
+/// `priority` (1 to 99) and `cpu` apply to the control thread, not to threads of Python. `version`
+/// is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to each step
+/// of connecting. `link_timeout` is the silence of the robot after which a motion fails with
+/// `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy hosts.
+/// `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the vendor's
+/// constants instead of the robot's description. `accept_geometry_error` connects to a robot whose
+/// poses have another geometry than its model; `geometry_residual` is the difference. `known` is an
+/// `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default one: lost
+/// connections are restored, and the robot is recovered according to the policy.
 /// `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
 /// and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
 #[pyclass(frozen, module = "franka_async")]

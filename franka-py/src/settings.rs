@@ -25,8 +25,8 @@ impl Robot {
     ///
     /// The vendor does not document their ranges. The simulator refuses negative values.
     ///
-    /// Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses it. Once begun,
-    /// the robot may execute it even if it is cancelled.
+    /// Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses the request.
+    /// Once the request has begun, the robot can execute it even if you cancel.
     #[pyo3(signature = (*thresholds, **named))]
     fn set_collision_behavior(
         &self,

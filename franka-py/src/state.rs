@@ -15,7 +15,7 @@ use crate::names::Named;
 /// effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with the
 /// translation in the last column.
 ///
-/// It is immutable. Each array is a new one, which the program may change.
+/// The state is immutable. Each access returns a new array, which the program may change.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct RobotState {

@@ -13,8 +13,8 @@ use crate::stream::stream;
 #[pymethods]
 impl Robot {
     /// Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
-    /// the robot's clock, if given. States that arrive while the program is busy are skipped for
-    /// the newest. Ends with the connection.
+    /// the robot's clock, if given. If several states arrive while the program is busy, only the
+    /// newest is returned. Ends with the connection.
     #[pyo3(signature = (rate = None))]
     fn states<'py>(&self, py: Python<'py>, rate: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
@@ -43,8 +43,8 @@ impl Robot {
     }
 
     /// Every state from now on, each once and in order, for `async for` or `for`: pairs of the
-    /// state and the number of states `missed` before it. A program may lag about a second behind
-    /// before it misses any. Ends with the connection.
+    /// state and the number of states `missed` before it. No state is missed unless the program is
+    /// more than about a second behind. Ends with the connection.
     fn state_stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
         let version = robot.version();

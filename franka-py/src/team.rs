@@ -64,7 +64,7 @@ impl Team {
     /// Begins a session for each robot, like `Robot.engage`, with the same options for all:
     /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
     /// returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
-    /// `MotionError` of the first arm that could not be engaged; the others are then released.
+    /// `MotionError` of the first arm that could not be engaged; the other arms are then released.
     /// Cancelling ends all sessions.
     #[staticmethod]
     #[pyo3(signature = (*robots, silence = SILENCE.as_secs_f64(), **options))]
@@ -107,7 +107,7 @@ impl Team {
     }
 
     /// A motion of all arms, each to its own target as in `Arm.move_to`, with the same options for
-    /// all.
+    /// all arms.
     #[pyo3(signature = (targets, **options))]
     fn move_to(
         &self,
@@ -127,11 +127,11 @@ impl Team {
         self.joint("Team.move_to", motions)
     }
 
-    /// A motion of all arms: `motions` has one motion of each arm, in their order,
+    /// A motion of all arms: `motions` contains one motion for each arm, in the order of the arms,
     /// `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`; do not await these motions themselves.
-    /// All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`: it begins
-    /// with the first target, and the motion ends when the others have arrived and the `Latest` is
-    /// closed.
+    /// All motions begin together. An arm can also follow a `Latest`,
+    /// `team.arms[1].follow(latest)`: this arm begins with the first target. The team motion ends
+    /// when the other arms have arrived and the `Latest` is closed.
     fn run(&self, motions: Vec<Bound<'_, PyAny>>) -> PyResult<Operation> {
         self.check_count("motions", motions.len())?;
         let arms = self.arms.iter().map(|arm| &arm.get().told);
@@ -139,16 +139,16 @@ impl Team {
         self.joint("Team.run", motions)
     }
 
-    /// Brakes all arms, each within two of its cycles. Never waits, usable on any thread. Motions
-    /// raise; the sessions continue and hold the arms. A joint motion that begins before every arm
-    /// has seen the stop does not start, and raises in the same way.
+    /// Brakes all arms, each within two of its cycles. Never waits, and can be called from any
+    /// thread. Motions raise; the sessions continue and hold the arms. A team motion that begins
+    /// before every arm has seen the stop does not start, and raises in the same way.
     fn stop(&self) {
         with_team!(&**self.members, team => team.stop());
     }
 
     /// Brakes all arms like `stop`, ends their sessions and latches the stop of each robot: see
-    /// `Robot.latch_stop`. Waits until all are at rest, and raises `MotionError` of the first arm
-    /// that was not seen to be at rest.
+    /// `Robot.latch_stop`. Waits until all are at rest, and raises the `MotionError` of the first
+    /// arm that was not seen at rest.
     fn latch_stop(&self) -> Operation {
         let members = Arc::clone(&self.members);
         Operation::new("Team.latch_stop", async move {

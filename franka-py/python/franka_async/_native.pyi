@@ -38,7 +38,7 @@ class RobotState:
     effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with the
     translation in the last column.
 
-    It is immutable. Each array is a new one, which the program may change.
+    The state is immutable. Each access returns a new array, which the program may change.
     """
 
     FLAT_LAYOUT: ClassVar[list[tuple[str, int, int]]]
@@ -569,7 +569,8 @@ class AxisLimits:
     """Largest velocity, acceleration and jerk of each axis, in both directions. The program chooses
     the units: rad or m, per second and its powers.
 
-    Each is one number for all axes or one for each, `(n,)`; all must be positive and finite.
+    Each limit is one number for all axes, or one number for each axis, `(n,)`; all must be positive
+    and finite.
     """
 
     def __new__(cls, velocity: ArrayLike, acceleration: ArrayLike, jerk: ArrayLike) -> AxisLimits: ...
@@ -635,9 +636,10 @@ def plan_trajectory(
     64. Without a target, `None`, to rest as early as possible.
 
     The motion may begin with `start_velocity` and `start_acceleration`, and pass the target with
-    `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; it stops behind a
-    target in motion. All axes are at the target at the same time: with `synchronisation` `straight`
-    on a straight line if the start state allows one, with `time` each on its own path.
+    `target_velocity` and `target_acceleration`, `(n,)` each, zero by default. If the target has a
+    velocity, the motion passes it and stops behind it. All axes are at the target at the same time.
+    With `synchronisation` `straight`, they move on a straight line if the start state allows it;
+    with `time`, each axis moves on its own path.
 
     `ValueError` for shapes that do not match, numbers that are not finite, and a target that moves
     faster than the limits allow.
@@ -694,7 +696,7 @@ class VirtualRobots:
     def state(self, index: int) -> RobotState:
         """Newest state of robot `index`."""
     def errors(self, index: int) -> list[str]:
-        """The errors that stopped robot `index`, by the vendor's names; none while it moves."""
+        """The errors that stopped robot `index`, by the vendor's names; empty while it moves."""
     def push(self, index: int, wrench: ArrayLike, duration: int) -> None:
         """Pushes the end effector of robot `index` with `wrench`, `(6,)` N and N m in base axes, for
         this number of milliseconds of its time.
@@ -707,13 +709,12 @@ _Command: TypeAlias = Literal[
 
 @final
 class ActiveControl:
-    """A motion under active control: from the first `read_once()` on, the thread that calls it is the
-    control cycle. Each state must be answered within the millisecond. A thread that neither reads
-    nor writes leaves the robot without commands, and the robot then stops. Commands pass no filter
-    and no limiter.
+    """A motion under active control: from the first `read_once()` on, the thread that calls it runs
+    the control cycle. The thread must answer each state within the millisecond. If it neither reads
+    nor writes, the robot receives no commands and stops. Commands are neither filtered nor limited.
 
-    As a context manager it stops the robot at the end of the block, unless the last command was
-    written before. Only one thread at a time may use it.
+    As a context manager, it stops the robot at the end of the block, unless the last command has
+    been written. Only one thread at a time may use it.
     """
 
     def read_once(self) -> tuple[RobotState, float]:
@@ -741,12 +742,12 @@ class ActiveControl:
         of joint 4.
 
         Raises `ValueError` for numbers that are not finite or of the wrong shape. Raises
-        `ActiveError` for a command that cannot be sent; others may follow. Raises `MotionError` if
-        the robot ended the motion in another way than requested.
+        `ActiveError` if the command cannot be sent; the motion then continues. Raises `MotionError`
+        if the motion ended for any reason other than the last command.
         """
     def stop(self) -> None:
-        """Stops the robot, unless the last command was written before. Waits for a call of another
-        thread.
+        """Stops the robot, unless the last command has been written. First waits until a call of
+        another thread has returned.
         """
     def __enter__(self) -> ActiveControl: ...
     def __exit__(self, *_exception: object) -> None: ...
@@ -754,7 +755,7 @@ class ActiveControl:
 @final
 class AsynchronousControl:
     """A motion between sparse joint targets that the robot itself plans. Any thread may set targets.
-    `stop()`, or dropping it, stops the robot.
+    The robot stops if you call `stop()` or drop this object.
     """
 
     def set_target(self, q: ArrayLike) -> None:
@@ -766,11 +767,11 @@ class AsynchronousControl:
         reason if it was aborted.
         """
     def reached(self) -> Operation[None]:
-        """Waits until the newest target is reached. Raises the reason if the motion ends before.
+        """Waits until the newest target is reached. Raises the reason if the motion ends earlier.
         Cancelling does not stop the robot.
         """
     def stop(self) -> None:
-        """Stops the robot. Without effect once it was stopped."""
+        """Stops the robot. A second call has no effect."""
     def __enter__(self) -> AsynchronousControl: ...
     def __exit__(self, *_exception: object) -> None: ...
 
@@ -920,15 +921,15 @@ class Robot:
 
     Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
     scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
-    `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
-    `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to
-    each step of connecting. `link_timeout` is the silence of the robot after which a motion fails
-    with `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy
-    hosts. `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the
-    vendor's constants instead of the robot's description. `accept_geometry_error` connects to a
-    robot whose poses have another geometry than its model; `geometry_residual` is the difference.
-    `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default
-    one: lost connections are restored, and the robot is recovered according to the policy.
+    `priority` (1 to 99) and `cpu` apply to the control thread, not to threads of Python. `version`
+    is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to each step
+    of connecting. `link_timeout` is the silence of the robot after which a motion fails with
+    `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy hosts.
+    `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the vendor's
+    constants instead of the robot's description. `accept_geometry_error` connects to a robot whose
+    poses have another geometry than its model; `geometry_residual` is the difference. `known` is an
+    `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default one: lost
+    connections are restored, and the robot is recovered according to the policy.
     `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
     and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
     """
@@ -982,13 +983,13 @@ class Robot:
         """
     def states(self, rate: float | None = None) -> Stream[RobotState]:
         """Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
-        the robot's clock, if given. States that arrive while the program is busy are skipped for
-        the newest. Ends with the connection.
+        the robot's clock, if given. If several states arrive while the program is busy, only the
+        newest is returned. Ends with the connection.
         """
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
-        state and the number of states `missed` before it. A program may lag about a second behind
-        before it misses any. Ends with the connection.
+        state and the number of states `missed` before it. No state is missed unless the program is
+        more than about a second behind. Ends with the connection.
         """
     def pose(self) -> _Array:
         """Measured pose of the end effector in the base frame, `(4, 4)`, from the newest state."""
@@ -1031,7 +1032,7 @@ class Robot:
         """
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> Motion:
         """A motion of the end effector to `target` in the base frame. A pose is `(4, 4)`, or 3 + 4
-        numbers with a quaternion `x y z w`, which may be a pair. 3 numbers are a position, reached
+        numbers with a quaternion `x y z w`, which can be a pair. 3 numbers are a position, reached
         with constant orientation. `(3, 3)` or 4 numbers are an orientation. `Joints` are joint
         positions. The path to a pose is a straight line.
 
@@ -1123,8 +1124,8 @@ class Robot:
         """
     def gripper(self) -> Gripper:
         """The Franka Hand of this robot, at its host and the port after the robot's, not yet
-        connected: `async with robot.gripper() as gripper:`. The Hand of a simulator on a free port
-        has another port, and another program may listen at this one: use
+        connected: `async with robot.gripper() as gripper:`. If a simulator listens on a free port,
+        its Hand has a different port, and another program could listen at this one. Then use
         `Gripper(sim.hand_address)` of a `Sim` with `hand=True`.
         """
     def vacuum_gripper(self) -> VacuumGripper:
@@ -1145,8 +1146,8 @@ class Robot:
 
         The vendor does not document their ranges. The simulator refuses negative values.
 
-        Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses it. Once begun,
-        the robot may execute it even if it is cancelled.
+        Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses the request.
+        Once the request has begun, the robot can execute it even if you cancel.
         """
     def set_joint_impedance(self, stiffness: ArrayLike) -> Operation[None]:
         """Sets the stiffness of the robot's own joint impedance controller, `(7,)` N m/rad, each 0 to
@@ -1342,7 +1343,7 @@ class Arm:
 
         `speed` is 0.01 to 1, as a share of the recorded speed. `source` is `reference`, the
         commanded positions, or `measured`, the measured positions: for arms that were moved by
-        hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow may
+        hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow can
         differ.
 
         Raises `ReplayError` for a motion that is invalid for this arm, before the arm moves, and of
@@ -1464,7 +1465,7 @@ class Deadman:
 class Source:
     """The source of the items of `franka_async.streams.Stream`.
 
-    An item is awaited and taken in two steps, so that none is lost if the wait is cancelled:
+    An item is awaited and taken in two steps, so that no item is lost if the wait is cancelled:
     `ready()` takes time and changes nothing visible, `take()` is immediate.
     """
 
@@ -1835,8 +1836,8 @@ class Sim:
     def state(self) -> RobotState:
         """The newest state, in full precision."""
     def true_pose(self) -> _Array:
-        """True pose of the end effector, base frame, `(4, 4)`: the robot's own joint sensors may
-        deviate.
+        """True pose of the end effector, base frame, `(4, 4)`: the pose that the robot reports can
+        deviate, because its joint sensors have errors.
         """
     def stop(self, *, once_moving: bool = False) -> None:
         """Stops the simulation: now or, with `once_moving`, in mid-motion, as in `push`. Connections
@@ -1858,13 +1859,13 @@ class Sim:
     ) -> Touch:
         """Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its
         axes, m. The push has a force, base axes, N, and a torque, N m, and lasts for `duration`
-        seconds of the robot's clock; until it is released if `None`. It begins now. With
-        `once_moving` it begins in the millisecond in which a joint is faster than 0.05 rad/s: in
-        virtual time, a motion may be over before a program sees it move. Without a motion it never
-        begins: see `waiting`.
+        seconds of the robot's clock; if `None`, until it is released. It begins now. With
+        `once_moving` it begins in the millisecond in which a joint becomes faster than 0.05 rad/s.
+        Use this in virtual time, where a motion can be over before a program sees the arm move.
+        Without a motion, the push never begins: see `waiting`.
         """
     def push_joints(self, torques: ArrayLike, *, duration: float | None = None, once_moving: bool = False) -> Touch:
-        """Pushes the joints with torques, 7 numbers, N m; otherwise like `push`."""
+        """Pushes the joints with torques, 7 numbers, N m. Apart from that, it is like `push`."""
     def pull(
         self,
         to: ArrayLike,
@@ -2302,8 +2303,8 @@ class Recorder:
         self, robot: Robot, name: str = "", *, with_address: bool = False, capacity: int | None = None
     ) -> Operation[None]:
         """Records a connected robot from now on: every cycle, goals and their outcomes, diagnoses,
-        events and requests; for a supervised robot also after a reconnect. `name`, of letters,
-        digits, `-` and `_`, distinguishes several robots of a recording. `with_address` stores the
+        events and requests; if the robot is supervised, also after a reconnect. `name`, of letters,
+        digits, `-` and `_`, distinguishes the robots of a recording. `with_address` stores the
         network address. `capacity` is the number of cycles that may wait for the recorder, 4096 by
         default. Raises `RecordError`, `ValueError`. Cancelling aborts it.
         """
@@ -2539,7 +2540,7 @@ class Explanation:
         """
     @property
     def errors(self) -> list[str]:
-        """The errors named by the robot; none if a guard or a lost link ended the motion."""
+        """The errors named by the robot; empty if a guard or a lost link ended the motion."""
     @property
     def findings(self) -> dict[str, Any] | None:
         """The diagnosis as data, as in `ControlError`; `None` if unknown."""
@@ -2648,7 +2649,7 @@ class Team:
         """Begins a session for each robot, like `Robot.engage`, with the same options for all:
         `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
         returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
-        `MotionError` of the first arm that could not be engaged; the others are then released.
+        `MotionError` of the first arm that could not be engaged; the other arms are then released.
         Cancelling ends all sessions.
         """
     @property
@@ -2658,24 +2659,24 @@ class Team:
         self, targets: Sequence[Destination], **options: Unpack[GoalOptions]
     ) -> Operation[list[MotionReport]]:
         """A motion of all arms, each to its own target as in `Arm.move_to`, with the same options for
-        all.
+        all arms.
         """
     def run(self, motions: Sequence[Motion | Follow]) -> Operation[list[MotionReport]]:
-        """A motion of all arms: `motions` has one motion of each arm, in their order,
+        """A motion of all arms: `motions` contains one motion for each arm, in the order of the arms,
         `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`; do not await these motions themselves.
-        All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`: it begins
-        with the first target, and the motion ends when the others have arrived and the `Latest` is
-        closed.
+        All motions begin together. An arm can also follow a `Latest`,
+        `team.arms[1].follow(latest)`: this arm begins with the first target. The team motion ends
+        when the other arms have arrived and the `Latest` is closed.
         """
     def stop(self) -> None:
-        """Brakes all arms, each within two of its cycles. Never waits, usable on any thread. Motions
-        raise; the sessions continue and hold the arms. A joint motion that begins before every arm
-        has seen the stop does not start, and raises in the same way.
+        """Brakes all arms, each within two of its cycles. Never waits, and can be called from any
+        thread. Motions raise; the sessions continue and hold the arms. A team motion that begins
+        before every arm has seen the stop does not start, and raises in the same way.
         """
     def latch_stop(self) -> Operation[None]:
         """Brakes all arms like `stop`, ends their sessions and latches the stop of each robot: see
-        `Robot.latch_stop`. Waits until all are at rest, and raises `MotionError` of the first arm
-        that was not seen to be at rest.
+        `Robot.latch_stop`. Waits until all are at rest, and raises the `MotionError` of the first
+        arm that was not seen at rest.
         """
     def release_stop(self) -> bool:
         """Releases the latched stop of each robot, and returns `True` if one was latched. The sessions

@@ -10,7 +10,8 @@ use crate::arrays::{Numbers, array, unexpected_shape};
 /// Largest velocity, acceleration and jerk of each axis, in both directions. The program chooses
 /// the units: rad or m, per second and its powers.
 ///
-/// Each is one number for all axes or one for each, `(n,)`; all must be positive and finite.
+/// Each limit is one number for all axes, or one number for each axis, `(n,)`; all must be positive
+/// and finite.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct AxisLimits {

@@ -62,9 +62,10 @@ impl<const N: usize> Motion for Generator<N> {
 /// 64. Without a target, `None`, to rest as early as possible.
 ///
 /// The motion may begin with `start_velocity` and `start_acceleration`, and pass the target with
-/// `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; it stops behind a
-/// target in motion. All axes are at the target at the same time: with `synchronisation` `straight`
-/// on a straight line if the start state allows one, with `time` each on its own path.
+/// `target_velocity` and `target_acceleration`, `(n,)` each, zero by default. If the target has a
+/// velocity, the motion passes it and stops behind it. All axes are at the target at the same time.
+/// With `synchronisation` `straight`, they move on a straight line if the start state allows it;
+/// with `time`, each axis moves on its own path.
 ///
 /// `ValueError` for shapes that do not match, numbers that are not finite, and a target that moves
 /// faster than the limits allow.

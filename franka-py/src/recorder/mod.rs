@@ -98,8 +98,8 @@ impl Recorder {
     }
 
     /// Records a connected robot from now on: every cycle, goals and their outcomes, diagnoses,
-    /// events and requests; for a supervised robot also after a reconnect. `name`, of letters,
-    /// digits, `-` and `_`, distinguishes several robots of a recording. `with_address` stores the
+    /// events and requests; if the robot is supervised, also after a reconnect. `name`, of letters,
+    /// digits, `-` and `_`, distinguishes the robots of a recording. `with_address` stores the
     /// network address. `capacity` is the number of cycles that may wait for the recorder, 4096 by
     /// default. Raises `RecordError`, `ValueError`. Cancelling aborts it.
     #[pyo3(signature = (robot, name = "", *, with_address = false, capacity = None))]

@@ -220,7 +220,7 @@ impl VirtualRobots {
         })
     }
 
-    /// The errors that stopped robot `index`, by the vendor's names; none while it moves.
+    /// The errors that stopped robot `index`, by the vendor's names; empty while it moves.
     fn errors(&self, py: Python<'_>, index: usize) -> PyResult<Vec<String>> {
         self.with(py, index, |robot| crate::state::names(robot.state().errors))
     }
