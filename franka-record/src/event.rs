@@ -220,7 +220,7 @@ pub enum Level {
     /// For information.
     #[default]
     Info,
-    /// A condition that may need attention.
+    /// A condition that might need attention.
     Warning,
     /// An error.
     Error,

@@ -44,7 +44,7 @@ pub enum Pace {
     /// client stays connected.
     Recorded,
     /// Like [`Self::Recorded`], but a state that followed a command is sent as soon as the client
-    /// sends this command. Therefore the client is never too late, and may be faster than the
+    /// sends this command. Therefore the client is never too late, and can be faster than the
     /// recorded client.
     Answered,
     /// The robot's messages are sent as fast as the caller calls [`super::Player::poll`], without

@@ -13,7 +13,7 @@
 //! | `message` | the text of the exception, at any place in the file |
 //! | `motion` | data derived from the rows: modes, numbers of commands, derivatives |
 //!
-//! A file may contain a table, a text or both, surrounded by other lines, such as the output of a
+//! A file can contain a table, a text or both, surrounded by other lines, such as the output of a
 //! terminal. If the file contains several tables or texts, the reader uses the newest. Tables have
 //! three generations of columns, according to the changelog of libfranka:
 //!
@@ -24,7 +24,7 @@
 //! | 0.15 and later | `time,success_rate,state.q[0],state.q[1]` |
 //!
 //! Numbers in a table have six significant digits. The diagnosis does not report a difference that
-//! rounding may have caused. Therefore a log of joint positions shows steps, but rarely a jerk.
+//! rounding can have caused. Therefore a log of joint positions shows steps, but rarely a jerk.
 //!
 //! # Example
 //!

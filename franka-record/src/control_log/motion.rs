@@ -69,7 +69,7 @@ fn generator(rows: &[Row]) -> Option<Generator> {
     }
 }
 
-/// Returns true if zeros may be a real command. Velocities and torques may be zero, except in the
+/// Returns true if zeros can be a real command. Velocities and torques can be zero, except in the
 /// first command of a motion.
 fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<RobotState>) -> bool {
     let is_velocity = matches!(

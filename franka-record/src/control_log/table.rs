@@ -125,7 +125,7 @@ struct Layout {
 }
 
 impl Layout {
-    /// Finds the columns. The columns may have any order, and there may be other columns between
+    /// Finds the columns. The columns may have any order, and there can be other columns between
     /// them.
     fn of(names: &StringRecord, place: &Place) -> Result<Self, ControlLogError> {
         let is_unprefixed = place.generation == Generation::Unprefixed;

@@ -279,7 +279,7 @@ impl Drain {
 
 impl Source {
     /// Reads `cycles` after all cycles of the current control thread. Does nothing if `cycles`
-    /// belongs to the same control thread, because a connection may be reported twice.
+    /// belongs to the same control thread, because a connection can be reported twice.
     fn resume(&mut self, cycles: CycleReader) {
         let last = self.next.back().unwrap_or(&self.cycles);
         if !last.is_of_same_thread(&cycles) {

@@ -12,7 +12,7 @@ use super::wire;
 use crate::schema::{Topic, franka};
 use crate::{Cycle, Event, GripperState, HostTime};
 
-/// Iterates over the chunks that may contain the requested messages.
+/// Iterates over the chunks that can contain the requested messages.
 #[derive(Debug)]
 struct Walk {
     bytes: Bytes,
@@ -24,7 +24,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// Starts `before` chunks before the first chunk that may contain requested messages.
+    /// Starts `before` chunks before the first chunk that can contain requested messages.
     fn of(robot: &RobotRecording<'_>, before: usize) -> Self {
         let all = &robot.recording.index.chunks;
         let wanted = |chunk: &ChunkEntry| {

@@ -1,4 +1,4 @@
-//! The records of a whole MCAP file in memory. The file may contain any bytes.
+//! The records of a whole MCAP file in memory. The file can contain any bytes.
 
 use mcap::MAGIC;
 use mcap::records::{Record, op};

@@ -51,7 +51,7 @@ impl Topic {
         Self::Gripper,
     ];
 
-    /// Returns the name of a robot's channel. The robot's name may be empty if it is the only
+    /// Returns the name of a robot's channel. The robot's name can be empty if it is the only
     /// robot.
     pub(crate) fn channel(self, robot: &str) -> String {
         match robot {

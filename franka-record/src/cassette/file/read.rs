@@ -1,4 +1,4 @@
-//! Reader for cassette files. The file may contain any bytes.
+//! Reader for cassette files. The file can contain any bytes.
 
 use std::collections::BTreeMap;
 use std::path::Path;

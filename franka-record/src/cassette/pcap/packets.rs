@@ -283,5 +283,5 @@ fn describe(error: &PcapError<&[u8]>) -> String {
 const BUFFER_MIN: usize = 64;
 const BUFFER_MAX: usize = 1 << 20;
 
-/// Largest length of a parser's error text, which may contain the unreadable data.
+/// Largest length of a parser's error text, which can contain the unreadable data.
 const ERROR_LENGTH: usize = 100;
