@@ -26,7 +26,7 @@ pub enum Verdict {
     Good,
     /// The value is useful to know, but is not an obstacle.
     Info,
-    /// With this value, some cycles may be lost.
+    /// With this value, some cycles can be lost.
     Warning,
     /// The host is unsuitable for the purpose with this value.
     Failure,

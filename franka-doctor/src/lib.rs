@@ -143,7 +143,7 @@ impl Doctor {
     }
 
     /// Enables the measurement of round trips to the robot, which sends an echo request of 1200
-    /// bytes per millisecond. The requests may delay the packets of a client that controls the
+    /// bytes per millisecond. The requests can delay the packets of a client that controls the
     /// robot.
     pub fn ping(mut self, ping: bool) -> Self {
         self.ping = ping;
