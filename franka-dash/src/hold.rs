@@ -46,7 +46,7 @@ impl Drop for Hold {
     }
 }
 
-/// Settings that may change during a hold.
+/// Settings that can change during a hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Settings {
     /// Largest speed of any point of the arm, `[m/s]`.

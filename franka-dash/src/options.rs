@@ -75,7 +75,7 @@ impl Options {
     /// Returns a future that resolves when all recordings under these options, or under clones of
     /// them, have been written. Before the program ends, call
     /// [`Robot::shutdown`](franka_async::Robot::shutdown) and then await this future. Otherwise a
-    /// recording may lack its index and its last second. Writing takes at most 10 s.
+    /// recording can lack its index and its last second. Writing takes at most 10 s.
     pub fn recordings_ended(&self) -> impl Future<Output = ()> + Send + 'static {
         self.writing.clone().none()
     }

@@ -181,7 +181,7 @@ impl Simulated {
     }
 }
 
-/// Applies a disturbance to the robot itself. `pushing` is the push that may still be active.
+/// Applies a disturbance to the robot itself. `pushing` is the push that might still be active.
 fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<TouchId>) {
     match disturbance {
         Disturbance::Push {

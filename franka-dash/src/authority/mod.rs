@@ -394,7 +394,7 @@ fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     }
 }
 
-/// Silence after which a hold ends. The page sends a message every 50 ms, so two messages may be
+/// Silence after which a hold ends. The page sends a message every 50 ms, so two messages can be
 /// late.
 pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
 
