@@ -110,7 +110,7 @@ impl Sample<'_> {
 }
 
 impl Reading {
-    /// Returns the same reading for a value that rounding may have changed by `error`. The score is
+    /// Returns the same reading for a value that rounding can have changed by `error`. The score is
     /// then relative to a limit that is larger by this amount.
     pub(super) fn within(self, error: f64) -> Self {
         let limit = self.bound.limit().unwrap_or(0.0).abs();
