@@ -23,13 +23,14 @@ use crate::output::{Output, say};
 /// Explain why a motion ended, and where the arm was touched
 ///
 /// FILE is a recording, a table of libfranka's logToCSV, or a text with the message of a
-/// ControlException; a text may contain both. If there are several motions, the newest one is
-/// explained that the robot or a guard stopped, or that ended with a lost link.
+/// ControlException; a text can contain both. If there are several motions, the
+/// command explains the newest one that the robot or a guard stopped, or that ended with a lost
+/// link.
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]
     recorded: Recorded,
-    /// Explain an earlier stop; 1 is the last but one
+    /// Explain an earlier stop; 1 is the second-newest stop
     #[arg(long, value_name = "N", default_value_t = 0)]
     earlier: u64,
     /// Plot the last second to a new file

@@ -19,7 +19,7 @@ use crate::question::{self, title};
 
 /// Recover the robot from a reflex
 ///
-/// Shows why the robot stopped, asks, and runs an automatic error recovery. The arm may move if it
+/// Shows why the robot stopped, asks, and runs an automatic error recovery. The arm can move if it
 /// presses against something that yields.
 #[derive(Debug, Args)]
 pub(crate) struct Recover {

@@ -29,7 +29,7 @@ pub(crate) struct Replay {
     /// Positions to follow
     #[arg(long, value_enum, default_value_t = Source::Reference)]
     source: Source,
-    /// Follow the recorded pose of the hand; the elbow may differ
+    /// Follow the recorded pose of the hand; the elbow can differ
     #[arg(long)]
     poses: bool,
 }
