@@ -21,7 +21,7 @@ async fn main() -> anyhow::Result<()> {
     let table = robot.pose();
     let above = Pose::translation(0.0, 0.0, 0.08) * table;
 
-    // Homing measures the largest opening of the fingers; the arm may move meanwhile.
+    // Homing measures the largest opening of the fingers; the arm can move meanwhile.
     let (homed, moved) = tokio::join!(gripper.homing(), robot.move_to(above));
     moved?;
     ensure!(homed?, "homing failed: the fingers did not find their ends");

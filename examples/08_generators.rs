@@ -42,7 +42,7 @@ async fn main() -> anyhow::Result<()> {
     let what = format!("{what}, and back");
     let (robot, _sim) = arguments.connection.open_ready(&what).await?;
     let start = robot.pose();
-    // The robot extrapolates lost commands, and the next command may then be too far away: the
+    // The robot extrapolates lost commands, and the next command can then be too far away: the
     // limiter moves it within the limits.
     let report = begin(&robot).limit_rate(true).await?;
     let moved = robot.pose().translation.vector - start.translation.vector;

@@ -109,7 +109,7 @@ async fn callback(
         time += step.as_secs_f64();
         springs.torques(state).finish_if(time >= seconds)
     });
-    // After lost commands the torques may have changed by more than the robot accepts in a
+    // After lost commands the torques might have changed by more than the robot accepts in a
     // millisecond: the limiter spreads the change over several cycles.
     holding.limit_rate(true).await
 }

@@ -46,7 +46,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
 
     arm.move_to(Pose::translation(0.0, 0.0, 0.05) * start)
         .await?;
-    // The next goal may arrive in mid-motion and be of another kind.
+    // The next goal can arrive in mid-motion and be of another kind.
     arm.set(Pose::translation(0.0, 0.1, 0.05) * start).await?;
     tokio::time::sleep(Duration::from_millis(300)).await;
     arm.move_joints(ready).await?;

@@ -5,7 +5,7 @@
 //! then connect to `ws://localhost:8080/teleoperation` and send
 //!
 //! ```text
-//! {"type": "take", "name": "Ada"}                                               the name may be missing
+//! {"type": "take", "name": "Ada"}                                               the name can be missing
 //! {"type": "target", "position": [0.3, 0.1, 0.5], "quaternion": [1, 0, 0, 0]}   at any rate
 //! {"type": "alive"}                                                             without a target
 //! {"type": "release"}

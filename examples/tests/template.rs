@@ -21,7 +21,7 @@ async fn simulated() -> (Robot, Running) {
 }
 
 /// Starts a robot that runs `job` before each of its milliseconds. Events in mid-motion belong
-/// there: a task that watches the robot may be too late, or never see it move.
+/// there: a task that watches the robot can be too late, or never see it move.
 async fn disturbed(job: impl FnMut(&mut franka_sim::Robot) + Send + 'static) -> (Robot, Running) {
     let sim = Sim::fr3().virtual_time(PATIENCE / 2).every_millisecond(job);
     let sim = sim.start().await.expect("a free port");
