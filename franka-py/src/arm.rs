@@ -201,16 +201,17 @@ impl Arm {
         })
     }
 
-    /// Follows points with times, such as a policy's predictions, from now on; completes as soon as
-    /// they are accepted. The arm stops at the last point unless another chunk or goal follows.
+    /// Begins to follow points with times, such as a policy's predictions; completes as soon as the
+    /// points are accepted. The arm stops at the last point unless another chunk or goal follows.
     ///
     /// `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
     /// positions `(N, 7)`, rad; or a `Chunk`, whose fields replace the other arguments. `dt` is the
-    /// time between two points, s, or `times` the time of each. `velocities` are twists `(N, 6)` or
-    /// joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's observation:
-    /// times count from it. `blend` is the time of the transition from the previous chunk, 0.1 s by
-    /// default. A chunk has at most 1024 points and 60 s: send the rest as the next chunk with the
-    /// same `observed_at`; it waits for its first point.
+    /// time between two points, s, or `times` is the time of each point. `velocities` are twists
+    /// `(N, 6)` or joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's
+    /// observation: the times count from this state. `blend` is the time of the transition from the
+    /// previous chunk, 0.1 s by default. A chunk has at most 1024 points and 60 s. Send the rest as
+    /// the next chunk, with the same `observed_at`: this chunk takes effect at the time of its
+    /// first point.
     ///
     /// Raises `ValueError` for invalid arrays. Awaiting raises `MotionError` for a chunk that is
     /// too late or ends out of reach; the previous chunk then continues. It raises the kind `held`
@@ -238,10 +239,10 @@ impl Arm {
         self.operation("Arm.chunk", |arm| async move { arm.chunk(chunk).await })
     }
 
-    /// Allows hand guiding of the arm, once it is at rest, until the next goal; `hold()` ends it.
-    /// `axes` are the free directions: x y z and about x y z of the base frame, six truth values;
-    /// the others are held. Completes as soon as it is accepted. The load must be declared, or it
-    /// pulls the arm down.
+    /// Allows hand guiding, once the arm is at rest, until the next goal; `hold()` ends the
+    /// guiding. `axes` are the free directions: along x y z and about x y z of the base frame, six
+    /// truth values; the other directions are held. Completes as soon as the request is accepted.
+    /// Declare the load first, or it pulls the arm down.
     #[pyo3(signature = (axes = [true; 6], elbow = true))]
     fn guide(&self, axes: [bool; 6], elbow: bool) -> PyResult<Operation> {
         let free = Free { axes, elbow };
@@ -265,7 +266,7 @@ impl Arm {
     }
 
     /// Changes the given options among `gains`, `limits`, `force_cap`, `leash`, `deviation` and
-    /// `posture`, for the current goal and for later ones. Gains change gradually over 0.3 s.
+    /// `posture`, for the current goal and for later goals. Gains change gradually over 0.3 s.
     #[pyo3(signature = (**options))]
     fn tune(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<Operation> {
         let arm = self.session()?;
@@ -275,8 +276,8 @@ impl Arm {
         self.operation("Arm.tune", |arm| async move { arm.tune(tuning).await })
     }
 
-    /// Brakes and releases the arm and ends the session, with a `MotionReport`; a current goal
-    /// raises `stopped`. Raises the reason if the session ended in another way.
+    /// Brakes and releases the arm, ends the session, and returns a `MotionReport`. The motion
+    /// under way raises `stopped`. If the session ended for a different reason, raises this reason.
     fn disengage(&self) -> PyResult<Operation> {
         self.operation("Arm.disengage", |arm| async move {
             arm.disengage().await.map(Report)

@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 
 use crate::operation::seconds;
 
-/// A token that must be kept alive. When it is silent for longer than `silence` seconds (0.01 or
-/// more), released or dropped, the arm that `Robot.engage` bound to it brakes and holds. Every goal
-/// then raises `held`; so does the first chunk after it. The control thread monitors it,
-/// independent of Python.
+/// A token that the program must keep alive with `keep_alive()`. If no call comes for `silence`
+/// seconds (0.01 or more), or the token is released or dropped, the arm that `Robot.engage` bound
+/// to it brakes and is held. Every goal then raises `held`, as does the next call of `chunk`. The
+/// control thread monitors the token, independent of Python.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Deadman {
     token: Mutex<Option<Token>>,
@@ -58,7 +58,7 @@ impl Deadman {
         self.silence
     }
 
-    /// Restarts the time of silence; from any thread. Without effect once it was released.
+    /// Restarts the time of silence. Any thread may call this. After `release()`, it has no effect.
     fn keep_alive(&self) {
         let token = self.token.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(token) = &*token {

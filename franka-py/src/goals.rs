@@ -60,7 +60,7 @@ impl Robot {
         motion(py, "Robot.move_to", &robot, options, robot.move_to(target))
     }
 
-    /// A motion of the joints to `q`, 7 numbers, rad; all arrive together. Options as for
+    /// A motion of the joints to `q`, 7 numbers, rad; all joints arrive together. Options as for
     /// `move_to`.
     #[pyo3(signature = (q, **options))]
     fn move_joints(
@@ -112,15 +112,15 @@ impl Robot {
         motion(py, "Robot.move_through", &robot, options, through)
     }
 
-    /// Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair,
-    /// until they end, and then stops at the last one. `targets` is a `Latest`, which any thread
-    /// sets; an asynchronous iterator, which runs in the event loop that awaits; or a plain one,
-    /// which runs on a separate thread and may wait.
+    /// Follows the newest of `targets` until they end, and then stops at the last target. A target
+    /// is a pose or `Joints`, alone or in a pair with its velocity. `targets` is a `Latest`, which
+    /// any thread sets; an asynchronous iterator, which runs in the event loop that awaits; or a
+    /// plain iterator, which runs on a separate thread and may wait.
     ///
     /// Options as for `move_to`, and `lead`, a `Lead`: the largest distance of a target ahead of
-    /// the arm; and `watchdog`, a pair of seconds and `brake` or `hold`: the reaction if no target
-    /// arrives for this time. The motion and the watchdog begin with the first target. An exception
-    /// of the iterator brakes the arm and is raised.
+    /// the arm; and `watchdog`, a pair of a time in seconds and the reaction, `brake` or `hold`, if
+    /// no target arrives for this time. The motion and the watchdog begin with the first target. An
+    /// exception of the iterator brakes the arm and is raised.
     #[pyo3(signature = (targets, **options))]
     fn follow(
         this: &Bound<'_, Self>,
@@ -135,10 +135,10 @@ impl Robot {
     /// between: `async with robot.engage() as arm`, or `arm = await robot.engage()`.
     ///
     /// Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as for
-    /// `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm must avoid;
-    /// `speed_cap`, the largest speed of the joints, the flange and the end effector, m/s;
-    /// `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot and
-    /// its setpoints.
+    /// `move_to`, for all goals of the session; `keep_out`, regions (`Plane`, `Box`) that the arm
+    /// must avoid; `speed_cap`, the largest speed of the joints, the flange and the end effector,
+    /// m/s; `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot
+    /// and its setpoints.
     #[pyo3(signature = (**options))]
     fn engage(
         &self,
@@ -148,8 +148,8 @@ impl Robot {
         Engagement::new(py, self.connected()?, options)
     }
 
-    /// Commanded position of target control in this millisecond: a `Reference`; `None` while it
-    /// moves nothing.
+    /// Commanded position of target control in this millisecond: a `Reference`; `None` while target
+    /// control is not active.
     fn reference<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let newest = self.connected()?.reference();
         newest.map(|newest| reference(py, &newest)).transpose()

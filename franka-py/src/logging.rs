@@ -35,7 +35,8 @@ use crate::exit;
 /// module. `trace` is the number 5.
 ///
 /// A separate thread forwards them, so no motion waits for it. If more than `queue` reports wait
-/// (the value of the first call), new ones are dropped; a later warning contains their number.
+/// (the value of the first call), new reports are dropped; a later warning contains the number of
+/// dropped reports.
 ///
 /// Raises `ValueError` for another level, and `RuntimeError` if another library in the process
 /// already receives Rust's reports.

@@ -21,8 +21,8 @@ use crate::told::Telling;
 
 #[pymethods]
 impl Robot {
-    /// Moves to the beginning of a recorded motion, repeats it, and releases the arm: a session
-    /// with the defaults, with `Arm.replay` in it.
+    /// Moves to the beginning of a recorded motion, repeats it, and releases the arm. This is
+    /// `Arm.replay` in a session with default options.
     #[pyo3(signature = (recording, *, speed = 1.0, source = "reference", targets = "joints"))]
     fn replay(
         &self,

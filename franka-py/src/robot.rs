@@ -28,13 +28,13 @@ use crate::supervision::supervise_by;
 /// Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
 /// scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
 /// `priority` (1 to 99) and `cpu` apply to the control thread, not to threads of Python. `version`
-/// is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to each step
-/// of connecting. `link_timeout` is the silence of the robot after which a motion fails with
+/// is the protocol version, 5 or 10; if `None`, it is negotiated. `connect_timeout` applies to each
+/// step of connecting. `link_timeout` is the silence of the robot after which a motion fails with
 /// `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy hosts.
 /// `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the vendor's
 /// constants instead of the robot's description. `accept_geometry_error` connects to a robot whose
-/// poses have another geometry than its model; `geometry_residual` is the difference. `known` is an
-/// `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default one: lost
+/// reported poses disagree with its model; `geometry_residual` is the difference. `known` is an
+/// `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default policy: lost
 /// connections are restored, and the robot is recovered according to the policy.
 /// `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
 /// and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
@@ -107,7 +107,7 @@ impl Robot {
         })
     }
 
-    /// Connects, and returns this robot; without effect while it is connected. Raises
+    /// Connects, and returns this robot. If the robot is already connected, nothing changes. Raises
     /// `ConnectError`. Cancelling aborts the connection.
     fn connect(this: &Bound<'_, Self>) -> Operation {
         let (robot, builder) = (this.clone().unbind(), this.get().builder.clone());
@@ -121,8 +121,8 @@ impl Robot {
         })
     }
 
-    /// Brakes and ends any motion and closes the connection; without effect without a connection.
-    /// Once begun, it continues even if it is cancelled.
+    /// Brakes and ends any motion, and closes the connection, if there is one. Once begun, it
+    /// continues even if it is cancelled.
     fn shutdown(this: &Bound<'_, Self>) -> Operation {
         let robot = this.clone().unbind();
         Operation::infallible("Robot.shutdown", async move {
@@ -172,7 +172,7 @@ impl Robot {
         Ok(self.connected()?.geometry_check().residual)
     }
 
-    /// Newest state, without waiting, at any age: after the loss of the link, the last state stays.
+    /// Newest state, without waiting. After the link is lost, this remains the last received state;
     /// `health()` shows the loss.
     fn state(&self) -> PyResult<RobotState> {
         let robot = self.connected()?;
@@ -194,13 +194,13 @@ impl Robot {
         Ok(pose_array(py, &self.connected()?.pose_at(q)))
     }
 
-    /// Brakes any motion, and waits until it has ended and a state shows the arm at rest. That
-    /// motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
-    /// motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
-    /// the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
-    /// `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in
-    /// motion for two seconds is stopped by the robot's own controller; the wait ends within eight.
-    /// Once begun, it continues even if it is cancelled.
+    /// Brakes any motion, and waits until it has ended and a state shows the arm at rest. The
+    /// braked motion raises `MotionError` of the kind `stopped` at once, while the arm still
+    /// brakes. If another task requests a motion meanwhile, this motion begins: `stop` then raises
+    /// `MotionError` of the kind `superseded`. It raises other kinds if the arm was not seen to be
+    /// at rest: `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. If people keep the arm
+    /// in motion for two seconds, the robot's own controller stops it; the wait ends within eight
+    /// seconds. Once begun, it continues even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(
@@ -211,7 +211,7 @@ impl Robot {
 
     /// Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
     /// goal of any caller is refused, as `MotionError` of the kind `not_ready`. The latch survives
-    /// reconnects, and stays set even if this raises. It is not a safety function.
+    /// reconnects, and stays set even if this call raises. It is not a safety function.
     fn latch_stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.latch_stop", async move {
@@ -231,8 +231,8 @@ impl Robot {
         Ok(self.connected()?.is_stop_latched())
     }
 
-    /// Recovers the robot from a reflex, and waits until it accepts motions again; without effect
-    /// if no recovery is needed. It does not command a motion. Raises `CommandError`.
+    /// Recovers the robot from a reflex, and waits until it accepts motions again. If no recovery
+    /// is needed, nothing happens. It does not command a motion. Raises `CommandError`.
     fn recover(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.recover", async move {

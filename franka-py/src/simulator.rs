@@ -58,7 +58,7 @@ impl Sim {
         Self::start(py, "Sim.fr3", RobotKind::Fr3, options)
     }
 
-    /// Starts a Franka Emika Robot (Panda); otherwise like `fr3`.
+    /// Starts a Franka Emika Robot (Panda). Apart from that, it is like `fr3`.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fer(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -66,9 +66,10 @@ impl Sim {
     }
 
     /// Starts two to four robots, each `fr3` or `fer`, that begin every millisecond together, and
-    /// returns them in a list: if one waits for a command, all do. For several arms of one program,
-    /// especially teams: `left, right = Sim.in_step("fr3", "fer", virtual_time=True)`. Options as
-    /// for `fr3`, the same for all, except `address`. The others do not wait for a stopped robot.
+    /// returns them in a list. If one robot waits for a command, all robots wait. For several arms
+    /// of one program, especially teams: `left, right = Sim.in_step("fr3", "fer",
+    /// virtual_time=True)`. Options as for `fr3` except `address`; they apply to all robots. If a
+    /// robot was stopped, the other robots do not wait for it.
     #[staticmethod]
     #[pyo3(signature = (*kinds, **options))]
     fn in_step(

@@ -11,8 +11,8 @@ use crate::operation::seconds;
 /// Tickets of a common start, a list of one for each of `members` motions. `left.move_to(a,
 /// start_with=tickets[0])` and `right.move_to(b, start_with=tickets[1])`, awaited together, begin
 /// within a millisecond of each other, once all robots are ready. Such a motion supersedes nothing.
-/// If the others are not ready within `timeout` seconds, or one is dropped before, it raises
-/// `MotionError` of the kind `start`, and nothing has moved.
+/// If the other motions are not ready within `timeout` seconds, or a ticket is dropped before the
+/// start, each motion raises `MotionError` of the kind `start`, and no arm has moved.
 #[pyfunction]
 #[pyo3(signature = (members, timeout = 10.0))]
 pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartTicket>> {
@@ -28,8 +28,8 @@ pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartT
     Ok(tickets.into_iter().map(ticket).collect())
 }
 
-/// The part of one motion in a common start: created by `start_tickets`. Dropping it before the
-/// start ends the wait of the others.
+/// The part of one motion in a common start: created by `start_tickets`. If it is dropped before
+/// the start, the other motions fail.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct StartTicket(Mutex<Option<Ticket>>);
 

@@ -12,9 +12,9 @@ use crate::stream::stream;
 
 #[pymethods]
 impl Robot {
-    /// Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
-    /// the robot's clock, if given. If several states arrive while the program is busy, only the
-    /// newest is returned. Ends with the connection.
+    /// Newest state as it changes, for `async for` or `for`. If `rate` is given, at most `rate`
+    /// states per second, by the robot's clock. If several states arrive while the program is busy,
+    /// only the newest is returned. Ends with the connection.
     #[pyo3(signature = (rate = None))]
     fn states<'py>(&self, py: Python<'py>, rate: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;

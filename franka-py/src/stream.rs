@@ -17,7 +17,7 @@ type Items = Pin<Box<dyn Stream<Item = Item> + Send>>;
 /// The source of the items of `franka_async.streams.Stream`.
 ///
 /// An item is awaited and taken in two steps, so that no item is lost if the wait is cancelled:
-/// `ready()` takes time and changes nothing visible, `take()` is immediate.
+/// `ready()` waits and changes nothing visible, and `take()` returns at once.
 #[pyclass(frozen, module = "franka_async._native")]
 pub(crate) struct Source(Arc<Shared>);
 

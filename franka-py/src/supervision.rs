@@ -185,8 +185,8 @@ impl Robot {
     }
 
     /// Approves or rejects the recovery from the reflex with this number, for a `Policy` that asks
-    /// first. Returns `True` if the answer was awaited. The number is in the event and in
-    /// `health().reflex`.
+    /// first. Returns `True` if the policy was waiting for the answer. The number is in the event
+    /// and in `health().reflex`.
     #[pyo3(signature = (reflex, yes = true))]
     fn agree(&self, reflex: u64, yes: bool) -> PyResult<bool> {
         Ok(self.connected()?.agree(reflex, yes))

@@ -45,14 +45,14 @@ macro_rules! with_team {
 
 type Outcomes = Pin<Box<dyn Future<Output = Vec<Outcome>> + Send>>;
 
-/// Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
-/// begin within a millisecond of each other, and a fault of one brakes the others within two cycles
-/// of their control threads, independent of Python.
+/// Two to four arms that move and stop together: `async with await Team.engage(left, right) as
+/// team:`. Their motions begin within a millisecond of each other, and a fault of one arm brakes
+/// the other arms within two cycles of their control threads, independent of Python.
 ///
-/// A joint motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, it
-/// raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is its
-/// cause. Cancelling a joint motion brakes all arms. When the last reference to the team and its
-/// arms is dropped, all brake and their sessions end.
+/// A team motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, the
+/// motion raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is
+/// the `TeamError`'s cause. Cancelling a team motion brakes all arms. When the last reference to
+/// the team and its arms is dropped, all arms brake and their sessions end.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Team {
     pub(crate) members: Threaded<Arc<Members>>,
@@ -63,7 +63,7 @@ pub(crate) struct Team {
 impl Team {
     /// Begins a session for each robot, like `Robot.engage`, with the same options for all:
     /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
-    /// returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
+    /// returns a `Team`. If a robot is silent for `silence` seconds, the other arms brake. Raises
     /// `MotionError` of the first arm that could not be engaged; the other arms are then released.
     /// Cancelling ends all sessions.
     #[staticmethod]

@@ -922,13 +922,13 @@ class Robot:
     Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
     scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
     `priority` (1 to 99) and `cpu` apply to the control thread, not to threads of Python. `version`
-    is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to each step
-    of connecting. `link_timeout` is the silence of the robot after which a motion fails with
+    is the protocol version, 5 or 10; if `None`, it is negotiated. `connect_timeout` applies to each
+    step of connecting. `link_timeout` is the silence of the robot after which a motion fails with
     `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy hosts.
     `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the vendor's
     constants instead of the robot's description. `accept_geometry_error` connects to a robot whose
-    poses have another geometry than its model; `geometry_residual` is the difference. `known` is an
-    `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default one: lost
+    reported poses disagree with its model; `geometry_residual` is the difference. `known` is an
+    `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default policy: lost
     connections are restored, and the robot is recovered according to the policy.
     `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
     and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
@@ -952,12 +952,12 @@ class Robot:
         ask_before_recovery: Callable[[Reflex], bool] | None = None,
     ) -> Robot: ...
     def connect(self) -> Operation[Robot]:
-        """Connects, and returns this robot; without effect while it is connected. Raises
+        """Connects, and returns this robot. If the robot is already connected, nothing changes. Raises
         `ConnectError`. Cancelling aborts the connection.
         """
     def shutdown(self) -> Operation[None]:
-        """Brakes and ends any motion and closes the connection; without effect without a connection.
-        Once begun, it continues even if it is cancelled.
+        """Brakes and ends any motion, and closes the connection, if there is one. Once begun, it
+        continues even if it is cancelled.
         """
     def __aenter__(self) -> Operation[Robot]: ...
     def __aexit__(self, *_exception: object) -> Operation[None]: ...
@@ -978,13 +978,13 @@ class Robot:
         the robot reported no pose.
         """
     def state(self) -> RobotState:
-        """Newest state, without waiting, at any age: after the loss of the link, the last state stays.
+        """Newest state, without waiting. After the link is lost, this remains the last received state;
         `health()` shows the loss.
         """
     def states(self, rate: float | None = None) -> Stream[RobotState]:
-        """Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
-        the robot's clock, if given. If several states arrive while the program is busy, only the
-        newest is returned. Ends with the connection.
+        """Newest state as it changes, for `async for` or `for`. If `rate` is given, at most `rate`
+        states per second, by the robot's clock. If several states arrive while the program is busy,
+        only the newest is returned. Ends with the connection.
         """
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
@@ -996,8 +996,8 @@ class Robot:
     def pose_at(self, q: ArrayLike) -> _Array:
         """Pose of the end effector in the base frame, `(4, 4)`, at joint positions `q`, `(7,)` rad."""
     def reference(self) -> Reference | None:
-        """Commanded position of target control in this millisecond: a `Reference`; `None` while it
-        moves nothing.
+        """Commanded position of target control in this millisecond: a `Reference`; `None` while target
+        control is not active.
         """
     def budget(self) -> Budget:
         """The default limits of a motion: a `Budget`."""
@@ -1006,18 +1006,18 @@ class Robot:
         `None` for gains that are out of range.
         """
     def stop(self) -> Operation[None]:
-        """Brakes any motion, and waits until it has ended and a state shows the arm at rest. That
-        motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
-        motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
-        the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
-        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in
-        motion for two seconds is stopped by the robot's own controller; the wait ends within eight.
-        Once begun, it continues even if it is cancelled.
+        """Brakes any motion, and waits until it has ended and a state shows the arm at rest. The
+        braked motion raises `MotionError` of the kind `stopped` at once, while the arm still
+        brakes. If another task requests a motion meanwhile, this motion begins: `stop` then raises
+        `MotionError` of the kind `superseded`. It raises other kinds if the arm was not seen to be
+        at rest: `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. If people keep the arm
+        in motion for two seconds, the robot's own controller stops it; the wait ends within eight
+        seconds. Once begun, it continues even if it is cancelled.
         """
     def latch_stop(self) -> Operation[None]:
         """Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
         goal of any caller is refused, as `MotionError` of the kind `not_ready`. The latch survives
-        reconnects, and stays set even if this raises. It is not a safety function.
+        reconnects, and stays set even if this call raises. It is not a safety function.
         """
     def release_stop(self) -> bool:
         """Releases a latched stop: motions are allowed again. It does not move the arm. Returns `True`
@@ -1027,8 +1027,8 @@ class Robot:
     def is_stop_latched(self) -> bool:
         """True if a stop is latched."""
     def recover(self) -> Operation[None]:
-        """Recovers the robot from a reflex, and waits until it accepts motions again; without effect
-        if no recovery is needed. It does not command a motion. Raises `CommandError`.
+        """Recovers the robot from a reflex, and waits until it accepts motions again. If no recovery
+        is needed, nothing happens. It does not command a motion. Raises `CommandError`.
         """
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> Motion:
         """A motion of the end effector to `target` in the base frame. A pose is `(4, 4)`, or 3 + 4
@@ -1051,11 +1051,11 @@ class Robot:
         source: Literal["reference", "measured"] = "reference",
         targets: Literal["joints", "poses"] = "joints",
     ) -> Operation[ReplayReport]:
-        """Moves to the beginning of a recorded motion, repeats it, and releases the arm: a session
-        with the defaults, with `Arm.replay` in it.
+        """Moves to the beginning of a recorded motion, repeats it, and releases the arm. This is
+        `Arm.replay` in a session with default options.
         """
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> Motion:
-        """A motion of the joints to `q`, 7 numbers, rad; all arrive together. Options as for
+        """A motion of the joints to `q`, 7 numbers, rad; all joints arrive together. Options as for
         `move_to`.
         """
     def move_by(
@@ -1082,25 +1082,25 @@ class Robot:
         targets: Latest | Iterable[Target] | AsyncIterable[Target],
         **options: Unpack[FollowOptions],
     ) -> Follow:
-        """Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair,
-        until they end, and then stops at the last one. `targets` is a `Latest`, which any thread
-        sets; an asynchronous iterator, which runs in the event loop that awaits; or a plain one,
-        which runs on a separate thread and may wait.
+        """Follows the newest of `targets` until they end, and then stops at the last target. A target
+        is a pose or `Joints`, alone or in a pair with its velocity. `targets` is a `Latest`, which
+        any thread sets; an asynchronous iterator, which runs in the event loop that awaits; or a
+        plain iterator, which runs on a separate thread and may wait.
 
         Options as for `move_to`, and `lead`, a `Lead`: the largest distance of a target ahead of
-        the arm; and `watchdog`, a pair of seconds and `brake` or `hold`: the reaction if no target
-        arrives for this time. The motion and the watchdog begin with the first target. An exception
-        of the iterator brakes the arm and is raised.
+        the arm; and `watchdog`, a pair of a time in seconds and the reaction, `brake` or `hold`, if
+        no target arrives for this time. The motion and the watchdog begin with the first target. An
+        exception of the iterator brakes the arm and is raised.
         """
     def engage(self, **options: Unpack[EngageOptions]) -> Engagement:
         """Begins a session that holds the arm in place and moves from goal to goal without a stop in
         between: `async with robot.engage() as arm`, or `arm = await robot.engage()`.
 
         Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as for
-        `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm must avoid;
-        `speed_cap`, the largest speed of the joints, the flange and the end effector, m/s;
-        `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot and
-        its setpoints.
+        `move_to`, for all goals of the session; `keep_out`, regions (`Plane`, `Box`) that the arm
+        must avoid; `speed_cap`, the largest speed of the joints, the flange and the end effector,
+        m/s; `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot
+        and its setpoints.
         """
     def events(self) -> Stream[Event]:
         """Events of the robot from now on, for `async for`: connections lost and made, reflexes,
@@ -1115,8 +1115,8 @@ class Robot:
         """Health of the robot, now and as it changes, for `async for`. Ends like `events()`."""
     def agree(self, reflex: int, yes: bool = True) -> bool:
         """Approves or rejects the recovery from the reflex with this number, for a `Policy` that asks
-        first. Returns `True` if the answer was awaited. The number is in the event and in
-        `health().reflex`.
+        first. Returns `True` if the policy was waiting for the answer. The number is in the event
+        and in `health().reflex`.
         """
     def closed(self) -> Operation[CloseReason]:
         """Waits until the connection has ended permanently, and returns the reason: a `CloseReason`.
@@ -1408,34 +1408,35 @@ class Arm:
         observed_at: RobotState | int | None = None,
         blend: float | None = None,
     ) -> Operation[None]:
-        """Follows points with times, such as a policy's predictions, from now on; completes as soon as
-        they are accepted. The arm stops at the last point unless another chunk or goal follows.
+        """Begins to follow points with times, such as a policy's predictions; completes as soon as the
+        points are accepted. The arm stops at the last point unless another chunk or goal follows.
 
         `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
         positions `(N, 7)`, rad; or a `Chunk`, whose fields replace the other arguments. `dt` is the
-        time between two points, s, or `times` the time of each. `velocities` are twists `(N, 6)` or
-        joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's observation:
-        times count from it. `blend` is the time of the transition from the previous chunk, 0.1 s by
-        default. A chunk has at most 1024 points and 60 s: send the rest as the next chunk with the
-        same `observed_at`; it waits for its first point.
+        time between two points, s, or `times` is the time of each point. `velocities` are twists
+        `(N, 6)` or joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's
+        observation: the times count from this state. `blend` is the time of the transition from the
+        previous chunk, 0.1 s by default. A chunk has at most 1024 points and 60 s. Send the rest as
+        the next chunk, with the same `observed_at`: this chunk takes effect at the time of its
+        first point.
 
         Raises `ValueError` for invalid arrays. Awaiting raises `MotionError` for a chunk that is
         too late or ends out of reach; the previous chunk then continues. It raises the kind `held`
         or `braked`, once, if the previous chunk was aborted, for example by a silent `Deadman`.
         """
     def guide(self, axes: Sequence[bool] = ..., elbow: bool = True) -> Operation[None]:
-        """Allows hand guiding of the arm, once it is at rest, until the next goal; `hold()` ends it.
-        `axes` are the free directions: x y z and about x y z of the base frame, six truth values;
-        the others are held. Completes as soon as it is accepted. The load must be declared, or it
-        pulls the arm down.
+        """Allows hand guiding, once the arm is at rest, until the next goal; `hold()` ends the
+        guiding. `axes` are the free directions: along x y z and about x y z of the base frame, six
+        truth values; the other directions are held. Completes as soon as the request is accepted.
+        Declare the load first, or it pulls the arm down.
         """
     def tune(self, **options: Unpack[TuneOptions]) -> Operation[None]:
         """Changes the given options among `gains`, `limits`, `force_cap`, `leash`, `deviation` and
-        `posture`, for the current goal and for later ones. Gains change gradually over 0.3 s.
+        `posture`, for the current goal and for later goals. Gains change gradually over 0.3 s.
         """
     def disengage(self) -> Operation[MotionReport]:
-        """Brakes and releases the arm and ends the session, with a `MotionReport`; a current goal
-        raises `stopped`. Raises the reason if the session ended in another way.
+        """Brakes and releases the arm, ends the session, and returns a `MotionReport`. The motion
+        under way raises `stopped`. If the session ended for a different reason, raises this reason.
         """
     def ended(self) -> Operation[MotionReport]:
         """Waits until the session has ended, and returns its report or raises the reason. Cancelling
@@ -1446,10 +1447,10 @@ class Arm:
 
 @final
 class Deadman:
-    """A token that must be kept alive. When it is silent for longer than `silence` seconds (0.01 or
-    more), released or dropped, the arm that `Robot.engage` bound to it brakes and holds. Every goal
-    then raises `held`; so does the first chunk after it. The control thread monitors it,
-    independent of Python.
+    """A token that the program must keep alive with `keep_alive()`. If no call comes for `silence`
+    seconds (0.01 or more), or the token is released or dropped, the arm that `Robot.engage` bound
+    to it brakes and is held. Every goal then raises `held`, as does the next call of `chunk`. The
+    control thread monitors the token, independent of Python.
     """
 
     def __new__(cls, silence: float) -> Deadman: ...
@@ -1457,7 +1458,7 @@ class Deadman:
     def silence(self) -> float:
         """Longest allowed silence, s."""
     def keep_alive(self) -> None:
-        """Restarts the time of silence; from any thread. Without effect once it was released."""
+        """Restarts the time of silence. Any thread may call this. After `release()`, it has no effect."""
     def release(self) -> None:
         """Releases the token: the arm brakes, and is held from then on."""
 
@@ -1466,7 +1467,7 @@ class Source:
     """The source of the items of `franka_async.streams.Stream`.
 
     An item is awaited and taken in two steps, so that no item is lost if the wait is cancelled:
-    `ready()` takes time and changes nothing visible, `take()` is immediate.
+    `ready()` waits and changes nothing visible, and `take()` returns at once.
     """
 
     def ready(self) -> Operation[None]:
@@ -1811,13 +1812,14 @@ class Sim:
         """
     @staticmethod
     def fer(**options: Unpack[SimOptions]) -> Sim:
-        """Starts a Franka Emika Robot (Panda); otherwise like `fr3`."""
+        """Starts a Franka Emika Robot (Panda). Apart from that, it is like `fr3`."""
     @staticmethod
     def in_step(*kinds: Literal["fr3", "fer"], **options: Unpack[SimOptions]) -> list[Sim]:
         """Starts two to four robots, each `fr3` or `fer`, that begin every millisecond together, and
-        returns them in a list: if one waits for a command, all do. For several arms of one program,
-        especially teams: `left, right = Sim.in_step("fr3", "fer", virtual_time=True)`. Options as
-        for `fr3`, the same for all, except `address`. The others do not wait for a stopped robot.
+        returns them in a list. If one robot waits for a command, all robots wait. For several arms
+        of one program, especially teams: `left, right = Sim.in_step("fr3", "fer",
+        virtual_time=True)`. Options as for `fr3` except `address`; they apply to all robots. If a
+        robot was stopped, the other robots do not wait for it.
         """
     @property
     def address(self) -> str:
@@ -2599,7 +2601,8 @@ def enable_logging(level: int | str | None = None, *, queue: int = 4096) -> None
     module. `trace` is the number 5.
 
     A separate thread forwards them, so no motion waits for it. If more than `queue` reports wait
-    (the value of the first call), new ones are dropped; a later warning contains their number.
+    (the value of the first call), new reports are dropped; a later warning contains the number of
+    dropped reports.
 
     Raises `ValueError` for another level, and `RuntimeError` if another library in the process
     already receives Rust's reports.
@@ -2620,35 +2623,35 @@ def _names() -> dict[str, dict[str, list[str]]]:
 
 @final
 class StartTicket:
-    """The part of one motion in a common start: created by `start_tickets`. Dropping it before the
-    start ends the wait of the others.
+    """The part of one motion in a common start: created by `start_tickets`. If it is dropped before
+    the start, the other motions fail.
     """
 
 def start_tickets(members: int, timeout: float = 10.0) -> list[StartTicket]:
     """Tickets of a common start, a list of one for each of `members` motions. `left.move_to(a,
     start_with=tickets[0])` and `right.move_to(b, start_with=tickets[1])`, awaited together, begin
     within a millisecond of each other, once all robots are ready. Such a motion supersedes nothing.
-    If the others are not ready within `timeout` seconds, or one is dropped before, it raises
-    `MotionError` of the kind `start`, and nothing has moved.
+    If the other motions are not ready within `timeout` seconds, or a ticket is dropped before the
+    start, each motion raises `MotionError` of the kind `start`, and no arm has moved.
     """
 
 @final
 class Team:
-    """Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
-    begin within a millisecond of each other, and a fault of one brakes the others within two cycles
-    of their control threads, independent of Python.
+    """Two to four arms that move and stop together: `async with await Team.engage(left, right) as
+    team:`. Their motions begin within a millisecond of each other, and a fault of one arm brakes
+    the other arms within two cycles of their control threads, independent of Python.
 
-    A joint motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, it
-    raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is its
-    cause. Cancelling a joint motion brakes all arms. When the last reference to the team and its
-    arms is dropped, all brake and their sessions end.
+    A team motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, the
+    motion raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is
+    the `TeamError`'s cause. Cancelling a team motion brakes all arms. When the last reference to
+    the team and its arms is dropped, all arms brake and their sessions end.
     """
 
     @staticmethod
     def engage(*robots: Robot, silence: float = ..., **options: Unpack[TeamOptions]) -> Operation[Team]:
         """Begins a session for each robot, like `Robot.engage`, with the same options for all:
         `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
-        returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
+        returns a `Team`. If a robot is silent for `silence` seconds, the other arms brake. Raises
         `MotionError` of the first arm that could not be engaged; the other arms are then released.
         Cancelling ends all sessions.
         """
