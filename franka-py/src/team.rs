@@ -165,8 +165,9 @@ impl Team {
         with_team!(&**self.members, team => team.release_stop())
     }
 
-    /// Reason why the newest joint motion, or the team afterwards, has stopped: `requested`, or the
-    /// name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without a stop.
+    /// Reason why the newest team motion, or the team after that motion, has stopped: `requested`,
+    /// or the name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without
+    /// a stop.
     fn stopped<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let stopped = with_team!(&**self.members, team => team.stopped());
         Ok(match stopped {

@@ -2686,8 +2686,9 @@ class Team:
         have ended: the next motions need a new team.
         """
     def stopped(self) -> str | tuple[str, int] | None:
-        """Reason why the newest joint motion, or the team afterwards, has stopped: `requested`, or the
-        name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without a stop.
+        """Reason why the newest team motion, or the team after that motion, has stopped: `requested`,
+        or the name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without
+        a stop.
         """
     def grasp(self, bases: Sequence[ArrayLike], object: ArrayLike) -> TeamGrasp:
         """Declares an object as held by all arms from now on, in its current place: `bases` are the

@@ -188,7 +188,7 @@ class ReplayError(MotionError):
 
 
 class TeamError(MotionError):
-    """A joint motion of several arms ended before its goal. The text, ``kind`` and ``party`` come from the arm that
+    """A common motion of several arms ended before its goal. The text, ``kind`` and ``party`` come from the arm that
     caused the end.
     """
 

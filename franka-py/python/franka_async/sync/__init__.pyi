@@ -46,7 +46,7 @@ class Arm:
 
         `speed` is 0.01 to 1, as a share of the recorded speed. `source` is `reference`, the
         commanded positions, or `measured`, the measured positions: for arms that were moved by
-        hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow may
+        hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow can
         differ.
 
         Raises `ReplayError` for a motion that is invalid for this arm, before the arm moves, and of
@@ -100,16 +100,17 @@ class Arm:
         """
 
     def chunk(self, points: ArrayLike | Chunk, dt: float | None=None, times: ArrayLike | None=None, *, velocities: ArrayLike | None=None, joints: bool=False, observed_at: RobotState | int | None=None, blend: float | None=None) -> None:
-        """Follows points with times, such as a policy's predictions, from now on; completes as soon as
-        they are accepted. The arm stops at the last point unless another chunk or goal follows.
+        """Begins to follow points with times, such as a policy's predictions; completes as soon as the
+        points are accepted. The arm stops at the last point unless another chunk or goal follows.
 
         `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
         positions `(N, 7)`, rad; or a `Chunk`, whose fields replace the other arguments. `dt` is the
-        time between two points, s, or `times` the time of each. `velocities` are twists `(N, 6)` or
-        joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's observation:
-        times count from it. `blend` is the time of the transition from the previous chunk, 0.1 s by
-        default. A chunk has at most 1024 points and 60 s: send the rest as the next chunk with the
-        same `observed_at`; it waits for its first point.
+        time between two points, s, or `times` is the time of each point. `velocities` are twists
+        `(N, 6)` or joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's
+        observation: the times count from this state. `blend` is the time of the transition from the
+        previous chunk, 0.1 s by default. A chunk has at most 1024 points and 60 s. Send the rest as
+        the next chunk, with the same `observed_at`: this chunk takes effect at the time of its
+        first point.
 
         Raises `ValueError` for invalid arrays. Awaiting raises `MotionError` for a chunk that is
         too late or ends out of reach; the previous chunk then continues. It raises the kind `held`
@@ -117,20 +118,20 @@ class Arm:
         """
 
     def guide(self, axes: Sequence[bool]=..., elbow: bool=True) -> None:
-        """Allows hand guiding of the arm, once it is at rest, until the next goal; `hold()` ends it.
-        `axes` are the free directions: x y z and about x y z of the base frame, six truth values;
-        the others are held. Completes as soon as it is accepted. The load must be declared, or it
-        pulls the arm down.
+        """Allows hand guiding, once the arm is at rest, until the next goal; `hold()` ends the
+        guiding. `axes` are the free directions: along x y z and about x y z of the base frame, six
+        truth values; the other directions are held. Completes as soon as the request is accepted.
+        Declare the load first, or it pulls the arm down.
         """
 
     def tune(self, **options: Unpack[TuneOptions]) -> None:
         """Changes the given options among `gains`, `limits`, `force_cap`, `leash`, `deviation` and
-        `posture`, for the current goal and for later ones. Gains change gradually over 0.3 s.
+        `posture`, for the current goal and for later goals. Gains change gradually over 0.3 s.
         """
 
     def disengage(self) -> MotionReport:
-        """Brakes and releases the arm and ends the session, with a `MotionReport`; a current goal
-        raises `stopped`. Raises the reason if the session ended in another way.
+        """Brakes and releases the arm, ends the session, and returns a `MotionReport`. The motion
+        under way raises `stopped`. If the session ended for a different reason, raises this reason.
         """
 
     def ended(self) -> MotionReport:
@@ -147,7 +148,7 @@ class Arm:
 @final
 class AsynchronousControl:
     """A motion between sparse joint targets that the robot itself plans. Any thread may set targets.
-    `stop()`, or dropping it, stops the robot.
+    The robot stops if you call `stop()` or drop this object.
     """
 
     def set_target(self, q: ArrayLike) -> None:
@@ -161,12 +162,12 @@ class AsynchronousControl:
         """
 
     def reached(self) -> None:
-        """Waits until the newest target is reached. Raises the reason if the motion ends before.
+        """Waits until the newest target is reached. Raises the reason if the motion ends earlier.
         Cancelling does not stop the robot.
         """
 
     def stop(self) -> None:
-        """Stops the robot. Without effect once it was stopped."""
+        """Stops the robot. A second call has no effect."""
 
     def __enter__(self) -> AsynchronousControl:
         ...
@@ -319,8 +320,8 @@ class Recorder:
 
     def attach(self, robot: Robot, name: str='', *, with_address: bool=False, capacity: int | None=None) -> None:
         """Records a connected robot from now on: every cycle, goals and their outcomes, diagnoses,
-        events and requests; for a supervised robot also after a reconnect. `name`, of letters,
-        digits, `-` and `_`, distinguishes several robots of a recording. `with_address` stores the
+        events and requests; if the robot is supervised, also after a reconnect. `name`, of letters,
+        digits, `-` and `_`, distinguishes the robots of a recording. `with_address` stores the
         network address. `capacity` is the number of cycles that may wait for the recorder, 4096 by
         default. Raises `RecordError`, `ValueError`. Cancelling aborts it.
         """
@@ -372,15 +373,15 @@ class Robot:
 
     Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
     scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
-    `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
-    `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to
-    each step of connecting. `link_timeout` is the silence of the robot after which a motion fails
-    with `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy
-    hosts. `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the
-    vendor's constants instead of the robot's description. `accept_geometry_error` connects to a
-    robot whose poses have another geometry than its model; `geometry_residual` is the difference.
-    `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default
-    one: lost connections are restored, and the robot is recovered according to the policy.
+    `priority` (1 to 99) and `cpu` apply to the control thread, not to threads of Python. `version`
+    is the protocol version, 5 or 10; if `None`, it is negotiated. `connect_timeout` applies to each
+    step of connecting. `link_timeout` is the silence of the robot after which a motion fails with
+    `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy hosts.
+    `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the vendor's
+    constants instead of the robot's description. `accept_geometry_error` connects to a robot whose
+    reported poses disagree with its model; `geometry_residual` is the difference. `known` is an
+    `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default policy: lost
+    connections are restored, and the robot is recovered according to the policy.
     `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
     and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
     """
@@ -389,13 +390,13 @@ class Robot:
         ...
 
     def connect(self) -> Robot:
-        """Connects, and returns this robot; without effect while it is connected. Raises
+        """Connects, and returns this robot. If the robot is already connected, nothing changes. Raises
         `ConnectError`. Cancelling aborts the connection.
         """
 
     def shutdown(self) -> None:
-        """Brakes and ends any motion and closes the connection; without effect without a connection.
-        Once begun, it continues even if it is cancelled.
+        """Brakes and ends any motion, and closes the connection, if there is one. Once begun, it
+        continues even if it is cancelled.
         """
 
     def __enter__(self) -> Robot:
@@ -425,20 +426,20 @@ class Robot:
         """
 
     def state(self) -> RobotState:
-        """Newest state, without waiting, at any age: after the loss of the link, the last state stays.
+        """Newest state, without waiting. After the link is lost, this remains the last received state;
         `health()` shows the loss.
         """
 
     def states(self, rate: float | None=None) -> Stream[RobotState]:
-        """Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
-        the robot's clock, if given. States that arrive while the program is busy are skipped for
-        the newest. Ends with the connection.
+        """Newest state as it changes, for `async for` or `for`. If `rate` is given, at most `rate`
+        states per second, by the robot's clock. If several states arrive while the program is busy,
+        only the newest is returned. Ends with the connection.
         """
 
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
-        state and the number of states `missed` before it. A program may lag about a second behind
-        before it misses any. Ends with the connection.
+        state and the number of states `missed` before it. No state is missed unless the program is
+        more than about a second behind. Ends with the connection.
         """
 
     def pose(self) -> _Array:
@@ -448,8 +449,8 @@ class Robot:
         """Pose of the end effector in the base frame, `(4, 4)`, at joint positions `q`, `(7,)` rad."""
 
     def reference(self) -> Reference | None:
-        """Commanded position of target control in this millisecond: a `Reference`; `None` while it
-        moves nothing.
+        """Commanded position of target control in this millisecond: a `Reference`; `None` while target
+        control is not active.
         """
 
     def budget(self) -> Budget:
@@ -461,19 +462,19 @@ class Robot:
         """
 
     def stop(self) -> None:
-        """Brakes any motion, and waits until it has ended and a state shows the arm at rest. That
-        motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
-        motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
-        the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
-        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in
-        motion for two seconds is stopped by the robot's own controller; the wait ends within eight.
-        Once begun, it continues even if it is cancelled.
+        """Brakes any motion, and waits until it has ended and a state shows the arm at rest. The
+        braked motion raises `MotionError` of the kind `stopped` at once, while the arm still
+        brakes. If another task requests a motion meanwhile, this motion begins: `stop` then raises
+        `MotionError` of the kind `superseded`. It raises other kinds if the arm was not seen to be
+        at rest: `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. If people keep the arm
+        in motion for two seconds, the robot's own controller stops it; the wait ends within eight
+        seconds. Once begun, it continues even if it is cancelled.
         """
 
     def latch_stop(self) -> None:
         """Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
         goal of any caller is refused, as `MotionError` of the kind `not_ready`. The latch survives
-        reconnects, and stays set even if this raises. It is not a safety function.
+        reconnects, and stays set even if this call raises. It is not a safety function.
         """
 
     def release_stop(self) -> bool:
@@ -486,13 +487,13 @@ class Robot:
         """True if a stop is latched."""
 
     def recover(self) -> None:
-        """Recovers the robot from a reflex, and waits until it accepts motions again; without effect
-        if no recovery is needed. It does not command a motion. Raises `CommandError`.
+        """Recovers the robot from a reflex, and waits until it accepts motions again. If no recovery
+        is needed, nothing happens. It does not command a motion. Raises `CommandError`.
         """
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> MotionReport:
         """A motion of the end effector to `target` in the base frame. A pose is `(4, 4)`, or 3 + 4
-        numbers with a quaternion `x y z w`, which may be a pair. 3 numbers are a position, reached
+        numbers with a quaternion `x y z w`, which can be a pair. 3 numbers are a position, reached
         with constant orientation. `(3, 3)` or 4 numbers are an orientation. `Joints` are joint
         positions. The path to a pose is a straight line.
 
@@ -505,12 +506,12 @@ class Robot:
         """
 
     def replay(self, recording: RecordingFile, *, speed: float=1.0, source: Literal['reference', 'measured']='reference', targets: Literal['joints', 'poses']='joints') -> ReplayReport:
-        """Moves to the beginning of a recorded motion, repeats it, and releases the arm: a session
-        with the defaults, with `Arm.replay` in it.
+        """Moves to the beginning of a recorded motion, repeats it, and releases the arm. This is
+        `Arm.replay` in a session with default options.
         """
 
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> MotionReport:
-        """A motion of the joints to `q`, 7 numbers, rad; all arrive together. Options as for
+        """A motion of the joints to `q`, 7 numbers, rad; all joints arrive together. Options as for
         `move_to`.
         """
 
@@ -528,15 +529,15 @@ class Robot:
         """
 
     def follow(self, targets: Latest | Iterable[Target] | AsyncIterable[Target], **options: Unpack[FollowOptions]) -> MotionReport:
-        """Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair,
-        until they end, and then stops at the last one. `targets` is a `Latest`, which any thread
-        sets; an asynchronous iterator, which runs in the event loop that awaits; or a plain one,
-        which runs on a separate thread and may wait.
+        """Follows the newest of `targets` until they end, and then stops at the last target. A target
+        is a pose or `Joints`, alone or in a pair with its velocity. `targets` is a `Latest`, which
+        any thread sets; an asynchronous iterator, which runs in the event loop that awaits; or a
+        plain iterator, which runs on a separate thread and may wait.
 
         Options as for `move_to`, and `lead`, a `Lead`: the largest distance of a target ahead of
-        the arm; and `watchdog`, a pair of seconds and `brake` or `hold`: the reaction if no target
-        arrives for this time. The motion and the watchdog begin with the first target. An exception
-        of the iterator brakes the arm and is raised.
+        the arm; and `watchdog`, a pair of a time in seconds and the reaction, `brake` or `hold`, if
+        no target arrives for this time. The motion and the watchdog begin with the first target. An
+        exception of the iterator brakes the arm and is raised.
         """
 
     def engage(self, **options: Unpack[EngageOptions]) -> Arm:
@@ -544,10 +545,10 @@ class Robot:
         between: `async with robot.engage() as arm`, or `arm = await robot.engage()`.
 
         Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as for
-        `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm must avoid;
-        `speed_cap`, the largest speed of the joints, the flange and the end effector, m/s;
-        `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot and
-        its setpoints.
+        `move_to`, for all goals of the session; `keep_out`, regions (`Plane`, `Box`) that the arm
+        must avoid; `speed_cap`, the largest speed of the joints, the flange and the end effector,
+        m/s; `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot
+        and its setpoints.
         """
 
     def events(self) -> Stream[Event]:
@@ -566,8 +567,8 @@ class Robot:
 
     def agree(self, reflex: int, yes: bool=True) -> bool:
         """Approves or rejects the recovery from the reflex with this number, for a `Policy` that asks
-        first. Returns `True` if the answer was awaited. The number is in the event and in
-        `health().reflex`.
+        first. Returns `True` if the policy was waiting for the answer. The number is in the event
+        and in `health().reflex`.
         """
 
     def closed(self) -> CloseReason:
@@ -577,8 +578,8 @@ class Robot:
 
     def gripper(self) -> Gripper:
         """The Franka Hand of this robot, at its host and the port after the robot's, not yet
-        connected: `async with robot.gripper() as gripper:`. The Hand of a simulator on a free port
-        has another port, and another program may listen at this one: use
+        connected: `async with robot.gripper() as gripper:`. If a simulator listens on a free port,
+        its Hand has a different port, and another program could listen at this one. Then use
         `Gripper(sim.hand_address)` of a `Sim` with `hand=True`.
         """
 
@@ -601,8 +602,8 @@ class Robot:
 
         The vendor does not document their ranges. The simulator refuses negative values.
 
-        Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses it. Once begun,
-        the robot may execute it even if it is cancelled.
+        Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses the request.
+        Once the request has begun, the robot can execute it even if you cancel.
         """
 
     def set_joint_impedance(self, stiffness: ArrayLike) -> None:
@@ -764,22 +765,22 @@ class Robot:
 
 @final
 class Team:
-    """Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
-    begin within a millisecond of each other, and a fault of one brakes the others within two cycles
-    of their control threads, independent of Python.
+    """Two to four arms that move and stop together: `async with await Team.engage(left, right) as
+    team:`. Their motions begin within a millisecond of each other, and a fault of one arm brakes
+    the other arms within two cycles of their control threads, independent of Python.
 
-    A joint motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, it
-    raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is its
-    cause. Cancelling a joint motion brakes all arms. When the last reference to the team and its
-    arms is dropped, all brake and their sessions end.
+    A team motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, the
+    motion raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is
+    the `TeamError`'s cause. Cancelling a team motion brakes all arms. When the last reference to
+    the team and its arms is dropped, all arms brake and their sessions end.
     """
 
     @staticmethod
     def engage(*robots: Robot, silence: float=..., **options: Unpack[TeamOptions]) -> Team:
         """Begins a session for each robot, like `Robot.engage`, with the same options for all:
         `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
-        returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
-        `MotionError` of the first arm that could not be engaged; the others are then released.
+        returns a `Team`. If a robot is silent for `silence` seconds, the other arms brake. Raises
+        `MotionError` of the first arm that could not be engaged; the other arms are then released.
         Cancelling ends all sessions.
         """
 
@@ -789,27 +790,27 @@ class Team:
 
     def move_to(self, targets: Sequence[Destination], **options: Unpack[GoalOptions]) -> list[MotionReport]:
         """A motion of all arms, each to its own target as in `Arm.move_to`, with the same options for
-        all.
+        all arms.
         """
 
     def run(self, motions: Sequence[Callable[[_native.Arm], Motion | Follow]]) -> list[MotionReport]:
-        """A motion of all arms: `motions` has one motion of each arm, in their order,
+        """A motion of all arms: `motions` contains one motion for each arm, in the order of the arms,
         `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`; do not await these motions themselves.
-        All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`: it begins
-        with the first target, and the motion ends when the others have arrived and the `Latest` is
-        closed.
+        All motions begin together. An arm can also follow a `Latest`,
+        `team.arms[1].follow(latest)`: this arm begins with the first target. The team motion ends
+        when the other arms have arrived and the `Latest` is closed.
         """
 
     def stop(self) -> None:
-        """Brakes all arms, each within two of its cycles. Never waits, usable on any thread. Motions
-        raise; the sessions continue and hold the arms. A joint motion that begins before every arm
-        has seen the stop does not start, and raises in the same way.
+        """Brakes all arms, each within two of its cycles. Never waits, and can be called from any
+        thread. Motions raise; the sessions continue and hold the arms. A team motion that begins
+        before every arm has seen the stop does not start, and raises in the same way.
         """
 
     def latch_stop(self) -> None:
         """Brakes all arms like `stop`, ends their sessions and latches the stop of each robot: see
-        `Robot.latch_stop`. Waits until all are at rest, and raises `MotionError` of the first arm
-        that was not seen to be at rest.
+        `Robot.latch_stop`. Waits until all are at rest, and raises the `MotionError` of the first
+        arm that was not seen at rest.
         """
 
     def release_stop(self) -> bool:
@@ -818,8 +819,9 @@ class Team:
         """
 
     def stopped(self) -> str | tuple[str, int] | None:
-        """Reason why the newest joint motion, or the team afterwards, has stopped: `requested`, or the
-        name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without a stop.
+        """Reason why the newest team motion, or the team after that motion, has stopped: `requested`,
+        or the name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without
+        a stop.
         """
 
     def grasp(self, bases: Sequence[ArrayLike], object: ArrayLike) -> TeamGrasp:
