@@ -1,6 +1,7 @@
 //! Models from the robot: from its description, and from its own library.
 
 mod described;
+mod lengths;
 #[cfg(target_os = "linux")]
 mod library;
 mod recorded;
