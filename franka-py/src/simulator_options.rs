@@ -36,6 +36,10 @@ pub(crate) fn configured(
     if let Some(name) = keywords.value::<String>("state_geometry")? {
         arm.body.state_geometry = state_geometry(&name, seed.unwrap_or_default())?;
     }
+    if let Some(name) = keywords.value::<String>("kinematic_error")? {
+        let other = with_kinematic_error(kind, &name, seed.unwrap_or_default())?;
+        arm.body.kinematic_error = other.body.kinematic_error;
+    }
     sim = sim.arm(arm);
     let q = keywords.take("q")?;
     let q = q.map(|q| positions(limits, &q)).transpose()?;
@@ -174,6 +178,18 @@ fn state_geometry(name: &str, seed: u64) -> PyResult<StateGeometry> {
         _ => {
             let expected = "'described', 'recorded' or 'random'";
             let text = format!("state_geometry is {name:?}, expected {expected}");
+            Err(PyValueError::new_err(text))
+        }
+    }
+}
+
+/// Returns an arm whose true links have the named errors; `random` is drawn by `seed`.
+fn with_kinematic_error(kind: RobotKind, name: &str, seed: u64) -> PyResult<Arm> {
+    match name {
+        "none" => Ok(Arm::ideal(kind)),
+        "random" => Ok(Arm::sample(kind, seed, &Family::realistic())),
+        _ => {
+            let text = format!("kinematic_error is {name:?}, expected 'none' or 'random'");
             Err(PyValueError::new_err(text))
         }
     }

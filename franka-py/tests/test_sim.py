@@ -102,6 +102,7 @@ def test_options_that_make_no_sense_are_refused() -> None:
         ({"load": (-1.0, [0.0, 0.0, 0.0])}, ValueError, "-1"),
         ({"q": [0.0, 0.0, 9.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "joint 3 of q is 9 rad, expected -2.9"),
         ({"state_geometry": "other"}, ValueError, "state_geometry is .other., expected 'described'"),
+        ({"kinematic_error": "other"}, ValueError, "kinematic_error is .other., expected 'none' or 'random'"),
         ({"limits": "5.8"}, ValueError, "limits is .5.8., expected '5.9' or 'before-5.9'"),
         ({"limits": "before-5.9", "q": [2.9, -0.7, 0.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "expected -2.7501 to 2.7501"),
         ({"seed": -1}, ValueError, "seed is -1, expected an integer from 0"),

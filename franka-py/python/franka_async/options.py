@@ -136,6 +136,7 @@ class SimOptions(TypedDict, total=False):
     ideal: bool
     limits: Literal["5.9", "before-5.9"]
     state_geometry: Literal["described", "recorded", "random"]
+    kinematic_error: Literal["none", "random"]
     seed: int
     q: ArrayLike | None
     tool: Literal["hand"] | tuple[ArrayLike, float, ArrayLike] | None

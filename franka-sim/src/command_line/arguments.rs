@@ -83,9 +83,14 @@ pub struct Arguments {
 
     /// Geometry of the reported poses and of the robot's inverse kinematics, instead of the
     /// geometry of the arm. An FR3 has `recorded`; an FER and `--arm ideal` have `described`. The
-    /// served description contains its lengths. Errors of the links themselves come from --arm.
+    /// served description contains its lengths.
     #[arg(long, value_enum)]
     pub state_geometry: Option<GeometryKind>,
+
+    /// Errors of the true links and axes against the reported poses, instead of the errors of the
+    /// arm. No state shows them.
+    #[arg(long, value_enum)]
+    pub kinematic_error: Option<KinematicErrorKind>,
 
     /// Uses noisy sensors, but keeps the sensor offsets of the arm.
     #[arg(long)]
@@ -192,6 +197,15 @@ pub enum GeometryKind {
     Recorded,
     /// The vendor's description with errors of 1 mm and 3 mrad, drawn from --seed, which no client
     /// knows
+    Random,
+}
+
+/// Errors of the true links and axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum KinematicErrorKind {
+    /// The true links and axes equal the reported ones
+    None,
+    /// Errors of the family `realistic`, drawn from --seed
     Random,
 }
 

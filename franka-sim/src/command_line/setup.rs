@@ -10,7 +10,7 @@ use franka_model::limits::JointLimits;
 use franka_model::{JointVector, Load, RobotKind};
 use nalgebra::{Matrix3, Vector3};
 
-use super::arguments::{Arguments, GeometryKind, Kind, NetworkKind, PlantKind};
+use super::arguments::{Arguments, GeometryKind, Kind, KinematicErrorKind, NetworkKind, PlantKind};
 use crate::arm::{Arm, Family, Sensors, StateGeometry};
 use crate::network::{BurstLoss, Conditions, Loss};
 #[cfg(feature = "mujoco")]
@@ -32,6 +32,13 @@ impl Arguments {
                 GeometryKind::Recorded => StateGeometry::RECORDED_FR3,
                 GeometryKind::Random => StateGeometry::random(self.seed),
             };
+        }
+        if let Some(error) = self.kinematic_error {
+            let other = match error {
+                KinematicErrorKind::None => Arm::ideal(kind),
+                KinematicErrorKind::Random => Arm::sample(kind, self.seed, &Family::realistic()),
+            };
+            arm.body.kinematic_error = other.body.kinematic_error;
         }
         if self.noise {
             arm.sensors = Sensors {
@@ -230,7 +237,7 @@ mod tests {
     use clap::Parser as _;
 
     use super::*;
-    use crate::arm::SystemLimits;
+    use crate::arm::{Body, SystemLimits};
 
     fn parsed(arguments: &[&str]) -> Arguments {
         Arguments::try_parse_from([&["franka-sim"], arguments].concat()).expect("valid")
@@ -283,6 +290,33 @@ mod tests {
             let chosen = geometry(&["--state-geometry", name, "--seed", "3"]);
             assert_eq!(chosen, expected, "{name}");
         }
+    }
+
+    #[test]
+    fn the_kinematic_error_is_the_arms_or_the_chosen_one() {
+        let body = |arguments: &[&str]| {
+            let config = parsed(arguments).config().expect("an arm");
+            config.arm.expect("one").body
+        };
+        let none = Arm::ideal(RobotKind::Fr3).body.kinematic_error;
+        let drawn = |seed| Arm::sample(RobotKind::Fr3, seed, &Family::realistic()).body;
+        let seventh = ["--arm-seed", "7", "--seed", "3"];
+        let chosen = |name| body(&[&seventh[..], &["--kinematic-error", name]].concat());
+        for (got, expected) in [
+            (body(&[]), none),
+            (body(&seventh), drawn(7).kinematic_error),
+            (chosen("none"), none),
+            (chosen("random"), drawn(3).kinematic_error),
+        ] {
+            assert_eq!(got.kinematic_error, expected);
+        }
+        assert_ne!(drawn(3).kinematic_error, none);
+        // The two errors are independent: the rest of the body stays that of the arm.
+        let only = Body {
+            kinematic_error: drawn(3).kinematic_error,
+            ..drawn(7)
+        };
+        assert_eq!(chosen("random"), only);
     }
 
     #[test]
