@@ -492,6 +492,7 @@ const _: () = {
     const fn spawned<T: Send + 'static>() {}
     shared::<Robot>();
     spawned::<state::StateStream>();
+    spawned::<state::TaredStates>();
     spawned::<supervision::Events>();
     shared::<supervision::Policy>();
     shared::<gripper::Gripper>();

@@ -3,6 +3,7 @@
 
 pub use crate::state_stream::{Reading, StateStream};
 pub use crate::states::States;
+pub use crate::tare::{TaredState, TaredStates};
 pub use franka_proto::{
     ControllerMode, Errors, MotionGeneratorMode, RobotError, RobotMode, RobotState, TotalLoad,
 };

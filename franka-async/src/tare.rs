@@ -2,12 +2,63 @@
 //! [`Robot::tare`].
 
 use std::ops::ControlFlow;
+use std::pin::Pin;
+use std::task::{Context, Poll};
 use std::time::Duration;
 
+use franka_proto::RobotState;
 use franka_rt::tare::{TareRefused, Taring, WrenchTare};
+use futures::{Stream, StreamExt};
 
 use crate::error::TareError;
 use crate::robot::Robot;
+use crate::states::States;
+
+/// A state and its external wrench minus a tare: see [`Robot::tared_states`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TaredState {
+    /// The state, as the robot reports it.
+    pub state: RobotState,
+    /// Wrench minus the tare, as [`WrenchTare::compensate`] returns it, `[N, N m]`. `None` if the
+    /// robot has no estimate.
+    pub wrench: Option<[f64; 6]>,
+    /// Largest change of any joint position since the tare, `[rad]`. The tare is assumed to hold
+    /// within [`WrenchTare::NEAR`].
+    pub turned: f64,
+}
+
+/// Stream of the newest state as it changes, with the wrench minus a tare: see
+/// [`Robot::tared_states`].
+#[derive(Clone, Debug)]
+pub struct TaredStates {
+    states: States,
+    tare: WrenchTare,
+}
+
+impl TaredStates {
+    /// Returns the newest state that was published.
+    pub fn newest(&self) -> TaredState {
+        self.tared(self.states.newest())
+    }
+
+    fn tared(&self, state: RobotState) -> TaredState {
+        TaredState {
+            wrench: self.tare.compensate(&state),
+            turned: self.tare.turned(&state),
+            state,
+        }
+    }
+}
+
+impl Stream for TaredStates {
+    type Item = TaredState;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<TaredState>> {
+        let state = self.states.poll_next_unpin(context);
+        state.map(|state| state.map(|state| self.tared(state)))
+    }
+}
 
 impl Robot {
     /// Averages the robot's estimate of external forces and torques over half a second of its
@@ -64,6 +115,16 @@ impl Robot {
         let tare = taken.await??;
         self.check_reference()?;
         Ok(tare)
+    }
+
+    /// Returns the stream of [`Self::states`] with each state's wrench minus `tare`. The stream
+    /// keeps this tare until it is dropped, also across postures, which each
+    /// [`turned`](TaredState::turned) shows.
+    pub fn tared_states(&self, tare: &WrenchTare) -> TaredStates {
+        TaredStates {
+            states: self.states(),
+            tare: *tare,
+        }
     }
 
     /// Returns an error while the reference moves, because friction may still hold an arm that

@@ -243,6 +243,11 @@ def test_a_tare_takes_off_what_an_untouched_arm_shows(robot: Robot) -> None:
     torques = state.tau_ext_hat_filtered - tare.joint_torques
     np.testing.assert_allclose(tare.compensate_torques(state), torques)
     assert tare.turned(state) < WrenchTare.NEAR
+    for previous, (state, wrench, turned) in zip([state], robot.tared_states(tare, 100), strict=False):
+        assert state.time_ms >= previous.time_ms and turned < WrenchTare.NEAR
+        np.testing.assert_array_equal(wrench, tare.compensate(state))
+    with pytest.raises(ValueError, match="rate is 0"):
+        robot.tared_states(tare, 0.0)
     touched = condition.force_z(8.0).tared(tare)
     assert "tared(" in repr(touched)
     report = robot.move_by([0.0, 0.0, 0.01], until=touched).wait()

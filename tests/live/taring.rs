@@ -9,6 +9,7 @@ use franka_async::settings::CollisionBehavior;
 use franka_async::state::{TareRefused, Taring, WrenchTare};
 use franka_async::{Pose, Robot};
 use franka_sim::{Running, Sim, Touch};
+use futures::StreamExt;
 use nalgebra::Vector3;
 use tokio::time::timeout;
 
@@ -59,6 +60,36 @@ async fn a_tare_takes_off_what_an_untouched_arm_shows() {
     assert!((8.0..18.0).contains(&force), "{force} N");
     assert!((without - force - tare.wrench[2]).abs() < 1e-9);
     robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn tared_states_follow_the_arm_and_end_with_its_connection() {
+    let _alone = alone();
+    let (robot, _sim) = realistic().await;
+    let tare = robot.tare().await.expect("it rests");
+    let mut states = robot.tared_states(&tare);
+    assert!(states.newest().turned < WrenchTare::NEAR);
+    let motion = tokio::spawn(long_way(&robot).into_future());
+    let mut last = 0;
+    loop {
+        let tared = states.next().await.expect("a state");
+        let state = tared.state;
+        assert!(state.message_id > last, "{} after {last}", state.message_id);
+        last = state.message_id;
+        assert_eq!(tared.wrench, tare.compensate(&state));
+        assert_eq!(tared.turned, tare.turned(&state));
+        let off = tared.wrench.expect("an estimate")[2] - state.O_F_ext_hat_K[2];
+        assert!((off + tare.wrench[2]).abs() < 1e-9, "{off} N");
+        if tared.turned > 2.0 * WrenchTare::NEAR {
+            break;
+        }
+    }
+    robot.stop().await.expect("it brakes");
+    drop(motion.await.expect("no panic"));
+    robot.shutdown().await;
+    // At most one state is left.
+    let left = timeout(SOON, states.count()).await.expect("an end");
+    assert!(left <= 1, "{left}");
 }
 
 #[tokio::test(flavor = "multi_thread")]

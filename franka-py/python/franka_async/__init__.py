@@ -104,7 +104,7 @@ from .motion import (
 )
 from .simulation import Network
 from .settings import VirtualWall
-from .streams import Reading, Stream
+from .streams import Reading, Stream, TaredState
 from .supervision import Backoff, CloseReason, Event, Health, Policy, Reflex
 
 __all__ = [
@@ -193,6 +193,7 @@ __all__ = [
     "Stream",
     "SupersededError",
     "TareError",
+    "TaredState",
     "TargetNotReachedError",
     "Team",
     "TeamError",

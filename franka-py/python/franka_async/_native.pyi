@@ -17,7 +17,7 @@ from .options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, R
 from .otg import Synchronisation
 from .recording import Episode, RecordedEvent, RecordedRobot, RecordStatus, Recovery, ReplayReport
 from .settings import VirtualWall
-from .streams import Reading, Stream
+from .streams import Reading, Stream, TaredState
 from .supervision import CloseReason, Event, Health, Policy, Reflex
 
 _T_co = TypeVar("_T_co", covariant=True)
@@ -986,6 +986,8 @@ class Robot:
         states per second, by the robot's clock. If several states arrive while the program is busy,
         only the newest is returned. Ends with the connection.
         """
+    def tared_states(self, tare: WrenchTare, rate: float | None = None) -> Stream[TaredState]:
+        """The stream of `states()` with each state's wrench minus `tare`, as `TaredState`s."""
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
         state and the number of states `missed` before it. No state is missed unless the program is
@@ -1800,7 +1802,8 @@ class Sim:
         `before-5.9`: the joint limits of the robot's system, of an FR3. `state_geometry`,
         `recorded` (upper arm 0.3162 m, forearm 0.3842 m; the default unless `ideal`), `described`
         (0.316 m, 0.384 m) or `random` (1 mm and 3 mrad off, by `seed`): the geometry of its own
-        poses. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad,
+        poses. `kinematic_error`, `none` or `random` (by `seed`): errors of the true links against
+        these poses, instead of those of the arm. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad,
         within the joint ranges. `tool`, `hand` or a tuple of its frame on the flange (a pose), its
         mass, kg, and its centre of mass in the flange frame, m: declared to the robot. `load`, a
         tuple of mass and centre: not declared. `hand` serves a Franka Hand and mounts it,

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Generic, NamedTuple, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ._native import RobotState, Source
 
-__all__ = ["Reading", "Stream"]
+__all__ = ["Reading", "Stream", "TaredState"]
 
 T = TypeVar("T")
 
@@ -68,3 +71,16 @@ class Reading(NamedTuple):
     missed: int
     """Number of states that the robot sent before this state and that the stream does not contain. They are counted from the
     previous state of the stream, or from its beginning."""
+
+
+class TaredState(NamedTuple):
+    """A state, and its external wrench minus a tare."""
+
+    state: RobotState
+    """The state, as the robot reports it."""
+
+    wrench: NDArray[np.float64] | None
+    """Wrench minus the tare, as ``WrenchTare.compensate`` returns it. ``None`` if the robot has no estimate."""
+
+    turned: float
+    """Largest change of a joint since the tare, rad: beyond ``WrenchTare.NEAR``, take a new tare."""

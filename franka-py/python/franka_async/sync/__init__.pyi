@@ -11,7 +11,7 @@ from ..motion import MotionReport, Reference
 from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, TeamOptions, TuneOptions
 from ..recording import RecordStatus, ReplayReport
 from ..settings import VirtualWall
-from ..streams import Reading, Stream
+from ..streams import Reading, Stream, TaredState
 from ..supervision import CloseReason, Event, Health, Policy, Reflex
 from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RecordingFile, RobotState, VacuumGripperState, WrenchTare
 from .. import _native
@@ -435,6 +435,9 @@ class Robot:
         states per second, by the robot's clock. If several states arrive while the program is busy,
         only the newest is returned. Ends with the connection.
         """
+
+    def tared_states(self, tare: WrenchTare, rate: float | None=None) -> Stream[TaredState]:
+        """The stream of `states()` with each state's wrench minus `tare`, as `TaredState`s."""
 
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
