@@ -44,15 +44,15 @@ impl Sim {
     /// `recorded` (upper arm 0.3162 m, forearm 0.3842 m; the default unless `ideal`), `described`
     /// (0.316 m, 0.384 m) or `random` (1 mm and 3 mrad off, by `seed`): the geometry of its own
     /// poses. `kinematic_error`, `none` or `random` (by `seed`): errors of the true links against
-    /// these poses, instead of those of the arm. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad,
-    /// within the joint ranges. `tool`, `hand` or a tuple of its frame on the flange (a pose), its
-    /// mass, kg, and its centre of mass in the flange frame, m: declared to the robot. `load`, a
-    /// tuple of mass and centre: not declared. `hand` serves a Franka Hand and mounts it,
-    /// `vacuum_gripper` a vacuum gripper, each at a separate address: use
-    /// `Gripper(sim.hand_address)`, because `robot.gripper()` uses the port after the robot's,
-    /// which is the Hand's with `address` only. `network`, a `Network` between robot and clients.
-    /// `address`, the address to listen on; the grippers then listen on the following ports, as on
-    /// a robot. `enforce_limits`, true if commands outside the limits cause a reflex.
+    /// these poses, instead of those of the arm. `seed` of all other randomness. `q`, joint
+    /// positions at the start, 7 numbers, rad, within the joint ranges. `tool`, `hand` or a tuple
+    /// of its frame on the flange (a pose), its mass, kg, and its centre of mass in the flange
+    /// frame, m: declared to the robot. `load`, a tuple of mass and centre: not declared. `hand`
+    /// serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper, each at a separate
+    /// address: use `Gripper(sim.hand_address)`, because `robot.gripper()` uses the port after the
+    /// robot's, which is the Hand's with `address` only. `network`, a `Network` between robot and
+    /// clients. `address`, the address to listen on; the grippers then listen on the following
+    /// ports, as on a robot. `enforce_limits`, true if commands outside the limits cause a reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
