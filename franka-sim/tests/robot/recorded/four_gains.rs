@@ -26,9 +26,8 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
 /// Position of the arm before each run, `[rad]`, held with 80 N·m/rad and 4 N·m·s/rad.
 const HOME: [f64; 7] = [0.0, 0.0, 0.3, -FRAC_PI_2, 0.0, FRAC_PI_2, -FRAC_PI_4];
 
-/// Largest deviation of a ratio. All ratios of the central arm of the family are within 0.05,
-/// except three under the softest spring. There, joints 1, 3 and 4 swing too far by up to 0.072.
-const OFF_MAX: f64 = 0.08;
+/// Largest deviation of a ratio.
+const OFF_MAX: f64 = 0.05;
 
 /// Period of the log, `[s]`.
 pub(super) const PERIOD: f64 = 0.02;
