@@ -12,7 +12,7 @@ use franka_rt::session::{
     Backend, Chunk, GoalId, OnArrival, PoseError, Target, Tolerance, Waypoint,
 };
 use franka_sim::Config;
-use franka_sim::arm::{Arm, StateGeometry};
+use franka_sim::arm::{Arm, Family, StateGeometry};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Largest drift that counts as holding still, `[m/s]`: 0.05 mm in ten minutes.
@@ -69,8 +69,9 @@ impl Case {
 }
 
 /// Runs `test` with a session on an ideal and a realistic arm of each robot whose states have each
-/// geometry, under each backend with each kind of setpoint; for one in `every` of these cases.
-fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) {
+/// geometry, under each backend with each kind of setpoint; for one in `every` of these cases. Each
+/// realistic case has an arm of its own, sampled with the number of the case as seed.
+fn for_each_geometry(every: u64, test: impl Fn(&Case, &mut Lockstep, GoalId)) {
     let backends = [Backend::Torques].into_iter();
     let backends = backends.chain(Backend::ROBOT_CONTROLLERS);
     let geometries = [
@@ -78,6 +79,7 @@ fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) 
         ("recorded", StateGeometry::RECORDED_FR3),
         ("random", StateGeometry::random(5)),
     ];
+    let family = Family::realistic();
     let mut count = 0;
     for backend in backends {
         for kind in RobotKind::ALL {
@@ -89,7 +91,7 @@ fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) 
                     }
                     let mut arm = match is_ideal {
                         true => Arm::ideal(kind),
-                        false => Arm::realistic(kind),
+                        false => Arm::sample(kind, count, &family),
                     };
                     arm.body.state_geometry = state_geometry;
                     let mut lockstep = Lockstep::new(Config {
@@ -100,7 +102,10 @@ fn for_each_geometry(every: usize, test: impl Fn(&Case, &mut Lockstep, GoalId)) 
                         backend,
                         ..Engagement::default()
                     });
-                    let arm = if is_ideal { "ideal" } else { "realistic" };
+                    let arm = match is_ideal {
+                        true => "ideal".to_owned(),
+                        false => format!("sampled (seed {count})"),
+                    };
                     let name = format!("{arm} {kind:?}, {geometry}, {backend}");
                     let case = Case {
                         name,
