@@ -72,6 +72,10 @@ def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
         state = robot.state()
         np.testing.assert_allclose(robot.model().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
         assert np.abs(Model.fr3().pose("ee", state.q, state.F_T_EE) - state.O_T_EE).max() > 5e-5
+        found = robot.model().ik(state.O_T_EE, joint7=state.q[6], F_T_EE=state.F_T_EE)
+        assert np.abs(found - state.q).max(axis=1).min() < 2e-5
+        np.testing.assert_allclose(robot.pose_at(state.q), state.O_T_EE, atol=2e-6)
+        assert abs(robot.model().clearance(state.q).distance - Model.fr3().clearance(state.q).distance) > 1e-6
     described = Sim.fr3(virtual_time=True, state_geometry="described")
     with described as sim, sync.Robot(sim.address, **PATIENT) as robot:
         state = robot.state()
