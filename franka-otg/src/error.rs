@@ -9,7 +9,7 @@ pub enum PlanError {
     /// A value in a state or target is not finite.
     #[error("{quantity} of axis {axis} is not finite")]
     NotFinite {
-        /// The quantity with this value.
+        /// The quantity that is not finite.
         quantity: Quantity,
         /// Number of the axis, from 1.
         axis: usize,
@@ -35,9 +35,9 @@ pub enum PlanError {
         /// Number of the axis, from 1. It is 1 for a straight line, which is planned as one axis.
         axis: usize,
     },
-    /// The distance or the velocity differs from the limits by too many orders of magnitude, so
-    /// `f64` cannot represent the powers in the solution. The bound is 100 decades, in units of the
-    /// acceleration and jerk limits.
+    /// The distance, the velocity or a limit is too large or too small, so `f64` cannot represent
+    /// the powers in the solution. In units of the acceleration and jerk limits, the bound is 100
+    /// orders of magnitude.
     #[error(
         "the state, the target and the limits of axis {axis} differ by too many orders of magnitude \
          for a plan, expected similar magnitudes"

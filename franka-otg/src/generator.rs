@@ -13,8 +13,9 @@ use crate::straight_line::StraightLine;
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
 ///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state). Each
-///   method creates a new plan from the current state, unless nothing changes.
-/// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
+///   of these methods creates a new plan from the current state, unless nothing changes.
+/// - Output: call [`step`](Self::step) once per command, and [`sample`](Self::sample) to look
+///   ahead.
 /// - Getters: [`state`](Self::state), [`target`](Self::target),
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
 ///   [`is_done`](Self::is_done).
@@ -144,12 +145,12 @@ impl<const N: usize> Generator<N> {
         self
     }
 
-    /// Moves from the current state to rest at `target`. A call with the current target has no
-    /// effect.
+    /// Starts a motion from the current state to rest at `target`. A call with the current target
+    /// has no effect.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
-    /// After an error, the current motion continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. After an error, the current motion continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
             && now.position == *target
@@ -161,23 +162,24 @@ impl<const N: usize> Generator<N> {
         self.plan_target(&State::at_rest(*target))
     }
 
-    /// Moves to `target` and arrives with the target's velocity and acceleration, in the least time
-    /// that is feasible for all axes. A call with the current target has no effect.
+    /// Starts a motion to `target` that arrives with the target's velocity and acceleration, in the
+    /// least time that is feasible for all axes. A call with the current target has no effect.
     ///
-    /// Use this method to follow a moving object, with a new target before each arrival, or to pass
+    /// Use this method to follow a moving object (set a new target before each arrival), or to pass
     /// through points without a stop. If no new target is set, the motion continues for one cycle
     /// past the old target, and then stops in the least time. An arm therefore stops if the program
     /// stalls.
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
-    /// be early cannot wait at a moving target. It moves back and approaches again, possibly after
-    /// it has passed the target. The other axes wait for this axis.
+    /// be early cannot wait at a moving target. Such an axis moves back and approaches again,
+    /// possibly after it has passed the target. All axes arrive later if one axis needs more time
+    /// for this.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
-    /// Returns [`PlanError::TargetMotion`] if `|velocity| + acceleration^2 / (2 jerk limit)`
-    /// exceeds the velocity limit, or if the acceleration exceeds its limit. After an error, the
-    /// current motion continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. Returns [`PlanError::TargetMotion`] if
+    /// `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or if the
+    /// acceleration exceeds its limit. After an error, the current motion continues.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
@@ -194,7 +196,7 @@ impl<const N: usize> Generator<N> {
     /// Changes the limits of the current motion, which keeps its target. A call with the current
     /// limits has no effect.
     ///
-    /// If the current state is outside the new limits, the axes brake into them.
+    /// If the current state is outside the new limits, the axes brake until they are within them.
     ///
     /// # Errors
     /// Returns [`PlanError::TargetMotion`] if the target moves faster than the new limits allow,
@@ -220,17 +222,19 @@ impl<const N: usize> Generator<N> {
     /// Drops the target and stops in the least time.
     ///
     /// A motion on a straight line stops on this line. If all axes have the same ratio of
-    /// acceleration limit to jerk limit, such a stop takes no longer than separate stops. Otherwise
-    /// it takes longer by about the difference between these ratios. If the motion is not on a
-    /// line, each axis stops separately. Braking cannot fail, because all inputs have been checked.
+    /// acceleration limit to jerk limit, such a stop takes no longer than separate stops of the
+    /// axes. Otherwise it takes longer, by about the difference between these ratios (which are
+    /// times). If the motion is not on a line, each axis stops separately. Braking cannot fail,
+    /// because all inputs have been checked.
     pub fn brake(&mut self) {
         if self.heading != Heading::Rest {
             self.plan_stop();
         }
     }
 
-    /// Multiplies the velocity by `share`, from 0 to 1, and creates a new plan to the target, or a
-    /// stop if no target is set. A motion on a straight line stays on this line.
+    /// Multiplies the velocity by the factor `share`, between 0 and 1, and creates a new plan to
+    /// the target. If no target is set, it plans a stop. A motion on a straight line stays on this
+    /// line.
     ///
     /// The velocity of the output jumps, so the caller must ensure that `share` is close to 1.
     ///
@@ -250,10 +254,10 @@ impl<const N: usize> Generator<N> {
         self.go_on_from(state, line)
     }
 
-    /// Moves the output back on its straight line to the place nearest to `position`, and
-    /// multiplies the velocity by `share`, from 0 to 1. The output does not move forward. A new
-    /// plan begins there, to the target, or to a stop if no target is set. Returns `false` and
-    /// changes nothing if the motion is not on a straight line.
+    /// Moves the output back on its straight line to the point nearest to `position`, and
+    /// multiplies the velocity by the factor `share`, between 0 and 1. The output never moves
+    /// forward. A new plan begins at that point; it leads to the target, or to a stop if no target
+    /// is set. Returns `false` and changes nothing if the motion is not on a straight line.
     ///
     /// The output jumps, so the caller must ensure that it is close to `position` and that `share`
     /// is close to 1.
@@ -294,24 +298,24 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Sets the current state to `state`, and creates a new plan from there to the target, or a
-    /// least-time stop if no target is set.
+    /// Sets the current state to `state`, and creates a new plan from there to the target. If no
+    /// target is set, it plans a stop in the least time.
     ///
     /// The output jumps to `state`, so the caller must ensure that `state` is close to the last
     /// output.
     ///
     /// # Errors
-    /// Returns [`PlanError::NotFinite`] if a value is not finite, or [`PlanError::OutOfRange`].
-    /// After an error, the current motion continues.
+    /// Returns [`PlanError::NotFinite`] if a value is not finite, and [`PlanError::OutOfRange`] if
+    /// the magnitudes differ too much. After an error, the current motion continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
     }
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
-    /// The cycle in which the motion ends, and all later cycles, return exactly the target with
-    /// zero velocity and acceleration. For a moving target, they return the position beyond the
-    /// target at which the motion stops.
+    /// In the cycle in which the motion ends, and in all later cycles, the state is exactly the
+    /// target with zero velocity and acceleration. After a moving target, it is the position beyond
+    /// the target at which the motion stops.
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());
@@ -358,7 +362,8 @@ impl<const N: usize> Generator<N> {
         &self.limits
     }
 
-    /// Returns the duration of the current motion from the creation of its plan, in seconds.
+    /// Returns the duration of the current motion in seconds, counted from the creation of its
+    /// plan.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.plan.duration()
@@ -386,7 +391,7 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Returns true if the current state is at rest at the end of the motion.
+    /// Returns true if the motion has ended, so that the current state is at rest.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.state.position == *self.plan.end() && self.state.is_at_rest()

@@ -34,7 +34,7 @@
 //! ```
 //!
 //! `cargo run --release -p franka-otg --example plot` draws an irregular target and the smooth
-//! command (the picture on the book's page on the generator).
+//! command that follows it.
 //!
 //! # Modules
 //!
@@ -46,13 +46,13 @@
 //! | `straight_line` | all axes as one scalar problem |
 //! | `axis` | one axis, from its state to its profile |
 //! | `task` | one axis in units of its limits |
-//! | `brake` | returns a state outside the limits into them |
-//! | `least_time` | step one, targets at rest |
-//! | `given_duration`, `stop_then_go` | step two, targets at rest: velocity cap, and stop first |
-//! | `moving_target` | targets in motion: a profile for each feasible duration |
-//! | `feasible_durations`, `velocity_change` | the feasible durations |
-//! | `extremal_profile`, `plateau` | the motion with the farthest end in a given time; a motion through a constant velocity |
-//! | `shape`, `profile` | seven durations of jerk; segments over time |
+//! | `brake` | the motion of a state outside the limits back into them |
+//! | `least_time` | targets at rest: the least duration of one axis |
+//! | `given_duration`, `stop_then_go` | targets at rest: a profile with a longer, given duration, which has a lower velocity or begins with a stop |
+//! | `moving_target` | targets in motion: a profile with each feasible duration |
+//! | `feasible_durations`, `velocity_change` | targets in motion: the feasible durations |
+//! | `extremal_profile`, `plateau` | the motion that gets farthest in a given time; a motion with a phase of constant velocity |
+//! | `shape`, `profile` | the durations of the seven jerk phases; segments over time |
 //! | `transfer`, `root`, `times`, `scalar` | velocity changes, root search, sorted lists, roots |
 //!
 //! # Targets at rest
@@ -61,8 +61,8 @@
 //! interval that only grows with `T`. This has three consequences. First, every duration above the
 //! least duration is feasible, so the common duration is the longest least duration of the axes.
 //! Second, the fastest motion is "push at the limits, then stop", from the end of an immediate stop
-//! towards the target. Third, the end of the motion grows with the duration of the push. A
-//! comparison with a few breakpoints therefore selects a closed form or one short convex search
+//! towards the target. Third, the longer the push, the farther away the motion ends. A comparison
+//! with a few breakpoints therefore selects a closed form or one short convex search
 //! (`least_time`).
 //!
 //! # Targets in motion
@@ -77,8 +77,8 @@
 //! # Guarantees
 //!
 //! - Velocity, acceleration and jerk stay within their limits, except for rounding, if the start
-//!   state can stay within them. The generator brings other states back inside under the jerk
-//!   limit, as early as possible. It never clamps the state (`brake`).
+//!   state can stay within them. The generator brings other states back within the limits as early
+//!   as the jerk limit allows. It never clamps the state (`brake`).
 //! - All axes are at the target at the same time, within rounding. If an axis can reach a target at
 //!   rest without overshoot, it does not overshoot when it waits for slower axes. One case is
 //!   special: an axis whose stop ends exactly at its target cannot arrive later without overshoot,
@@ -91,12 +91,12 @@
 //!
 //! - It does not model the robot: joint ranges, collisions, kinematics and torques are the caller's
 //!   responsibility.
-//! - It reads no clock: [`Generator::step`] advances by [`CYCLE`], one millisecond. A machine with
-//!   another cycle calls [`Generator::sample`].
+//! - It reads no clock: [`Generator::step`] advances by [`CYCLE`], one millisecond. For a machine
+//!   with another cycle time, call [`Generator::sample`].
 //! - Limits are symmetric and apply to each axis separately. The caller is responsible for a limit
 //!   on a norm.
-//! - It plans to one target at a time. For a path through waypoints the caller sets a sequence of
-//!   targets.
+//! - It plans a motion to one target at a time. For a path through waypoints, the caller sets one
+//!   target after another.
 //!
 //! # Termination
 //!
@@ -123,13 +123,14 @@
 //!
 //! # Sources
 //!
-//! The problem, its time-optimal profiles and the two steps come from L. Berscheid, T. Kröger,
-//! *Jerk-limited Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021,
-//! arXiv:2105.04830; T. Kröger, F. Wahl, *Online Trajectory Generation: Basic Concepts for
-//! Instantaneous Reactions to Unforeseen Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer,
-//! H. Ritter, *On-Line Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. These files
-//! derive the case decision with breakpoints, and the two families of profiles in step two. The
-//! tests compare the results with plain bisection, and with vectors from Ruckig 0.19.4.
+//! The problem, its time-optimal profiles and the two steps (the least duration of each axis, then
+//! profiles with a common duration) come from L. Berscheid, T. Kröger, *Jerk-limited Real-time
+//! Trajectory Generation with Arbitrary Target States*, RSS 2021, arXiv:2105.04830; T. Kröger, F.
+//! Wahl, *Online Trajectory Generation: Basic Concepts for Instantaneous Reactions to Unforeseen
+//! Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer, H. Ritter, *On-Line Planning of
+//! Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision between cases with
+//! breakpoints, and the two families of profiles with a given duration, are derived in this crate.
+//! The tests compare the results with plain bisection, and with vectors from Ruckig 0.19.4.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]

@@ -2,8 +2,8 @@
 
 use crate::error::{PlanError, Quantity};
 
-/// Symmetric limits of one axis. Velocity, acceleration and jerk stay within plus or minus these
-/// values.
+/// Symmetric limits of one axis. Each of velocity, acceleration and jerk stays between minus and
+/// plus its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisLimits {
     /// Largest velocity, in units per second.
@@ -33,12 +33,12 @@ impl AxisLimits {
     }
 }
 
-/// Limits of `N` axes, which have been checked to be positive and finite.
+/// Limits of `N` axes. All limits are positive and finite: the constructors check this.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<const N: usize>([AxisLimits; N]);
 
 impl<const N: usize> Limits<N> {
-    /// Creates limits from one entry per axis.
+    /// Creates limits from one [`AxisLimits`] per axis.
     ///
     /// # Errors
     /// Returns [`PlanError::Limit`] if a limit is not a positive finite number.
@@ -49,7 +49,8 @@ impl<const N: usize> Limits<N> {
         Ok(Self(limits))
     }
 
-    /// Creates limits from one array per quantity, as in data sheets.
+    /// Creates limits from one array per quantity, as data sheets list them: velocities,
+    /// accelerations and jerks.
     ///
     /// # Errors
     /// Returns [`PlanError::Limit`] if a limit is not a positive finite number.
@@ -65,7 +66,7 @@ impl<const N: usize> Limits<N> {
         }))
     }
 
-    /// Returns the limits of one axis.
+    /// Returns the limits of one axis; the first axis has the number 0.
     ///
     /// # Panics
     /// Panics if the axis does not exist.

@@ -8,14 +8,16 @@ use crate::profile::Profile;
 use crate::state::{AxisState, State};
 use crate::straight_line::StraightLine;
 
-/// Synchronisation of the axes in a motion to a target. All axes always arrive at the same instant.
+/// How the axes of a motion to a target are synchronised. In both cases, all axes arrive at the
+/// same instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
     /// The axes move in phase on a straight line if the current motion allows it, which is always
     /// the case from rest. Otherwise the axes move as with [`Time`](Self::Time).
     #[default]
     Straight,
-    /// The axes move on a curved path, and arrive as early as the slowest axis can.
+    /// Each axis has its own motion, so the path may be curved. All axes arrive as early as the
+    /// slowest axis can.
     Time,
 }
 

@@ -69,7 +69,7 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// Returns the state of one axis.
+    /// Returns the state of one axis; the first axis has the number 0.
     ///
     /// # Panics
     /// Panics if the axis does not exist.
