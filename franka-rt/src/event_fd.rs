@@ -1,5 +1,5 @@
-//! Eventfd with which the thread wakes the receiver of its reports. Any reactor can poll it. On
-//! systems other than Linux, a pair of sockets replaces it.
+//! Eventfd with which the control thread wakes the receiver of its reports. Any reactor can poll
+//! it. On systems other than Linux, a pair of sockets replaces it.
 //!
 //! A notification is one non-blocking `write`, without a lock. The writer does not know the
 //! listener. Notifications add up until the listener drains them, so a slow listener is woken once,
@@ -14,13 +14,13 @@ use crate::sys;
 /// An eventfd. Clones share one descriptor.
 ///
 /// With Tokio, create `AsyncFd::new(event_fd)` and await `readable()`. Then call
-/// [`EventFd::drain`], then the guard's `clear_ready`, and then read the queues. A notification in
-/// between is not lost, because it makes the descriptor readable again.
+/// [`EventFd::drain`], then the guard's `clear_ready`, and then read the queues. A notification
+/// that arrives between these steps is not lost, because it makes the descriptor readable again.
 #[derive(Clone, Debug)]
 pub struct EventFd(Arc<sys::Wake>);
 
 impl EventFd {
-    /// Opens an eventfd without a notification.
+    /// Opens an eventfd that is not readable yet.
     ///
     /// # Errors
     /// Returns an error if the process or the system has no descriptor left.

@@ -3,9 +3,10 @@
 //!
 //! The robot sends one state per millisecond, so a delayed host finds several waiting states. Only
 //! the newest one is answered. [`Exchange::receive`] waits for a datagram, then reads all that have
-//! arrived. It keeps the state with the highest `message_id`, unless that number is not newer than
-//! the last kept state, or too far ahead of it to be genuine. Datagrams from addresses other than
-//! the robot's are dropped and counted. Nothing allocates after [`Exchange::new`].
+//! arrived. It keeps the state with the highest `message_id`. A state is dropped if its number is
+//! not above the number of the last kept state, or too far above it to be genuine. Datagrams from
+//! addresses other than the robot's are dropped and counted. Nothing allocates after
+//! [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -15,9 +16,9 @@ use socket2::{SockAddr, Socket};
 
 use crate::sys;
 
-/// Opens the socket for the states of `robot`, on any local address of the same family, IPv4 or
-/// IPv6. The system chooses a free port, which `Connect` must announce. States that arrive before
-/// the thread starts wait in the kernel.
+/// Opens the socket that receives the states of `robot`, on all local addresses of the same family
+/// (IPv4 or IPv6). The system chooses a free port, which the `Connect` request must contain. The
+/// kernel keeps states that arrive before the control thread starts.
 ///
 /// # Errors
 /// Returns an error if the system provides no socket or port.
@@ -33,11 +34,11 @@ pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
 /// and requests to stop at least this often.
 pub const TICK: Duration = Duration::from_millis(20);
 
-/// Returns the time to wait for a state so that a silence of `link_timeout` is noticed. It is a
-/// quarter of `link_timeout`, and at most a [`TICK`].
+/// Returns how long one call of [`Exchange::receive`] may wait, so that a silence of `link_timeout`
+/// is noticed in time: a quarter of `link_timeout`, and at most a [`TICK`].
 ///
-/// The thread notices a loss late by at most a quarter of the timeout plus two of the kernel's
-/// clock ticks (4 ms at 250 Hz). The kernel counts such waits in ticks.
+/// The thread notices a lost link with a delay of at most a quarter of the timeout plus two of the
+/// kernel's clock ticks, because the kernel counts such waits in ticks. A tick is 4 ms at 250 Hz.
 pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
@@ -46,7 +47,7 @@ pub fn wait_for(link_timeout: Duration) -> Duration {
 /// forever.
 const MIN_WAIT: Duration = Duration::from_millis(1);
 
-/// Receives states and sends commands.
+/// Receives a robot's states and sends commands to the robot.
 #[derive(Debug)]
 pub struct Exchange {
     socket: Socket,
@@ -85,7 +86,7 @@ pub struct Reception {
     pub leap: Option<u64>,
     /// Length of the wait if no datagram arrived, otherwise zero.
     pub waited: Duration,
-    /// errno value of a receive that failed. An empty socket does not count.
+    /// `errno` of a receive that failed; `None` if the socket was only empty.
     pub error: Option<i32>,
 }
 
@@ -140,7 +141,8 @@ impl Exchange {
         &self.newest
     }
 
-    /// Returns the `message_id` of the newest state, `[ms]` of the robot's clock.
+    /// Returns the `message_id` of the newest state, `[ms]` of the robot's clock; `None` before the
+    /// first state.
     pub fn message_id(&self) -> Option<u64> {
         self.message_id
     }
@@ -149,8 +151,8 @@ impl Exchange {
     /// [`with_wait`](Self::with_wait). Then reads the waiting datagrams, up to [`DRAIN_MAX`] in
     /// total.
     ///
-    /// A receive that fails does not wait. So after a failure, the next call first sleeps for a
-    /// millisecond. Otherwise a lasting error would keep the processor busy.
+    /// A receive that fails does not wait, so a lasting error would keep the processor busy.
+    /// Therefore, after a failure, the next call first sleeps for a millisecond.
     pub fn receive(&mut self) -> Reception {
         if self.failed {
             sys::sleep_a_millisecond();
@@ -221,7 +223,8 @@ impl Exchange {
     /// an error.
     ///
     /// # Errors
-    /// Returns [`SendError`] if the command was not sent. The next cycle may send its own.
+    /// Returns [`SendError`] if the command was not sent. The next cycle can still send its own
+    /// command.
     pub fn send(&self, command: &[u8]) -> Result<(), SendError> {
         let reply_to = self.reply_to.as_ref().ok_or(SendError::NobodyToAnswer)?;
         match self
@@ -253,7 +256,7 @@ pub enum SendError {
         /// Length of the command in bytes.
         length: usize,
     },
-    /// The system refused to send; contains the errno value.
+    /// The system refused to send, with this `errno`.
     #[error("libfranka: UDP send: {}", sys::error_text(*.0))]
     Refused(i32),
 }

@@ -7,8 +7,8 @@
 //!         orders, goal slot --+        +--> newest state, records, events -> eventfd
 //! ```
 //!
-//! * [`driver`]: answers one robot state. Contains the phases of a motion, from watching to
-//!   finishing, but no clock and no socket.
+//! * [`driver`]: computes the answer to each robot state. It contains the phases of a motion, from
+//!   watching to finishing, but no clock and no socket.
 //! * [`session`]: target control. Turns goals into one continuous joint-space reference.
 //! * [`control`]: commands, and control at 1 kHz by the user's own functions.
 //! * [`law`]: joint torques from a reference and a state.
@@ -18,8 +18,9 @@
 //! * [`lifecycle`]: follows one motion from the first goal to the robot's last reply, across TCP
 //!   and UDP. Without I/O.
 //! * [`supervision`]: handles lost connections, reconnects, reflexes and recovery. Without I/O.
-//! * [`together`]: makes motions of several robots begin at the same time. [`team`]: sessions of
-//!   several robots whose motions begin together. If one robot has a fault, all of them brake.
+//! * [`together`]: makes motions of several robots begin at the same time.
+//! * [`team`]: combines sessions of several robots. Their motions begin together, and if one robot
+//!   has a fault, all of them brake.
 //! * [`thread`]: the only loop. It owns the socket and reads the clock.
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: the
 //!   parts of the loop. [`stats`] defines when a state is late.

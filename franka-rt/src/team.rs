@@ -44,11 +44,11 @@ pub const MEMBERS_MAX: usize = 254;
 /// thread longer, up to 20 ms.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
-/// Time for which a goal of a joint motion waits for the goals of the other members, by the clock
+/// Time for which a goal of a common motion waits for the goals of the other members, by the clock
 /// of its robot. Meanwhile the driver holds the arm, or the previous motion continues.
 pub const START_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Number of one joint motion of a team.
+/// Identifies one round: a motion that all members of a team begin together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Round(NonZeroU32);
 
@@ -129,7 +129,7 @@ impl core::fmt::Display for MemberFault {
     }
 }
 
-/// Begins and stops the joint motions of a team, from any thread. Clones control the same team.
+/// Begins and stops the common motions of a team, from any thread. Clones control the same team.
 #[derive(Clone, Debug)]
 pub struct Coordinator {
     shared: Arc<Shared>,

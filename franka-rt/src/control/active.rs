@@ -5,7 +5,7 @@ use super::{Command, Misfit};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// The program of a motion whose commands the user's thread writes.
+/// The program of a motion under active control: a thread of the user writes each command.
 ///
 /// No filter and no limiter changes the commands, as with libfranka's `ActiveControl`.
 #[derive(Clone, Copy, Debug)]
@@ -20,10 +20,10 @@ pub enum WriteError {
     /// has ended the motion.
     #[error("writeOnce must not be called after the motion has finished.")]
     NotRunning,
-    /// The motion command came with torques, but the robot's own controller runs.
+    /// The motion command contains torques, but the robot's own controller runs.
     #[error("Torques can only be commanded in kExternalController mode.")]
     TorquesUnwanted,
-    /// A motion command came without the torques that the motion requires.
+    /// The motion command contains no torques, but the motion requires them.
     #[error(
         "Torque command missing, please use writeOnce(const MotionGeneratorType& motion_generator_input, const Torques& \
          control_input) for external controllers. (here `write_motion_and_torques`)"
@@ -32,11 +32,11 @@ pub enum WriteError {
     /// The motion does not accept this kind of command.
     #[error("Wrong writeOnce method called for currently active control!")]
     WrongKind,
-    /// The last torques came, but the motion generator still runs because its last command is
-    /// missing.
+    /// The torques are marked as the last ones, but the motion generator still runs, because its
+    /// own last command is missing.
     #[error("libfranka robot: Motion generator is still running! Can't stop external control")]
     GeneratorRunning,
-    /// The command does not fit the motion.
+    /// The motion does not accept this combination of motion command and torques.
     #[error(transparent)]
     Misfit(#[from] Misfit),
     /// A number of the command is invalid.

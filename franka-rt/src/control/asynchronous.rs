@@ -5,14 +5,14 @@ use franka_proto::{MoveControllerMode, MoveGeneratorMode, MoveRequest, RobotMode
 use super::{Command, JointPositions};
 use crate::triple_buffer::{Reader, Writer, triple_buffer};
 
-/// The program of a motion between sparse joint targets. It sends one command per new target
-/// instead of one per state. Only protocol 10 supports it.
+/// The program of a motion between sparse joint targets. It sends one command for each new target,
+/// not one for each state. Only protocol 10 supports this program.
 #[derive(Debug)]
 pub struct AsynchronousPositions {
     targets: Reader<AsynchronousTarget>,
 }
 
-/// A joint target, as the slot passes it.
+/// A joint target that a [`slot`](crate::slot) passes to the control thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
     /// Joint positions to move to and hold, `[rad]`.
@@ -28,8 +28,8 @@ impl AsynchronousPositions {
         (Self { targets }, writer)
     }
 
-    /// Returns the request for such a motion. The robot keeps each joint below
-    /// `maximum_velocities`, `[rad/s]`.
+    /// Returns the request that starts a motion between sparse joint targets. The robot keeps each
+    /// joint below `maximum_velocities`, `[rad/s]`.
     pub fn request(maximum_velocities: [f64; 7]) -> MoveRequest {
         MoveRequest {
             asynchronous: Some(maximum_velocities),
@@ -57,7 +57,7 @@ impl AsynchronousPositions {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TargetStatus {
-    /// There is no target, or the robot runs another motion.
+    /// There is no target, or the robot does something else.
     Idle,
     /// The arm moves to the target.
     Executing,
@@ -85,16 +85,16 @@ pub enum AbortReason {
 }
 
 impl TargetStatus {
-    /// Default distance between the desired joint positions and the target below which the target
-    /// counts as reached: the Euclidean norm, `[rad]`. Source: libfranka 0.21,
-    /// `async_position_control_handler.hpp`.
+    /// Default of the goal tolerance, `[rad]`. A target counts as reached if the desired joint
+    /// positions differ from the target by less than this value (Euclidean norm). Source: libfranka
+    /// 0.21, `async_position_control_handler.hpp`.
     pub const GOAL_TOLERANCE: f64 = 1e-3;
 
     /// Norm of the desired joint velocities below which the arm counts as resting, `[rad/s]`.
     /// Source: libfranka 0.21, `async_position_control_handler.hpp`.
     pub const REST: f64 = 0.01;
 
-    /// Returns the status of the newest target, which a state of the motion shows.
+    /// Returns the progress towards `target`, the newest target, as `state` shows it.
     pub fn of(state: &RobotState, target: Option<&[f64; 7]>, goal_tolerance: f64) -> Self {
         let Some(target) = target else {
             return Self::Idle;

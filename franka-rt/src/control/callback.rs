@@ -16,12 +16,12 @@ type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 /// The program of a motion that passes every state to one or two control functions.
 ///
 /// The rules follow libfranka's control loops. A function receives a state and the time since the
-/// previous state by the robot's clock. This time is zero at first, and more than a millisecond
-/// after a lost state. The low-pass filter, the limiter and the checks process the returned
-/// command. Two functions receive the same state and time. Once one function finishes, the other is
-/// not called any more, and the last command contains its command of the previous cycle. Protocol
-/// 10 calls the torque function first; protocol 5 calls the motion function first. Source:
-/// libfranka 0.21 and 0.9, `control_loop.cpp`.
+/// previous state by the robot's clock. This time is zero in the first call, and more than a
+/// millisecond after a lost state. The low-pass filter, the limiter and the checks process the
+/// returned command. If there are two functions, both receive the same state and time. Once one
+/// function finishes, the second function is not called any more, so the last command repeats the
+/// second function's previous command. Protocol 10 calls the torque function first; protocol 5
+/// calls the motion function first. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
     generator_first: bool,
@@ -40,8 +40,9 @@ struct Source<T> {
 }
 
 impl Callback {
-    /// Returns a program that commands only torques, with the default shaping. If the protocol has
-    /// no such motions, a motion generator also runs, whose commands make the arm stand still.
+    /// Returns a program that commands only torques, with the default shaper. If the protocol has
+    /// no motions with torques alone, a motion generator also runs. Its commands are zero
+    /// velocities.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -54,7 +55,7 @@ impl Callback {
         Self::new(version, stand).with_torques(torques)
     }
 
-    /// Returns a program that commands a motion generator, with the default shaping. One of the
+    /// Returns a program that commands a motion generator, with the default shaper. One of the
     /// robot's own controllers follows the generator.
     pub fn motion<C: GeneratorCommand, R: Into<Next<C>>>(
         version: Version,
@@ -64,8 +65,8 @@ impl Callback {
         Self::new(version, Some(Source::new(motion, C::ZERO.into())))
     }
 
-    /// Adds torques to the commands to a motion generator. The torques replace the robot's own
-    /// controller.
+    /// Adds a torque function to a program that commands a motion generator. The torques replace
+    /// the robot's own controller.
     #[must_use]
     pub fn with_torques<R: Into<Next<Torques>>>(
         self,
@@ -99,8 +100,8 @@ impl Callback {
         self.torques.is_some()
     }
 
-    /// Returns the request for a motion of this program. `controller` is used if the program
-    /// commands no torques.
+    /// Returns the request that starts a motion of this program. If the program commands no
+    /// torques, the request names `controller`.
     pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
         let controller = match &self.torques {
             Some(_) => MoveControllerMode::ExternalController,

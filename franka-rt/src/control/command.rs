@@ -5,7 +5,7 @@ use franka_proto::{MoveGeneratorMode, RobotCommand, RobotState};
 use crate::control::Shaper;
 use crate::shaping::{InvalidCommand, check};
 
-/// Joint torques without gravity and friction, `[N m]`. The robot adds both parts.
+/// Joint torques without the torques for gravity and friction, `[N m]`. The robot adds these.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torques(pub [f64; 7]);
 
@@ -135,7 +135,8 @@ impl MotionCommand {
 
 /// A type of command for one motion generator.
 pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
-    /// A command of zeros, without an elbow. It is sent while there is no other command.
+    /// A command of zeros, without an elbow. A program sends it before its function has returned a
+    /// command.
     const ZERO: Self;
 }
 

@@ -6,8 +6,8 @@ use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// Content of one cycle's datagram: a command to the motion generator, torques, or both. The motion
-/// determines which of them it requires.
+/// Content of one cycle's datagram: a command to the motion generator, torques, or both. The modes
+/// of the motion determine which of them are required.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// Command for the motion generator.
@@ -21,20 +21,20 @@ pub struct Command {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Misfit {
-    /// A motion command came, but no motion generator runs.
+    /// The command contains a motion command, but no motion generator runs.
     #[error("libfranka robot: Trying to send motion command, but no motion generator running!")]
     NoGenerator,
-    /// Torques came, but the robot's own controller runs.
+    /// The command contains torques, but the robot's own controller runs.
     #[error("libfranka robot: Trying to send control command, but no controller running!")]
     NoController,
-    /// Only a motion command or only torques came, but the motion requires both.
+    /// The command contains only a motion command or only torques, but the motion requires both.
     #[error("libfranka robot: Trying to send partial robot command!")]
     Partial,
 }
 
 impl Command {
-    /// Returns torques for a motion without commands to a generator. If the protocol has no such
-    /// motions, adds a generator command that makes the arm stand still.
+    /// Returns the command of a motion that is controlled with torques alone. If the protocol has
+    /// no such motions, the command also contains zero joint velocities for a motion generator.
     pub fn torques(version: Version, torques: Torques) -> Self {
         let idle = JointVelocities::ZERO.into();
         Self {
@@ -66,10 +66,8 @@ impl Command {
     }
 
     /// Returns the datagram that answers the state `message_id`. Values that the command does not
-    /// contain are zero. If `finished`, the datagram sets the finishing flag of the motion
-    /// generator if there is a motion command, otherwise the finishing flag of the torques.
-    ///
-    /// All programs build their datagrams here.
+    /// contain are zero. If `finished` is true, the datagram sets one finishing flag: the flag of
+    /// the motion generator if there is a motion command, otherwise the flag of the torques.
     ///
     /// # Errors
     /// Returns [`InvalidCommand::NotFinite`] if any value of the command is not finite.

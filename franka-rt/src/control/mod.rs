@@ -2,13 +2,14 @@
 //!
 //! * [`Torques`] and the four [`MotionCommand`]s: commands in the robot's own quantities.
 //! * [`Next`]: the return value of a control function.
-//! * [`Callback`]: the program of a motion that calls control functions. Order, filter and limiter
-//!   are libfranka's.
+//! * [`Callback`]: the program of a motion that calls control functions. The order of the calls,
+//!   the filter and the limiter are the same as in libfranka.
 //! * [`Shaper`]: filter, limiter and check of each kind of command, as in libfranka's control
 //!   loops.
-//! * [`ActiveControl`]: the program of a motion whose commands the user's thread writes.
+//! * [`ActiveControl`]: the program of a motion in which a thread of the user writes each command.
 //! * [`AsynchronousPositions`]: sparse joint targets. The robot plans the motion between them.
-//! * [`Command`]: content of one datagram. Checks whether a motion in given [`Modes`] accepts it.
+//! * [`Command`]: content of one datagram. [`Command::check`] checks whether a motion in given
+//!   [`Modes`] accepts it.
 //! * [`Failure`]: the reason why a program could not continue.
 
 mod active;

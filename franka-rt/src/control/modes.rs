@@ -2,7 +2,7 @@
 
 use franka_proto::{ControllerMode, MotionGeneratorMode, MoveRequest, RobotState};
 
-/// The two modes that states show while a motion runs.
+/// The motion generator mode and the controller mode that states show while a motion runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Modes {
     /// The motion generator mode, numbered as in the state.
@@ -33,8 +33,8 @@ impl Modes {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// True if `state` shows both modes. Ignores `robot_mode`, which may change after the two modes
-    /// when a motion starts.
+    /// True if `state` shows both modes. Ignores `robot_mode`, because it may change later than
+    /// these two modes when a motion starts.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller
     }

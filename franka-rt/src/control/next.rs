@@ -4,7 +4,7 @@ use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities,
 
 /// A command that continues or finishes the motion, or the decision to give it up.
 ///
-/// To continue, a control function may also return the bare command.
+/// To continue, a control function may also return the command itself, without [`Next::Continue`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Next<T> {
     /// Sends the command, and calls the function again with the next state.
@@ -39,7 +39,7 @@ impl<T> Next<T> {
         }
     }
 
-    /// Combines both commands. The result finishes or gives up if either does.
+    /// Combines both commands. The result finishes or gives up if one of the two does.
     pub fn zip<U>(self, other: Next<U>) -> Next<(T, U)> {
         match (self.into_parts(), other.into_parts()) {
             (Ok((first, last)), Ok((second, also_last))) => {
@@ -56,7 +56,7 @@ impl<T> From<T> for Next<T> {
     }
 }
 
-/// Adds `command.finish()`, which marks the last command of a motion.
+/// Adds the method [`finish`](Self::finish) to commands, which marks the last command of a motion.
 pub trait Finish: Sized {
     /// Returns this command as the last one of its motion.
     fn finish(self) -> Next<Self> {

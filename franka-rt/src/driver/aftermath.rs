@@ -7,8 +7,9 @@ use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
-    /// Does the rest of the work for a state. Call it after [`Self::on_state`], once the command
-    /// has left or if none was due. `sent` contains the known times of the command, if one left.
+    /// Does the work for a state that can wait until the command has left. Call it once after each
+    /// [`Self::on_state`]: after the command was sent, or at once if no command was due. `sent`
+    /// contains the times of the sent command that are known so far.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
         self.references.write(&self.record);
         self.record.late = arrival.late;
@@ -41,8 +42,8 @@ impl Driver {
         }
     }
 
-    /// Notes the times of a cycle whose command has left, once all times are known. Returns the
-    /// counts of the running motion; `None` if no motion runs.
+    /// Notes the times of a cycle whose command has left. Call it once all times are known. Returns
+    /// the counts of the running motion; `None` if no motion runs.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         let motion = self.motion.as_ref().filter(|motion| motion.has_begun())?;
         self.statistics.note_cycle(cycle);

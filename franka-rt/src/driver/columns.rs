@@ -31,7 +31,7 @@ pub enum ColumnKind {
     Count,
     /// Boolean, 0 or 1.
     Flag,
-    /// Index into this list of names; no name if it is beyond the end.
+    /// Index into this list of names. An index beyond the end of the list has no name.
     Name(&'static [&'static str]),
 }
 
@@ -51,7 +51,7 @@ impl Column {
         &COLUMNS
     }
 
-    /// Returns the column with this name.
+    /// Returns the column with this name; `None` if no column has it.
     pub fn find(name: &str) -> Option<&'static Self> {
         COLUMNS.iter().find(|column| column.name == name)
     }

@@ -2,8 +2,8 @@
 
 use super::Program;
 
-/// Source of the commands of a motion. It determines what the commands mean, and which settings
-/// exist.
+/// Source of the commands of a motion. It determines what the commands mean, and which settings the
+/// motion has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Commander {
@@ -18,9 +18,9 @@ pub enum Commander {
 }
 
 impl Commander {
-    /// True if each command is the position one cycle later, so that differences of commands show
-    /// the intended motion of the joints. False for sparse targets, which are only sent when they
-    /// are new.
+    /// True if a command is sent in every cycle. The difference between two successive commands
+    /// then shows the motion that was intended in one cycle. False for sparse targets, which are
+    /// sent only when they are new.
     pub fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }

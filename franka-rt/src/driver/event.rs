@@ -11,25 +11,25 @@ use crate::session::SessionEvent;
 use crate::stats::{MotionStatistics, MotionTimes};
 use crate::together::{StartFault, StartTicket};
 
-/// An event in the thread. Events arrive in order. Events are lost only if the receiver no longer
-/// takes them.
+/// An event of the control thread. Events arrive in order. Events are lost only if the receiver no
+/// longer reads them.
 #[derive(Debug)]
 pub enum Event {
     /// A state shows the modes of the motion, so the motion has started. The first command answers
-    /// it.
+    /// this state.
     Started {
         /// The motion.
         motion: MotionId,
         /// `message_id` of the state, `[ms]` of the robot's clock.
         time: u64,
     },
-    /// The motion's program reports an event of its session.
+    /// The motion's program, a [session](crate::session), reports an event.
     Program {
         /// The motion.
         motion: MotionId,
         /// Event of the session.
         event: SessionEvent,
-        /// Counts so far.
+        /// Counts of the motion so far.
         statistics: MotionStatistics,
     },
     /// The thread sends the finishing command for the first time. It repeats the command until the
@@ -43,7 +43,7 @@ pub enum Event {
     Failed {
         /// The motion.
         motion: MotionId,
-        /// Cause.
+        /// The reason.
         failure: Failure,
     },
     /// The motion's observer has panicked, and is not called again during this motion.
@@ -51,12 +51,12 @@ pub enum Event {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion has ended for the thread. The event carries the program, so that the receiver
-    /// frees it.
+    /// The motion has ended in the control thread. The event contains the program, so that the
+    /// receiver frees its memory.
     Ended(Ended),
-    /// No state has come for the link timeout, so the link counts as lost until a state arrives.
+    /// No state has arrived within the link timeout. The link counts as lost until a state arrives.
     LinkLost {
-        /// Length of the silence so far.
+        /// Time since the last state when the thread noticed the loss.
         silence: Duration,
     },
 }
@@ -82,7 +82,7 @@ pub struct Ended {
     pub program: Program,
     /// Last cycles of the motion.
     pub log: ControlLog,
-    /// The motion's ticket, if the motion was part of a common start of several robots.
+    /// Ticket with which the motion took part in a common start of several robots, if it did.
     pub ticket: Option<StartTicket>,
     /// Observer of the motion's cycles.
     pub observer: Option<Observer>,
@@ -95,21 +95,21 @@ impl Ended {
     }
 }
 
-/// End of a motion, as the thread saw it. The robot reports the end itself, in its last reply to
-/// the `Move`.
+/// End of a motion, as the control thread saw it. The robot reports the end separately, in its last
+/// reply to the `Move` request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The finishing command was sent and the robot left the motion's modes.
     Finished,
     /// The robot left the motion's modes on its own because of a reflex, a stop or a preemption.
     Aborted,
-    /// The motion was disarmed before it ran.
+    /// The motion was disarmed ([`Order::Disarm`](super::Order::Disarm)) before it ran.
     Disarmed,
     /// The motion was not armed, because another motion was armed or running.
     Refused,
-    /// The robot was silent for too long.
+    /// The robot sent no state within the link timeout.
     LinkLost {
-        /// Length of the silence when the thread gave up the motion.
+        /// Time since the last state when the thread noticed that the link was lost.
         silence: Duration,
     },
 }

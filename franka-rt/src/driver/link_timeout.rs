@@ -14,19 +14,19 @@ pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 pub struct LinkTimeout(Duration);
 
 impl LinkTimeout {
-    /// Shortest timeout, 20 ms. A robot that misses commands for this long stops on its own; it
-    /// bridges shorter gaps.
+    /// Shortest timeout, 20 ms. If commands are missing for this long, the robot stops on its own;
+    /// it bridges shorter gaps.
     pub const MIN: Duration = Duration::from_millis(20);
 
-    /// Longest timeout, 10 s. More than [`LINK_TIMEOUT`] is only useful for a simulated robot on a
-    /// busy host, which may delay states for longer. A real robot without commands stops on its own
-    /// long before.
+    /// Longest timeout, 10 s. A timeout above [`LINK_TIMEOUT`] is only useful for a simulated robot
+    /// on a busy host, where a state may arrive more than a second late. A real robot that receives
+    /// no commands stops on its own after about [`Self::MIN`].
     pub const MAX: Duration = Duration::from_secs(10);
 
-    /// Returns a link timeout of length `timeout`.
+    /// Returns a link timeout with the duration `timeout`.
     ///
     /// # Errors
-    /// Returns [`LinkTimeoutError`] if `timeout` is out of range.
+    /// Returns [`LinkTimeoutError`] if `timeout` is not between [`Self::MIN`] and [`Self::MAX`].
     pub fn new(timeout: Duration) -> Result<Self, LinkTimeoutError> {
         if (Self::MIN..=Self::MAX).contains(&timeout) {
             Ok(Self(timeout))
@@ -35,7 +35,7 @@ impl LinkTimeout {
         }
     }
 
-    /// Returns the length of the timeout.
+    /// Returns the duration of the timeout.
     pub fn get(self) -> Duration {
         self.0
     }

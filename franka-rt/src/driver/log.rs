@@ -47,7 +47,8 @@ impl ControlLog {
     /// this size needs 30 MB, which every motion allocates anew.
     pub const CAPACITY_MAX: usize = 10_000;
 
-    /// Returns an empty log for the newest `capacity` cycles. With 0 it keeps no cycle.
+    /// Returns an empty log for the newest `capacity` cycles. If `capacity` is 0, the log keeps no
+    /// cycle.
     pub fn with_capacity(capacity: usize) -> Self {
         let entries = if capacity == 0 { 0 } else { capacity + 1 };
         Self {
@@ -58,7 +59,7 @@ impl ControlLog {
         }
     }
 
-    /// Marks the numbers as rounded to six significant digits, as in a table of libfranka. A
+    /// Marks the numbers as rounded to six significant digits, as in libfranka's CSV tables. A
     /// diagnosis then ignores differences that rounding may have caused.
     #[must_use]
     pub fn rounded(self) -> Self {
@@ -100,9 +101,9 @@ impl ControlLog {
         older.iter().chain(newer)
     }
 
-    /// Returns the success rate at the end of the motion. Like libfranka 0.21, it uses the state
-    /// before the last, because the last state always shows 0. `None` if the log has fewer than two
-    /// entries.
+    /// Returns the success rate at the end of the motion. Like libfranka 0.21, it reads the rate
+    /// from the second-to-last state, because the last state always shows 0. Returns `None` if the
+    /// log has fewer than two entries.
     pub fn success_rate(&self) -> Option<SuccessRate> {
         let mut newest = self.iter().rev();
         let (last, before) = (newest.next()?, newest.next()?);

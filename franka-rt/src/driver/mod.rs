@@ -16,20 +16,21 @@
 //!
 //! If a motion is part of a common start of several robots (see [`together`](crate::together)), the
 //! driver first holds the arm until all robots are ready. If one robot withdraws, the motion
-//! finishes without its program.
+//! finishes, and its program never runs.
 //!
-//! The diagram omits two phases. In `Silent`, no command is sent until the robot leaves the
-//! motion's modes. The reason is that the program failed, that a command was not finite, or that a
-//! program that does not brake was abandoned (`Order::Abandon`). In `Unwanted`, an armed motion was
-//! abandoned. It ends when the states show that the robot did not begin it.
+//! The diagram omits two phases. In `Silent`, the driver sends no command until the robot leaves
+//! the motion's modes. A motion is in this phase if its program failed, if a command was not
+//! finite, or if it was abandoned (`Order::Abandon`) and its program cannot brake. In `Unwanted`,
+//! the motion was abandoned while it was armed. It ends when the states show that the robot did not
+//! begin it.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]. Outputs are
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`].
-//! [`Driver::after_send`], called once for each state, and [`Driver::note_cycle`] do the work that
-//! can wait until the command has left. [`Driver::prepare`] does the work that needs no new state.
-//! The driver has no clock and no socket, and it neither allocates nor logs. The thread or a
-//! lockstep test supplies the time and carries out the effects. An [`Event`] returns a program that
-//! has ended, so that its memory is freed elsewhere.
+//! [`Driver::after_send`] and [`Driver::note_cycle`] do the work that can wait until the command
+//! has left. [`Driver::prepare`] does the work that needs no new state. The driver has no clock and
+//! no socket, and it neither allocates nor logs. The thread or a lockstep test supplies the time
+//! and carries out the effects. When a program has ended, an [`Event`] passes it to the receiver,
+//! which frees its memory.
 
 mod aftermath;
 mod columns;
@@ -110,14 +111,15 @@ impl Driver {
         }
     }
 
-    /// Replaces the silence after which the link counts as lost. The default is [`LINK_TIMEOUT`].
+    /// Replaces the time without states after which the link counts as lost. The default is
+    /// [`LINK_TIMEOUT`].
     #[must_use]
     pub fn with_link_timeout(mut self, timeout: LinkTimeout) -> Self {
         self.link_timeout = timeout;
         self
     }
 
-    /// Returns the silence after which the link counts as lost.
+    /// Returns the time without states after which the link counts as lost.
     pub fn link_timeout(&self) -> LinkTimeout {
         self.link_timeout
     }
@@ -194,7 +196,8 @@ impl Driver {
         }
     }
 
-    /// Notes the number of older states that were skipped in favour of the next state.
+    /// Notes how many states were skipped because a newer state, the next one for
+    /// [`Self::on_state`], had also arrived.
     pub fn on_skipped(&mut self, states: u64) {
         self.skipped = states;
     }
@@ -203,8 +206,8 @@ impl Driver {
     ///
     /// The work is bounded by one step of the program. A state that is not newer than the newest
     /// state is ignored, because the robot numbers its cycles in increasing order. If a value that
-    /// the program needs is not finite, the motion does not answer the state. The robot bridges the
-    /// gap, or stops on its own if more such states follow.
+    /// the program needs is not finite, no command answers the state. The robot bridges such a gap;
+    /// it stops on its own if more such states follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -276,13 +279,13 @@ impl Driver {
         }
     }
 
-    /// Returns the command to send at once for the newest state of a motion under
-    /// [`Program::Active`]. For the last command, `finished` is true. The driver then repeats this
-    /// command with every state until the robot has left the motion's modes.
+    /// Returns the datagram that answers the newest state with `command`, in a motion under
+    /// [`Program::Active`]. Send it at once. Set `finished` for the last command: the driver then
+    /// repeats this command for every state until the robot has left the motion's modes.
     ///
     /// # Errors
-    /// Returns [`WriteError`] if the motion refuses the command. Then send nothing; the motion
-    /// continues.
+    /// Returns [`WriteError`] if the motion refuses the command. In this case, send nothing; the
+    /// motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
         let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);
@@ -302,9 +305,9 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Reports that no state has come for `silence`. After the silence that the team tolerates, by
-    /// default [`team::SILENCE`](crate::team::SILENCE), the other robots of the team brake. After
-    /// the link timeout, the motion ends with [`Ending::LinkLost`].
+    /// Notes that no state has arrived for `silence`. If this is longer than the robot's team
+    /// tolerates (by default [`team::SILENCE`](crate::team::SILENCE)), the other robots of the team
+    /// brake. After the link timeout, the motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
             begun.program.on_silence(silence);

@@ -6,7 +6,7 @@ use super::Record;
 use crate::session::{Bindings, GoalId};
 use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 
-/// Reference of target control and progress of its goal, in one cycle.
+/// Reference of [target control](crate::session) and progress of its goal, in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceState {
     /// `message_id` of the state that the reference answers, `[ms]` of the robot's clock.
@@ -24,13 +24,14 @@ pub struct ReferenceState {
     /// See [`Record::remaining`].
     pub remaining: Duration,
     /// Guards that limited the command of this cycle or of a recent cycle. The set covers at least
-    /// the last [`Self::GUARDS_MS`], and at most twice that.
+    /// the last [`Self::GUARDS_MS`], and at most twice that time.
     pub guards: Bindings,
 }
 
 impl ReferenceState {
-    /// Time for which a guard remains listed after it has limited a command, `[ms]` of the robot's
-    /// clock. Readers poll a few dozen times per second.
+    /// Time for which a guard remains in [`guards`](Self::guards) after it has limited a command,
+    /// `[ms]` of the robot's clock. It is long enough for readers that poll a few dozen times per
+    /// second.
     pub const GUARDS_MS: u64 = 100;
 
     fn of(record: &Record, guards: Bindings) -> Self {

@@ -13,7 +13,7 @@ use crate::together::Gate;
 /// Program that answers the states of a running motion. It is created and freed outside the thread.
 #[derive(Debug)]
 pub enum Program {
-    /// Goals, which the session turns into torques.
+    /// A session, which turns goals into torques.
     Target(Box<TargetSession>),
     /// A function of the user, called with every state.
     Callback(Box<Callback>),

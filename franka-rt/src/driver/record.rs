@@ -44,9 +44,9 @@ pub struct Record {
     /// position. `None` outside target control, and if the reference moves to a pose, stops, or
     /// follows a guiding hand.
     pub q_target: Option<[f64; 7]>,
-    /// Pose of the end effector that the reference moves to, in the base frame, `[m]`. If the hand
-    /// holds an object, the pose of the object. `None` outside target control, and if the reference
-    /// moves to joint positions, stops, or follows a guiding hand.
+    /// Pose of the end effector that the reference moves to, in the base frame, `[m]`. If the
+    /// goal has a grasp, it is the pose of the held object. `None` outside target control, and if
+    /// the reference moves to joint positions, stops, or follows a guiding hand.
     pub pose_target: Option<Isometry3<f64>>,
     /// Time since the program received the goal.
     pub elapsed: Duration,
@@ -57,8 +57,8 @@ pub struct Record {
     /// Commanded joint torques without gravity and friction, `[N m]`. Zero under active control,
     /// because its commands are sent after the cycle.
     pub tau_c: [f64; 7],
-    /// Torque that compensates friction and bias, before the guards, `[N m]`; zero outside target
-    /// control.
+    /// Torque that compensates friction and bias, before the guards change it, `[N m]`; zero
+    /// outside target control.
     pub compensation: [f64; 7],
     /// Guards that limited the command.
     pub bindings: Bindings,
@@ -67,7 +67,7 @@ pub struct Record {
     /// Time from the receipt of the state to the departure of its command; zero without a command.
     /// Also zero under active control, because its command is sent after the record is made.
     pub turnaround: Duration,
-    /// Time left until the next state was due when the command was sent; `None` if
+    /// Time from the departure of the command until the next state was due; `None` if
     /// [`turnaround`](Self::turnaround) is zero.
     pub slack: Option<Slack>,
 }

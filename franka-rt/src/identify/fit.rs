@@ -8,7 +8,8 @@ use super::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad, Plan, declare
 use crate::driver::Record;
 use crate::session::Guard;
 
-/// Collects the records of a [`Plan`]'s motions, and identifies the arm.
+/// Collects the records of a [`Plan`]'s motions, and computes the arm's friction, bias and load
+/// from them.
 #[derive(Clone, Debug)]
 pub struct Fit {
     model: Model,
@@ -50,7 +51,7 @@ struct Window {
     stroke: u32,
 }
 
-/// Reason why the records do not identify the arm.
+/// Reason why the records do not determine the arm's friction, bias and load.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
@@ -62,9 +63,9 @@ pub enum FitError {
     TooLittle {
         /// Number of the joint, 1 to 7.
         joint: usize,
-        /// Number of intervals of a quarter of a second in one direction.
+        /// Number of quarter-second intervals in which the joint moved steadily in one direction.
         got: usize,
-        /// Least number of intervals that is required.
+        /// Smallest number of intervals that is accepted.
         expected: usize,
     },
     /// The torques of a joint do not fit any friction, bias and load, because something pushed the
@@ -103,7 +104,8 @@ impl Fit {
     }
 
     /// Adds the record of a cycle. Do not add records of motions under the robot's own controller.
-    /// Slower motions, cycles in which a guard limits the command, and missing records do no harm.
+    /// The fit ignores slow motions and cycles in which a guard limits the command, and records may
+    /// be missing.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
@@ -153,7 +155,7 @@ impl Fit {
     /// Returns the identified values of the arm.
     ///
     /// # Errors
-    /// Returns [`FitError`] if the records do not identify the arm.
+    /// Returns [`FitError`] if the records do not determine these values.
     pub fn finish(&self) -> Result<Identified, FitError> {
         for joint in 0..7 {
             for way in [1.0, -1.0] {

@@ -26,7 +26,7 @@ use crate::law::compensation::Learned;
 pub use fit::{Fit, FitError};
 pub use plan::{Plan, PlannedMotion, Reach};
 
-/// A measured quantity.
+/// A measured quantity with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimate {
@@ -48,15 +48,15 @@ impl fmt::Display for Estimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
-    /// Friction at `Plan::SPEED` that exceeds the robot's own compensation, including the viscous
-    /// part, `[N m]`.
+    /// Friction at the velocity `Plan::SPEED` that the robot's own compensation does not cover,
+    /// including the viscous part, `[N m]`.
     pub friction: Estimate,
     /// Torque that is the same in both directions and in every pose, for example the zero error of
     /// the torque sensor, `[N m]`.
     pub bias: Estimate,
 }
 
-/// Load of the flange in addition to the end effector that is configured at the robot (`m_ee`). It
+/// Load at the flange, without the end effector that is configured at the robot (`m_ee`). It
 /// includes the declared load, and the difference between the real and the configured end effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -68,9 +68,9 @@ pub struct IdentifiedLoad {
 }
 
 impl IdentifiedLoad {
-    /// Returns the centre of mass in the flange frame, `[m]`. `None` if the mass is less than three
-    /// of its standard deviations, because the centre is then unknown. `set_load` accepts the mass
-    /// and this centre.
+    /// Returns the centre of mass in the flange frame, `[m]`. Returns `None` if the mass is less
+    /// than three of its standard deviations, because the centre is then unknown. You can pass the
+    /// mass and this centre to `set_load`.
     pub fn center(&self) -> Option<[Estimate; 3]> {
         let Estimate { value, deviation } = self.mass;
         (value > 3.0 * deviation).then(|| {
@@ -103,12 +103,12 @@ pub struct Identified {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KnownError {
-    /// The values belong to a different kind of robot.
+    /// The values were measured with a different kind of robot.
     #[error(
         "the identified values belong to another kind of robot: got {got:?}, expected {expected:?}"
     )]
     Kind {
-        /// Kind of robot that the values belong to.
+        /// Kind of robot with which the values were measured.
         got: RobotKind,
         /// Kind of the connected robot.
         expected: RobotKind,
@@ -133,7 +133,8 @@ impl Identified {
     /// Checks that these values are plausible and suit this kind of robot.
     ///
     /// # Errors
-    /// [`KnownError`] for a different kind of robot, and for non-finite or implausible numbers.
+    /// Returns [`KnownError::Kind`] if the values were measured with a different kind of robot, and
+    /// [`KnownError::Number`] if a number is not finite or not plausible.
     pub fn check(&self, expected: RobotKind) -> Result<(), KnownError> {
         let got = self.kind;
         if got != expected {

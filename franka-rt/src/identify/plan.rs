@@ -56,8 +56,8 @@ impl Plan {
     /// Velocity of the joints in steady motion, `[rad/s]`.
     pub const SPEED: f64 = 0.2;
 
-    /// Tolerance of an arrival. It is wide, because an arm without identified values need not be
-    /// accurate.
+    /// Distance from the target within which a motion counts as arrived. It is large, because the
+    /// arm may be inaccurate before its friction, bias and load are known.
     pub const TOLERANCE: Tolerance = Tolerance {
         translation: 0.02,
         rotation: 0.05,
@@ -115,7 +115,7 @@ impl Plan {
         self.budget
     }
 
-    /// Returns the reach of the motions.
+    /// Returns how far the motions move the arm from its current position.
     pub fn reach(&self) -> Reach {
         self.reach
     }

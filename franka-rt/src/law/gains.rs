@@ -6,8 +6,8 @@ use crate::shaping::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
-    /// Adds the torques of springs along the base axes and of springs at the joints: see
-    /// [`law`](crate::law#the-hybrid-law).
+    /// Adds the torques of two sets of springs: along the base axes at the end effector, and at the
+    /// joints. See [`law`](crate::law#the-hybrid-law).
     #[default]
     Hybrid,
     /// Couples the springs along the base axes by the inertia at the end effector. The joints'
@@ -16,11 +16,11 @@ pub enum Law {
     OperationalSpace,
 }
 
-/// Control law and diagonal gains. There is a spring and a damper for each base axis at the end
-/// effector, and for each joint.
+/// Control law and diagonal gains. Each base axis at the end effector and each joint has a spring
+/// and a damper.
 ///
-/// A goal replaces all gains. Between two goals all numbers and choices fade, so that no change
-/// causes a step in torque.
+/// Each goal brings its own gains. When the goal changes, all gains change gradually, so that the
+/// torque does not jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// Control law that uses the gains.
@@ -45,7 +45,7 @@ pub struct Gains {
     /// always act there.
     pub project_joint_gains: bool,
     /// Largest torque that may compensate friction and bias at each joint, `[N m]`. Zero disables
-    /// the compensation. With springs alone, friction keeps the arm millimetres from its target.
+    /// the compensation. Without compensation, friction stops the arm millimetres from its target.
     pub compensation: [f64; 7],
     /// Largest sum of the torques of springs, dampers and compensation at each joint, `[N m]`,
     /// including the torques of the motion itself. The commanded torque, which excludes gravity,
@@ -58,7 +58,7 @@ pub struct Gains {
     pub torque_cutoff: f64,
 }
 
-/// Caller: a gain is out of its bounds.
+/// Caller: a gain is outside its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{what}{} is {got}, expected between {least} and {most}", of_axis(*.axis))]
 #[non_exhaustive]
@@ -211,7 +211,7 @@ impl Gains {
     /// [`MOST`](Self::MOST).
     ///
     /// # Errors
-    /// Returns a [`GainError`] that names the first number out of bounds.
+    /// Returns a [`GainError`] that names the first number outside its bounds.
     pub fn check(&self) -> Result<(), GainError> {
         let (least, most) = (Self::LEAST.to_array(), Self::MOST.to_array());
         for (i, got) in self.to_array().into_iter().enumerate() {

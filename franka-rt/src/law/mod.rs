@@ -6,12 +6,12 @@
 //! springs, dq_ref ----------------------> Compensation of friction and bias
 //! ```
 //!
-//! A goal requests [`Gains`]. `blended_gains` converts them to numbers, with choices as weights, so
-//! that `fade` can change continuously from one goal's gains to the next. `interaction` turns the
-//! gains into torques with one of two laws. The laws differ in the wrench at the end effector, and
-//! in the directions in which the joints' springs act. `compensation` adds torques against friction
-//! and against an undeclared load, which springs cannot exert. The session's guards bound these
-//! torques.
+//! A goal requests [`Gains`]. `blended_gains` converts them to numbers (a choice becomes a weight
+//! between 0 and 1), so that `fade` can change them continuously from one goal to the next.
+//! `interaction` turns the gains into torques with one of two laws. The two laws compute different
+//! wrenches at the end effector, and their joint springs act in different directions.
+//! `compensation` adds torques against friction and against an undeclared load, which springs
+//! cannot exert. The session's guards bound these torques.
 //!
 //! # The hybrid law
 //!

@@ -12,12 +12,14 @@
 //! turns desired accelerations into wrenches. Therefore an error along one axis moves the arm along
 //! that axis, although the arm's inertia differs between directions. In Khatib's law an
 //! acceleration is `(Kx e + Kxd de) / m`, with one mass for all axes. Here each axis has the arm's
-//! own mass along that axis, and stiffness and damping are multiplied to `Lambda` from both sides:
+//! own mass along that axis, and the roots of stiffness and damping multiply `Lambda` from both
+//! sides:
 //!
 //! - gains keep their units and their meaning: a displacement along an axis causes exactly `Kx`
-//!   along that axis. If the axis is coupled with other axes, forces along those are added;
-//! - the matrices are symmetric and not negative at every pose, so springs store energy and dampers
-//!   dissipate it;
+//!   along that axis. If the axis is coupled with other axes, forces along the other axes are
+//!   added;
+//! - the matrices are symmetric and positive semidefinite at every pose, so springs store energy
+//!   and dampers dissipate it;
 //! - the wrench is bounded near singularities: for every `Lambda`, the entries of `Sk Lambda Sk`
 //!   are at most `sqrt(Kx_i Kx_j)`.
 //!
@@ -32,8 +34,8 @@
 //! until they are balanced. If the goal lies behind the wall, the arm slides about two thirds of
 //! the goal's depth (simulated at the ready pose, downward).
 //!
-//! The law has no feedforward of the reference's acceleration. The inertia includes the links and,
-//! nominally, the rotors.
+//! The law has no feedforward of the reference's acceleration. The inertia includes the links, and
+//! nominal values for the rotors.
 
 use nalgebra::{Matrix3, Matrix6};
 

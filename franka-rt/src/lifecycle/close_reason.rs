@@ -5,8 +5,8 @@ use std::io;
 
 use super::Party;
 
-/// Reason why a connection to a robot or an end effector has ended. If the reference client has the
-/// same reason, `Display` prints that client's text.
+/// Reason why a connection to a robot or an end effector has ended. If libfranka has an error for
+/// the same reason, `Display` prints libfranka's text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloseReason {
@@ -22,26 +22,26 @@ pub enum CloseReason {
     Io {
         /// Kind of the I/O error.
         kind: io::ErrorKind,
-        /// Description of the failed operation, in the words of the reference client.
+        /// Description of the failed operation, in libfranka's words.
         text: String,
     },
     /// Peer: a message violates the protocol in a way that no later message can repair.
     #[error("{text}")]
     Protocol {
-        /// Description of the expected and received values.
+        /// Description of the expected and the received value.
         text: String,
     },
     /// Host: the control thread has ended or does not respond.
     #[error("the control thread failed: {text}")]
     ThreadEnded {
-        /// Observation that shows this.
+        /// Description of what happened to the thread.
         text: String,
     },
-    /// Link: the robot sent no states although the connection seemed alive. The supervisor closed
-    /// the connection.
-    #[error("no robot state for {} ms longer than the link timeout", .silence.as_millis())]
+    /// Link: the robot sent no states although its connection was still open, so the supervisor
+    /// closed the connection.
+    #[error("the robot sent no state within the link timeout, and for {} ms after it", .silence.as_millis())]
     Silent {
-        /// Time without a state when the supervisor noticed it.
+        /// Time without a state, counted from the end of the link timeout.
         silence: Duration,
     },
     /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
@@ -54,21 +54,20 @@ pub enum CloseReason {
         /// Error of the last attempt.
         text: String,
     },
-    /// Robot: after the connection was lost, a different robot answered. Models and goals were made
-    /// for the previous robot.
+    /// Robot: after the connection was lost, a different robot answered. Models and goals of the
+    /// previous robot are not valid for this robot.
     #[error("another robot answers: {text}")]
     AnotherRobot {
         /// Description of how the robots differ.
         text: String,
     },
-    /// Caller: the runtime that served the connection was shut down.
+    /// Caller: the Tokio runtime that served the connection was shut down.
     #[error("the Tokio runtime that served the connection has ended")]
     RuntimeEnded,
 }
 
 impl CloseReason {
-    /// True if this program, or its runtime, has closed the connection, so that no connection was
-    /// lost.
+    /// True if this program or its runtime closed the connection, so the connection was not lost.
     pub fn is_ours(&self) -> bool {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }

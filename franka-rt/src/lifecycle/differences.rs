@@ -7,16 +7,17 @@ use core::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Differences {
-    /// True if the two descriptions differ, or if only one robot has a description.
+    /// True if the robots' descriptions (URDF) differ, or if only one robot has a description.
     pub description: bool,
     /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or if the end
     /// effector's mass, centre of mass or inertia differs.
     pub frames: bool,
     /// True if the robot's clock did not advance by the time that has passed: the robot was
-    /// restarted, or it is a different robot.
+    /// restarted, or a different robot answers.
     pub clock: bool,
-    /// The first joint, from 1, that is more than 5 mrad from its earlier position. If the joint
-    /// moved when the connection was lost, it may also have continued while it braked.
+    /// The first joint, from 1, that is more than 5 mrad from its earlier position. The reason may
+    /// also be that the joint was moving when the connection was lost, and moved on while it
+    /// braked.
     pub joint: Option<u8>,
 }
 

@@ -16,21 +16,22 @@ use crate::session::{
 };
 use crate::team::Member;
 
-/// Options of a session that lasts from goal to goal, in addition to its goals.
+/// Options of a session, which is a motion that continues while goals begin and end.
 #[derive(Debug, Default)]
 pub struct Engagement {
-    /// The deadman that the session is bound to.
+    /// The deadman timer that the session is bound to: the arm brakes if the timer expires.
     pub deadman: Option<DeadmanMonitor>,
     /// Membership of the session in a team.
     pub team: Option<Member>,
-    /// Keep-out regions for the arm, in the base frame, at most
+    /// Regions in the base frame that the arm must not enter, at most
     /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX). They replace the regions of
     /// [`Lifecycle::keep_out_of`].
     pub keep_out: Option<Vec<Obstacle>>,
     /// Speed limit for every joint, the flange and the end effector, `[m/s]`: see
     /// [`Guard::SpeedCap`](crate::session::Guard::SpeedCap).
     pub speed_cap: Option<f64>,
-    /// Backend that turns setpoints into torques.
+    /// Back end that turns setpoints into torques: this driver's control law or the robot's own
+    /// controller.
     pub backend: Backend,
     /// The observer of the session's cycles.
     pub observer: Option<Observer>,
@@ -60,12 +61,12 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// New limits of velocity, acceleration and jerk.
     pub budget: Option<Budget>,
-    /// New limit of the force of springs and dampers. It fades over the same time as the gains.
+    /// New limit for the force of springs and dampers. It fades over the same time as the gains.
     pub force_cap: Option<ForceCap>,
-    /// New limit of how far the reference may be ahead of the arm. It fades over the same time as
+    /// New limit for how far the reference may be ahead of the arm. It fades over the same time as
     /// the gains.
     pub leash: Option<Leash>,
-    /// New limit of how far the arm may be pushed off its path.
+    /// New limit for how far the arm may be pushed off its path.
     pub deviation: Option<Deviation>,
     /// New joint positions, `[rad]`, toward which the arm moves in the null space of the end
     /// effector's pose: see [`Goal::posture`].
@@ -94,7 +95,7 @@ impl Tuning {
         }
     }
 
-    /// Returns the goal with these changes. A goal of hand guiding keeps its gains, because its
+    /// Returns the goal with these changes. A goal for hand guiding keeps its gains, because its
     /// free axes must have no springs.
     #[must_use]
     pub fn apply(&self, goal: Goal) -> Goal {
@@ -140,20 +141,20 @@ impl Lifecycle {
     }
 
     /// Passes a chunk to the session `engaged`. The chunk's own options define how it replaces the
-    /// previous chunk. `goal` supersedes any other goal. Until another goal arrives, it identifies
-    /// the chunks and sets their speed and stiffness. The arm rests at the last point.
+    /// previous chunk. `goal` replaces the current goal. Until the next goal arrives, `goal`
+    /// identifies the chunks and sets their speed and stiffness. The arm rests at the last point.
     ///
     /// # Errors
     /// Returns the errors of [`Self::begin`], and:
-    /// - [`MotionError::Held`] while a deadman holds the arm;
-    /// - once, if the previous chunk was given up: [`MotionError::Held`] or
-    ///   [`MotionError::Braked`], with the reason;
+    /// - [`MotionError::Held`] if a deadman holds the arm;
+    /// - [`MotionError::Held`] or [`MotionError::Braked`], with the reason, if the previous chunk
+    ///   was given up. This is reported once;
     /// - [`GoalError::Late`] if all points of the chunk have passed;
     /// - [`GoalError::Ahead`] if the chunk's times are too far in the future, for example because
     ///   they are from a different clock;
     /// - [`GoalError::Outdated`] if the chunk's observation is older than the observation of the
     ///   previous chunk;
-    /// - [`GoalError::Chunks`] if too many chunks are under way.
+    /// - [`GoalError::Chunks`] if more chunks arrive at once than the control thread accepts.
     pub fn chunk(
         &mut self,
         engaged: GoalId,
@@ -228,7 +229,7 @@ impl Lifecycle {
     /// Applies `tuning` to the current goal of the session `engaged`, without a step in torque.
     ///
     /// # Errors
-    /// Returns the errors of [`Self::begin`]; then nothing changes.
+    /// Returns the errors of [`Self::begin`]. After an error, nothing has changed.
     pub fn tune(
         &mut self,
         engaged: GoalId,
@@ -260,9 +261,9 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Ends the session `engaged` as requested: brakes, releases the arm, and ends the motion. The
-    /// session's goal resolves as [`MotionError::Stopped`], and the session itself as `Ok`. Has no
-    /// effect if the session is ending or has ended.
+    /// Ends the session `engaged`: brakes, releases the arm, and ends the motion. The session's
+    /// goal resolves as [`MotionError::Stopped`], and the session itself as `Ok`. Has no effect if
+    /// the session is ending or has ended.
     pub fn disengage(&mut self, engaged: GoalId) {
         if self.check_engaged(engaged).is_ok() {
             self.release(engaged);

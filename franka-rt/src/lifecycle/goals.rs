@@ -13,8 +13,8 @@ use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target}
 
 impl Lifecycle {
     /// Moves the target of a goal that follows a stream. Returns true if the arm still follows the
-    /// goal. Returns false for a cancelled goal, even if targets were still queued for it. Also
-    /// returns false for the brake of a stop, or of a session that ends.
+    /// goal. Returns false if the goal was cancelled, even if targets are still queued for it. Also
+    /// returns false if the arm brakes because of a stop, or because the session ends.
     ///
     /// # Errors
     /// Returns a [`GoalError`] if the target is not accepted; the previous target then stays.
@@ -39,8 +39,9 @@ impl Lifecycle {
         self.amend(id, change, Some(state))
     }
 
-    /// Marks a held goal as complete. The arm settles at the newest target, and the motion finishes
-    /// unless its session lasts from goal to goal. A path ends in any case.
+    /// Marks a goal that receives targets as complete. The arm settles at the newest target. The
+    /// motion then finishes, unless its session continues without a goal. Has no effect on a path,
+    /// which ends at its last point anyway.
     pub fn close(&mut self, id: GoalId) {
         let current = self.goals().map(|goals| &goals.current);
         if current.is_some_and(|goal| goal.id == id && goal.along_path) {
@@ -60,8 +61,8 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Pauses a motion on its way, within its budget, or resumes it. Has no effect if a newer goal
-    /// exists, and none on chunks, because their points have fixed times.
+    /// Pauses the motion to a goal within the goal's budget, or resumes it. Has no effect if a
+    /// newer goal exists. Has no effect on chunks either, because their points have fixed times.
     pub fn pause(&mut self, id: GoalId, paused: bool) {
         let goal = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
@@ -77,9 +78,9 @@ impl Lifecycle {
         goal.paused = paused;
     }
 
-    /// Cancels a goal. If the arm is on its way to the goal, it brakes as for a stop, and the goal
-    /// resolves as [`MotionError::Stopped`]. To cancel a program, the robot is stopped. Has no
-    /// effect if a newer goal exists.
+    /// Cancels a goal. If the arm moves to the goal, it brakes as for a stop, and the goal resolves
+    /// as [`MotionError::Stopped`]. If `id` names a user's program instead of a goal, the robot is
+    /// stopped. Has no effect if a newer goal exists.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if self.next.take_if(|next| next.id() == id).is_some() {
             return self.resolve(id, Err(MotionError::Stopped));

@@ -202,7 +202,7 @@ pub struct Goal {
     /// Condition that ends the motion early. A goal keeps its first condition: updates do not
     /// change it.
     pub reaction: Option<Reaction>,
-    /// The joint motion of a team that the goal belongs to. The goal begins together with the goals
+    /// The common motion of a team that the goal belongs to. The goal begins together with the goals
     /// of the other members, and a fault of one member aborts all of them. Accepted only for
     /// sessions with a [`Member`].
     ///
@@ -210,7 +210,7 @@ pub struct Goal {
     pub round: Option<Round>,
     /// Pose of the held object in the frame of the end effector. With a grasp, the target is a pose
     /// of the object, and the object moves on the straight line. Springs and force cap act at the
-    /// hand. In a joint motion of a team, the reference waits for the arms of the other members.
+    /// hand. In a common motion of a team, the reference waits for the arms of the other members.
     pub grasp: Option<Isometry3<f64>>,
     /// Number of changes of the target or of [`on_arrival`](Self::on_arrival). A change of gains or
     /// limits does not increment it. Only a new revision restarts the watchdog's timer.

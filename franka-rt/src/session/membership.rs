@@ -11,9 +11,9 @@ use crate::team::{Carrying, Member, MemberFault, Passage, Round, TeamStop};
 #[derive(Debug)]
 pub(super) struct Membership {
     member: Member,
-    /// A goal of a joint motion (round) that has not begun.
+    /// A goal of a common motion (round) that has not begun.
     waiting: Option<(Round, Goal)>,
-    /// The goal of a joint motion that has begun.
+    /// The goal of a common motion that has begun.
     pursued: Option<Pursued>,
     /// True if the session has reported a fault to the team since the newest state.
     has_failed: bool,
@@ -141,7 +141,7 @@ impl Membership {
         own.lags || others.lags || others.remaining > own.remaining + AHEAD
     }
 
-    /// Stops the joint motion if its goal was given up. Reports the arm's progress to the other
+    /// Stops the common motion if its goal was given up. Reports the arm's progress to the other
     /// members.
     pub(super) fn watch(&mut self, session: &mut RunningSession) {
         self.carrying = session.carrying();

@@ -63,12 +63,12 @@ pub enum EventKind {
     },
     /// No state has arrived for the link timeout. The connection still exists.
     Silent {
-        /// Time without a state so far.
+        /// Time since the last state, including the link timeout.
         silence: Duration,
     },
     /// After a silence, states arrive again over the same connection.
     Resumed {
-        /// Time since the silence was noticed.
+        /// Time since the silence was noticed, so without the link timeout.
         after: Duration,
     },
     /// The robot stopped with a reflex, or was found in a reflex.

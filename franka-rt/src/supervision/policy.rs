@@ -116,9 +116,9 @@ impl Policy {
         self
     }
 
-    /// Sets how long the robot may send no states on a connection that seems alive. After that
-    /// time, the supervisor closes the connection and makes a new one. The default is 3 s. The time
-    /// begins when the silence is noticed, after the link timeout.
+    /// Sets how long the supervisor waits, on a connection without states that is still open, until
+    /// it closes the connection and makes a new one. The default is 3 s. The time begins when the
+    /// silence is noticed, after the link timeout.
     pub fn silence(mut self, time: Duration) -> Self {
         self.silence = time;
         self

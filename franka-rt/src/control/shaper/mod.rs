@@ -16,7 +16,8 @@ use crate::shaping::{
     check, filter, limiter,
 };
 
-/// Shapes the commands of a control loop: low-pass filter, limiter and check, in this order.
+/// Shapes the commands of a control loop: applies the low-pass filter, the limiter and the check,
+/// in this order.
 ///
 /// ```
 /// use franka_proto::{RobotState, Version};
@@ -86,8 +87,8 @@ impl Conventions {
 }
 
 impl Shaper {
-    /// Returns the shaper for a robot that speaks `version`. It limits commands if `limit_rate`,
-    /// and filters them if `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
+    /// Returns the shaper for a robot that speaks `version`. It limits commands if `limit_rate` is
+    /// true, and filters them if `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
     /// If the cutoff frequency is not positive, the first command returns an error, as in
     /// libfranka. If it is NaN, the first command also returns an error, whereas libfranka does not
@@ -129,9 +130,9 @@ impl Shaper {
         self.limited()
     }
 
-    /// Replaces the velocity limits of the joints by the limits in `joints`, from the robot's
-    /// description, also in [other bounds](Self::with_bounds). Has no effect if the robot's
-    /// velocity limits do not depend on position.
+    /// Uses the joint velocity limits in `joints`, which come from the robot's description. They
+    /// also replace the limits in bounds that [`with_bounds`](Self::with_bounds) sets later. Has no
+    /// effect if the velocity limits of the bounds do not depend on position.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         self.limits = Some(*joints);
@@ -147,15 +148,15 @@ impl Shaper {
         self
     }
 
-    /// Limits torque rates without the margin for the rounding of the echoed torques, as libfranka
-    /// does: see [`limiter::within_echo`]. Only protocol 10 rounds the echo.
+    /// Limits torque rates without a margin for the rounding of `tau_J_d`, the echoed torques.
+    /// libfranka does the same: see [`limiter::within_echo`]. Only protocol 10 rounds the echo.
     #[must_use]
     pub fn trusting_the_echo(mut self) -> Self {
         self.echo = Echo::Exact;
         self
     }
 
-    /// Shapes torques relative to the last torques, `tau_J_d` of the state.
+    /// Shapes torques. The last torques are `tau_J_d` of the state.
     ///
     /// # Errors
     /// Returns [`InvalidCommand`] if a number of the command or of the last commanded values is not
@@ -179,7 +180,7 @@ impl Shaper {
         Ok(Torques(tau))
     }
 
-    /// Shapes joint positions relative to the last positions, `q_d` of the state, and their
+    /// Shapes joint positions. The last positions are `q_d` of the state, which also contains their
     /// derivatives. `first` is true for the first command of the motion.
     ///
     /// # Errors
@@ -204,8 +205,8 @@ impl Shaper {
         Ok(JointPositions(q))
     }
 
-    /// Shapes joint velocities relative to the last velocities, `dq_d` of the state, and their
-    /// derivatives.
+    /// Shapes joint velocities. The last velocities are `dq_d` of the state, which also contains
+    /// their derivatives.
     ///
     /// # Errors
     /// Returns the errors of [`torques`](Self::torques).
@@ -223,9 +224,9 @@ impl Shaper {
         Ok(JointVelocities(dq))
     }
 
-    /// Shapes a pose relative to the last pose, [`RobotState::commanded_pose`], and its
-    /// derivatives; the elbow relative to [`RobotState::commanded_elbow`]. `first` is true for the
-    /// first command of the motion.
+    /// Shapes a pose. The last pose is [`RobotState::commanded_pose`], and the last elbow is
+    /// [`RobotState::commanded_elbow`]. The state also contains their derivatives. `first` is true
+    /// for the first command of the motion.
     ///
     /// # Errors
     /// Returns the errors of [`torques`](Self::torques), or an error if the pose is not a
@@ -255,8 +256,8 @@ impl Shaper {
         })
     }
 
-    /// Shapes a twist relative to the last twist, `O_dP_EE_c` of the state, and its derivative; the
-    /// elbow relative to [`RobotState::commanded_elbow`].
+    /// Shapes a twist. The last twist is `O_dP_EE_c` of the state, and the last elbow is
+    /// [`RobotState::commanded_elbow`]. The state also contains their derivatives.
     ///
     /// # Errors
     /// Returns the errors of [`torques`](Self::torques), or an error if the elbow has no sign.
