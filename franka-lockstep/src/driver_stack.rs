@@ -246,7 +246,7 @@ impl DriverStack {
     /// Starts a motion that a program of the test controls.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`].
     pub fn control(
         &mut self,
         program: Program,
@@ -285,7 +285,7 @@ impl DriverStack {
     /// control runs, the motion starts at its reference.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Chunk::through`] and [`Lifecycle::begin`].
     pub fn begin_along(
         &mut self,
         waypoints: &[Waypoint],

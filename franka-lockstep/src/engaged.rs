@@ -44,7 +44,7 @@ impl Lockstep {
     /// Requests a session.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn try_engage(&mut self, engagement: Engagement) -> Result<GoalId, MotionError> {
         let goal = self.goal(Target::Rest, OnArrival::Hold);
         self.client.begin(NewMotion::Session {
@@ -57,7 +57,7 @@ impl Lockstep {
     /// arrival, or holds the target until the next goal.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn within(
         &mut self,
         engaged: GoalId,
@@ -71,7 +71,7 @@ impl Lockstep {
     /// Submits this goal to the session `engaged`.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::Goal {
             goal: Box::new(goal),
@@ -84,7 +84,8 @@ impl Lockstep {
     /// Moves through `waypoints`, in a separate motion, or within the session `engaged` if given.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Chunk::through`] and
+    /// [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn through(
         &mut self,
         engaged: Option<GoalId>,
@@ -107,7 +108,7 @@ impl Lockstep {
     /// Sends a chunk (a series of timed points) to the session.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::chunk`](franka_rt::lifecycle::Lifecycle::chunk).
     pub fn chunk(&mut self, engaged: GoalId, chunk: Chunk) -> Result<(), MotionError> {
         let goal = self.goal(chunk.target(), OnArrival::Hold);
         self.submit_chunk(engaged, goal, chunk).map(|_| ())
@@ -117,7 +118,7 @@ impl Lockstep {
     /// continues an earlier chunk.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::chunk`](franka_rt::lifecycle::Lifecycle::chunk).
     pub fn submit_chunk(
         &mut self,
         engaged: GoalId,
@@ -133,7 +134,7 @@ impl Lockstep {
     /// Changes the gains, the budget or the force limit of the session.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::tune`](franka_rt::lifecycle::Lifecycle::tune).
     pub fn tune(&mut self, engaged: GoalId, tuning: Tuning) -> Result<(), MotionError> {
         let client = &mut self.client;
         client.lifecycle.tune(engaged, tuning, &client.state)

@@ -20,7 +20,7 @@ impl Lockstep {
     /// Submits a goal.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn submit(&mut self, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::to(goal))
     }
@@ -28,7 +28,7 @@ impl Lockstep {
     /// Submits a goal that begins together with the goals of other robots.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn submit_together(
         &mut self,
         goal: Goal,
@@ -46,7 +46,7 @@ impl Lockstep {
     /// [`Self::control`].
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn control_together(
         &mut self,
         callback: Callback,
@@ -76,7 +76,7 @@ impl Lockstep {
     /// checks commands; only the simulated robot does.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn control(
         &mut self,
         program: Program,
@@ -90,7 +90,7 @@ impl Lockstep {
     /// controller follows its setpoints. See [`Self::control`].
     ///
     /// # Errors
-    /// The errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::begin`](franka_rt::lifecycle::Lifecycle::begin).
     pub fn control_function(&mut self, function: Callback) -> Result<GoalId, MotionError> {
         let controller = MoveControllerMode::JointImpedance;
         let request = function.request(self.client.version(), controller);
@@ -111,7 +111,7 @@ impl Lockstep {
     /// holds its target.
     ///
     /// # Errors
-    /// Returns the errors of the lifecycle.
+    /// Returns the errors of [`Lifecycle::update`](franka_rt::lifecycle::Lifecycle::update).
     pub fn update(&mut self, goal: GoalId, target: Target) -> Result<bool, GoalError> {
         let DriverStack {
             lifecycle, state, ..
