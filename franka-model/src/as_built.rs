@@ -11,7 +11,7 @@ use crate::load::Load;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, MassMatrix};
 
-/// The true arm of a simulated robot. Its links and joint axes may deviate from the [`Model`] that
+/// The true arm of a simulated robot. Its links and joint axes can deviate from the [`Model`] that
 /// the robot's controllers use.
 ///
 /// Units, frames and loads are the same as in [`Model`].
@@ -87,7 +87,7 @@ impl AsBuilt {
     }
 
     /// Returns the joint accelerations; see [`Model::forward_dynamics`]. The armature is symmetric
-    /// and may couple the joints.
+    /// and can couple the joints.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

@@ -35,8 +35,8 @@ pub(crate) use problem::Problem;
 pub enum Outcome {
     /// The minimum was found.
     Optimal,
-    /// The search stopped after [`PASSES_MAX`] passes. The result is inside the box, but may not be
-    /// the minimum.
+    /// The search stopped after [`PASSES_MAX`] passes. The result is inside the box, but possibly
+    /// not the minimum.
     PassLimit,
     /// An argument was not finite. The result is inside the box, but is otherwise arbitrary.
     Degenerate,

@@ -13,7 +13,7 @@ use crate::model::Model;
 /// posture was found.
 ///
 /// The search sweeps joint 7 through its range and refines the best posture of every branch. The
-/// search takes about 0.3 ms. The sweep may miss solutions that exist only in a range of joint 7 of
+/// search takes about 0.3 ms. The sweep can miss solutions that exist only in a range of joint 7 of
 /// a hundredth of a radian. [`reach`](super::reach) searches more finely.
 ///
 /// # Errors

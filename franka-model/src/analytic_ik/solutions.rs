@@ -114,7 +114,7 @@ impl Solution {
 /// sin(shoulder) · f(q4) sin(wrist)`. Each distance is the angle between a joint and the position
 /// at which one of the three sines is zero.
 ///
-/// With joint 7, the whole arm may still be regular in such a posture; see
+/// With joint 7, the whole arm can still be regular in such a posture; see
 /// [`manipulability`](crate::manipulability).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Singularity {

@@ -156,8 +156,8 @@ pub enum Unknown {
         /// The contact on the most probable body.
         likeliest: Contact,
     },
-    /// No force at one point explains the torques. The arm may have several contacts, or a grip may
-    /// twist it.
+    /// No force at one point explains the torques. The arm has several contacts, or a grip
+    /// twists it, for example.
     Unexplained {
         /// Root mean square of the residual torques of the best force, divided by their standard
         /// deviations.

@@ -1,7 +1,7 @@
 //! A model from the robot's own description (URDF).
 //!
 //! Robots with FCI version 10 send this text on request (`GetRobotModel`). The text contains the
-//! values that may differ between arms: masses, position limits, speeds, torques, and the velocity
+//! values that can differ between arms: masses, position limits, speeds, torques, and the velocity
 //! envelope, a vendor-specific element.
 //!
 //! # What is read, and what is not
