@@ -43,7 +43,7 @@ impl core::error::Error for ControlFailure {}
 /// ```
 /// use franka_proto::SuccessRate;
 ///
-/// // The last state always reports 0: the rate is that of the one before.
+/// // The last state always reports 0: the rate is from the record before it.
 /// let rate = SuccessRate::of_log(0.77, 1000, 1004);
 /// assert_eq!(rate.to_string(), "\ncontrol_command_success_rate: 0.7469 packets lost in a row in the last sample: 3");
 /// ```
@@ -58,7 +58,7 @@ pub struct SuccessRate {
 
 impl SuccessRate {
     /// Computes the success rate from the last two records of the log, as libfranka 0.21 does. The
-    /// result is the rate in the record before the last, reduced by 1 % of its value for every
+    /// result is the rate in the second-to-last record, reduced by 1 % of its value for every
     /// state lost between the two records. It is at least 0; libfranka's result can be negative.
     /// Times are `message_id`s `[ms]`.
     #[must_use]
