@@ -61,10 +61,7 @@ def rows(page: Path) -> Iterator[tuple[list[str], str]]:
 
     ``*`` stands for the members of the types in the header that have no separate row.
     """
-    peer = PEERS / {"from-franka-rs-python.md": "franka.txt"}.get(
-        page.name, page.stem.removeprefix("from-").replace("-", "_") + ".txt"
-    )
-    known = peer.read_text().split() if peer.exists() else []
+    known = names_of_peer(page)
     for header, *body in tables(page.read_text()):
         if "Python" not in header:
             continue
@@ -78,6 +75,39 @@ def rows(page: Path) -> Iterator[tuple[list[str], str]]:
                 names = [member[1] for member in members if member and member[1] not in told]
                 assert names, cells
             yield names, cells[column] if column < len(cells) else ""
+
+
+def names_of_peer(page: Path) -> list[str]:
+    """The public names of the package that a chapter is about; none for other pages."""
+    peer = PEERS / {"from-franka-rs-python.md": "franka.txt"}.get(
+        page.name, page.stem.removeprefix("from-").replace("-", "_") + ".txt"
+    )
+    lines = peer.read_text().splitlines() if peer.exists() else []
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+@pytest.mark.parametrize("page", sorted(path.name for path in BOOK.glob("from-*.md")))
+def test_each_name_of_another_package_has_one_row(page: str) -> None:
+    """``*``, or ``Type.*``, stands for the members that have no row."""
+    known = set(names_of_peer(BOOK / page))
+    separator = "::" if any("::" in name for name in known) else "."
+    told: list[str] = []
+    for header, *body in tables((BOOK / page).read_text()):
+        if {"Rust", "Python"} & set(header):
+            owners = [name + separator for name in re.findall("`(.*?)`", header[0])] or [""]
+            for cells in body:
+                names = re.findall("`(.*?)`", cells[0])
+                assert names, cells
+                told += [owner + name for owner in owners for name in names]
+    spelled = [name for name in told if not name.endswith("*")]
+    assert len(spelled) == len(set(spelled)), "a name has two rows"
+    others: set[str] = set()
+    for star in set(told) - set(spelled):
+        owner = star.removesuffix("*")
+        members = {name for name in known - set(spelled) if re.fullmatch(re.escape(owner) + r"\w+", name)}
+        assert owner and members, f"{star} stands for nothing"
+        others |= members
+    assert set(spelled) | others == known
 
 
 def found(name: str) -> object:

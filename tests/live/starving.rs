@@ -2,7 +2,7 @@
 //! cycles.
 //!
 //! The robots run at the pace of the client's answers, so each test checks that every state was
-//! answered. `cargo xtask bench --starvation` measures the lateness of answers on a busy machine.
+//! answered. `cargo xtask bench starvation` measures the lateness of answers on a busy machine.
 
 use std::hint;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

@@ -5,6 +5,7 @@
 //! | [`peers`] | other clients against the simulator |
 //! | [`python`] | virtual environments |
 //! | [`realtime`] | the right to real-time scheduling |
+//! | [`running`] | programs whose output is read while they run |
 //! | [`selection`] | selections of tests by package |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`suite`] | the steps of `cargo xtask test` |
@@ -13,6 +14,7 @@
 pub mod peers;
 pub mod python;
 pub mod realtime;
+pub mod running;
 pub mod selection;
 pub mod step;
 pub mod suite;

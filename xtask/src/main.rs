@@ -6,7 +6,8 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use lexopt::{Arg, Parser, ValueExt as _};
-use xtask::suite::{self, Step};
+use xtask::step;
+use xtask::suite::STEPS;
 use xtask::workspace::Workspace;
 
 fn main() -> ExitCode {
@@ -29,21 +30,20 @@ fn test() -> anyhow::Result<ExitCode> {
     while let Some(argument) = arguments.next()? {
         match argument {
             Arg::Long("only") => {
-                for name in arguments.value()?.string()?.split(',') {
-                    only.push(name.parse::<Step>()?);
-                }
+                let names = arguments.value()?.string()?;
+                only.extend(names.split(',').map(str::to_owned));
             }
             Arg::Short('h') | Arg::Long("help") => {
                 println!("{HELP}\n\nSteps:");
-                for step in Step::ALL {
-                    println!("  {:10} {}", step.name(), step.about());
+                for step in STEPS {
+                    println!("  {:10} {}", step.name, step.about);
                 }
                 return Ok(ExitCode::SUCCESS);
             }
             unexpected => return Err(unexpected.unexpected().into()),
         }
     }
-    suite::run(&Workspace::find()?, &only)?;
+    step::run(&Workspace::find()?, STEPS, &only)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -73,4 +73,4 @@ Options:
       --only STEP  Run these steps only
   -h, --help       Print this help
 
-Example: cargo xtask test --only unit";
+Example: cargo xtask test --only tests";

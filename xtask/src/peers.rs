@@ -1,21 +1,17 @@
 //! Other clients against the simulator: each runs with a separate simulator, several at once.
 
 use std::env;
-use std::fmt;
-use std::io::{self, BufRead as _, BufReader, PipeReader};
-use std::iter;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command};
-use std::sync::{Mutex, PoisonError, mpsc};
-use std::thread;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{bail, ensure};
 
 use crate::python::Uv;
+use crate::running::{self, Running};
 use crate::selection::{PACKAGES, packages};
-use crate::step::Outcome;
-use crate::workspace::Workspace;
+use crate::step::{Missing, Outcome, or_missing};
+use crate::workspace::{Workspace, in_parallel};
 
 /// A choice of clients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,26 +26,26 @@ pub enum Set {
 /// against a separate simulator: as many at once as there are processors.
 ///
 /// # Errors
-/// If a program fails, or the machine lacks a requirement and `CI=true`.
+/// If a program fails, or the machine lacks a requirement of the vendor's client.
 pub fn run(workspace: &Workspace, set: Set) -> anyhow::Result<Outcome> {
-    let interpreter = interpreter(workspace)?;
+    let interpreter = or_missing(interpreter(workspace))?;
     simulator(workspace)?;
-    let scripts = interpreter.iter().flat_map(|interpreter| {
-        let scripts = SCRIPTS.iter().enumerate();
-        let scripts = scripts.filter(|(_, (name, _))| SMOKE.contains(name) == (set == Set::Smoke));
-        scripts.map(|(n, (name, arguments))| script(workspace, interpreter, n, name, arguments))
-    });
     let mut programs = Vec::new();
     if set == Set::Rest {
         programs.push(beside_franka_rs(workspace, interpreter.as_deref().ok())?);
-        let interpreter = interpreter.iter();
-        programs.extend(interpreter.map(|interpreter| cassette(workspace, interpreter)));
+        programs.extend(interpreter.iter().map(|it| cassette(workspace, it)));
     }
-    programs.extend(scripts);
-    summarise(&side_by_side(programs))?;
+    if let Ok(interpreter) = &interpreter {
+        for (n, (name, arguments)) in SCRIPTS.iter().enumerate() {
+            if SMOKE.contains(name) == (set == Set::Smoke) {
+                programs.push(script(workspace, interpreter, n, name, arguments));
+            }
+        }
+    }
+    summarise(&in_parallel(programs, |it| it.run(PROGRAM_TIME_MAX)))?;
     match interpreter {
         Ok(_) => Ok(Outcome::Passed),
-        Err(why) => Outcome::without(why),
+        Err(why) => bail!(Missing(why)),
     }
 }
 
@@ -138,163 +134,104 @@ fn franka_rs(workspace: &Workspace) -> Command {
     build
 }
 
-/// Runs the programs in this order, one per processor at a time.
-fn side_by_side(programs: Vec<Program>) -> Vec<Summary> {
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let waiting = Mutex::new(programs.into_iter());
-    let next = || {
-        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.next()
-    };
-    thread::scope(|scope| {
-        let work = || iter::from_fn(next).map(Program::run).collect::<Vec<_>>();
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let ended = workers.into_iter().map(|worker| worker.join());
-        ended.flat_map(|ended| ended.expect("no panic")).collect()
-    })
-}
-
-/// Name of a program, its steps, its duration, and its result.
-type Summary = (&'static str, ReportedSteps, Duration, anyhow::Result<()>);
-
-impl Program {
-    fn run(self) -> Summary {
-        let Self { name, command, .. } = self;
-        let start = Instant::now();
-        let simulator = self.simulator.map(|command| Running::start(name, command));
-        let (steps, result) = match simulator.transpose() {
-            Ok(_simulator) => count(name, command, PROGRAM_TIME_MAX),
-            Err(error) => (ReportedSteps::default(), Err(error)),
-        };
-        (name, steps, start.elapsed(), result)
-    }
-}
-
-/// Prints the result of each program, and then every failure in a line: the output of a program may
-/// be far above, or cut off. Fails if one program failed.
-fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
-    let mut total = ReportedSteps::default();
-    println!();
-    for (name, steps, time, result) in summaries {
-        let seconds = time.as_secs_f64();
-        print!("{name:32} {steps}, {seconds:5.1} s");
-        match result {
-            Ok(()) => println!(),
-            Err(error) => println!(", {error:#}"),
-        }
-        total.passed += steps.passed;
-        total.failures.extend(steps.failures.clone());
-    }
-    println!("{:32} {total}", "together");
-    println!();
-    let mut failed = 0;
-    for (name, steps, _, result) in summaries {
-        let Err(error) = result else { continue };
-        failed += 1;
-        for line in &steps.failures {
-            println!("{name}: {line}");
-        }
-        if steps.failures.is_empty() {
-            println!("{name}: {error:#}; its last line: {:?}", steps.last);
-        }
-    }
-    match failed {
-        0 => Ok(()),
-        failed => bail!("{failed} of {} programs failed", summaries.len()),
-    }
-}
-
-/// The steps of a program that its output reports.
-#[derive(Debug, Default)]
-struct ReportedSteps {
+/// The result of a program.
+#[derive(Debug)]
+struct Report {
+    name: &'static str,
+    time: Duration,
+    /// Number of steps that passed.
     passed: u32,
     /// The line of each step that failed.
     failures: Vec<String>,
     /// The last line with any text.
     last: String,
+    result: anyhow::Result<()>,
 }
 
-impl ReportedSteps {
-    /// Reads a line that a program printed.
-    fn note(&mut self, line: &str) {
-        if line.starts_with("ok    ") {
-            self.passed += 1;
-        } else if line.starts_with("FAIL  ") {
-            self.failures.push(line.to_owned());
-        }
-        if !line.trim().is_empty() {
-            line.clone_into(&mut self.last);
-        }
+impl Program {
+    fn run(self, time_max: Duration) -> Report {
+        let start = Instant::now();
+        let mut report = Report {
+            name: self.name,
+            time: Duration::ZERO,
+            passed: 0,
+            failures: Vec::new(),
+            last: String::new(),
+            result: Ok(()),
+        };
+        report.result = self.follow(time_max, &mut report);
+        report.time = start.elapsed();
+        report
     }
-}
 
-impl fmt::Display for ReportedSteps {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (passed, failed) = (self.passed, self.failures.len());
-        write!(f, "{passed:3} passed, {failed} failed")
-    }
-}
-
-/// Runs a program to its end and counts the steps that it reports. Prints its output, each line
-/// behind its name.
-fn count(name: &str, command: Command, time_max: Duration) -> (ReportedSteps, anyhow::Result<()>) {
-    let mut steps = ReportedSteps::default();
-    let result = thread::scope(|scope| {
-        let (child, output) = spawn(command)?;
-        scope.spawn(|| {
-            for line in BufReader::new(output).lines().map_while(Result::ok) {
-                println!("{name}: {line}");
-                steps.note(&line);
+    /// Runs the program beside its simulator, prints its output behind its name, and counts the
+    /// steps that it reports.
+    fn follow(self, time_max: Duration, report: &mut Report) -> anyhow::Result<()> {
+        let name = self.name;
+        let start = |simulator| -> anyhow::Result<Running> {
+            let mut simulator = Running::start(format!("{name}: [franka-sim]"), simulator)?;
+            simulator.address("listening on ")?;
+            Ok(simulator)
+        };
+        let _simulator = self.simulator.map(start).transpose()?;
+        running::read(self.command, time_max, |line| {
+            println!("{name}: {line}");
+            report.passed += u32::from(line.starts_with("ok    "));
+            if line.starts_with("FAIL  ") {
+                report.failures.push(line.to_owned());
             }
-        });
-        finish(child, time_max)
-    });
-    let result = match result {
-        Ok(()) if steps.passed == 0 => Err(anyhow!("no step passed")),
-        result => result,
-    };
-    (steps, result)
+            if !line.trim().is_empty() {
+                line.clone_into(&mut report.last);
+            }
+        })?;
+        ensure!(report.passed > 0, "no step passed");
+        Ok(())
+    }
 }
 
-/// Starts a program; the pipe has both its outputs.
-fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
-    let (output, end) = io::pipe()?;
-    let child = command.stdout(end.try_clone()?).stderr(end).spawn();
-    let program = command.get_program().display();
-    Ok((
-        child.with_context(|| format!("cannot start {program}"))?,
-        output,
-    ))
+/// Prints the result of each program, and then every failure in a line: the output of a program may
+/// be far above, or cut off. Fails if one program failed.
+fn summarise(reports: &[Report]) -> anyhow::Result<()> {
+    println!();
+    for report in reports {
+        let (failed, seconds) = (report.failures.len(), report.time.as_secs_f64());
+        let (name, passed) = (report.name, report.passed);
+        println!("{name:32} {passed:3} passed, {failed} failed, {seconds:5.1} s");
+    }
+    println!();
+    let mut failed = 0;
+    for report in reports {
+        let (name, Err(error)) = (report.name, &report.result) else {
+            continue;
+        };
+        failed += 1;
+        println!("{name}: {error:#}; its last line: {:?}", report.last);
+        for line in &report.failures {
+            println!("{name}: {line}");
+        }
+    }
+    ensure!(failed == 0, "{failed} of {} programs failed", reports.len());
+    Ok(())
 }
 
-/// A Python interpreter with the vendor's client, or the reason why none is available.
+/// A Python interpreter with the vendor's client.
 ///
 /// # Errors
-/// If the client cannot be installed.
-pub fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+/// If the client cannot be installed, or has no wheels for this machine.
+pub fn interpreter(workspace: &Workspace) -> anyhow::Result<PathBuf> {
+    let (system, machine) = (env::consts::OS, env::consts::ARCH);
+    if (system, machine) != ("linux", "x86_64") {
+        bail!(Missing(format!(
+            "pylibfranka has wheels for Linux on x86-64 only, this is {system} on {machine}"
+        )));
+    }
     let requirements = directory(workspace).join("requirements.txt");
-    if let Err(why) = supported() {
-        return Ok(Err(why));
-    }
-    match Uv::find(workspace)? {
-        Ok(uv) => uv.environment(workspace, "python", PYTHON, &requirements),
-        Err(why) => Ok(Err(why)),
-    }
+    Uv::find(workspace)?.environment(workspace, "python", PYTHON, &requirements)
 }
 
 /// Directory of the scripts.
 pub fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("tests").join("peers")
-}
-
-/// Checks that the vendor's wheels exist for this machine.
-fn supported() -> Result<(), String> {
-    match (env::consts::OS, env::consts::ARCH) {
-        ("linux", "x86_64") => Ok(()),
-        (system, machine) => Err(format!(
-            "pylibfranka has wheels for Linux on x86-64 only, this is {system} on {machine}"
-        )),
-    }
 }
 
 /// The address of the simulator of script `n`. The vendor's client knows only one port, so
@@ -304,67 +241,6 @@ fn loopback_address(process: u32, n: usize) -> String {
     // The scripts use the networks between for relays.
     let (high, low) = ((process / 254) % 256, process % 254 + 1);
     format!("127.{}.{high}.{low}", 2 * n + 1)
-}
-
-/// A simulator that is ready to serve; dropping this value ends it.
-struct Running(Child);
-
-impl Running {
-    /// Starts the simulator of a script and waits for the line with its address.
-    fn start(script: &'static str, command: Command) -> anyhow::Result<Self> {
-        let (child, output) = spawn(command)?;
-        let running = Self(child);
-        let (sender, listens) = mpsc::channel();
-        // Reads to the end, so that a simulator that prints more never waits for a reader.
-        thread::spawn(move || {
-            for line in BufReader::new(output).lines().map_while(Result::ok) {
-                println!("{script}: [franka-sim] {line}");
-                if line.starts_with("listening on ") {
-                    // The receiver is gone if this came too late.
-                    let _ = sender.send(());
-                }
-            }
-        });
-        match listens.recv_timeout(READY_TIME_MAX) {
-            Ok(()) => Ok(running),
-            Err(mpsc::RecvTimeoutError::Timeout) => Err(anyhow!(
-                "the simulator did not listen within {READY_TIME_MAX:?}"
-            )),
-            Err(mpsc::RecvTimeoutError::Disconnected) => {
-                Err(anyhow!("the simulator ended before it listened"))
-            }
-        }
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        kill(&mut self.0);
-    }
-}
-
-/// Waits for the end of a program. A program that takes longer than `time_max` is killed and counts
-/// as failed.
-fn finish(mut child: Child, time_max: Duration) -> anyhow::Result<()> {
-    let deadline = Instant::now() + time_max;
-    loop {
-        match child.try_wait()? {
-            Some(status) if status.success() => return Ok(()),
-            Some(status) => bail!("the program failed: {status}"),
-            None if Instant::now() >= deadline => {
-                kill(&mut child);
-                bail!("the program took longer than {time_max:?}");
-            }
-            None => thread::sleep(POLL),
-        }
-    }
-}
-
-/// Ends a child, which may also have ended already.
-fn kill(child: &mut Child) {
-    if child.kill().is_err() || child.wait().is_err() {
-        eprintln!("could not end process {}", child.id());
-    }
 }
 
 /// The program that runs our client together with franka-rs.
@@ -414,14 +290,8 @@ const PYTHON: &str = ">=3.9,<3.13";
 /// The port of every FCI server; the vendor's client uses no other.
 const PORT: &str = "1337";
 
-/// A simulator listens within milliseconds. On a machine that is busy with a build it may take
-/// seconds.
-const READY_TIME_MAX: Duration = Duration::from_secs(20);
-
 /// A program that takes longer hangs, on a busy machine too.
 const PROGRAM_TIME_MAX: Duration = Duration::from_secs(300);
-
-const POLL: Duration = Duration::from_millis(50);
 
 #[cfg(test)]
 mod tests {
@@ -443,41 +313,43 @@ mod tests {
         }
     }
 
+    fn report(program: &str, arguments: &[&str], time_max: Duration) -> Report {
+        let mut command = Command::new(program);
+        command.args(arguments);
+        let program = Program {
+            name: "program",
+            command,
+            simulator: None,
+        };
+        program.run(time_max)
+    }
+
     #[test]
     fn steps_are_counted_by_what_a_program_prints() {
-        let mut program = Command::new("printf");
-        program.arg("%s\n").args([
-            "ok    one (0.1 s): fine",
-            "ok    two (0.1 s): fine",
-            "FAIL  three: wrong",
-            "2 passed, 1 failed",
-            "",
-        ]);
-        let (steps, result) = count("printf", program, Duration::from_secs(20));
-        assert_eq!(steps.to_string(), "  2 passed, 1 failed");
-        assert_eq!(steps.failures, ["FAIL  three: wrong"]);
-        result.unwrap();
-        let (_, result) = count("true", Command::new("true"), Duration::from_secs(20));
-        assert_eq!(result.unwrap_err().to_string(), "no step passed");
+        let lines = "ok    one: fine\nok    two: fine\nFAIL  three: wrong\n2 passed, 1 failed\n\n";
+        let report = report("printf", &[lines], Duration::from_secs(20));
+        assert_eq!(report.passed, 2);
+        assert_eq!(report.failures, ["FAIL  three: wrong"]);
+        report.result.unwrap();
+        let silent = super::tests::report("true", &[], Duration::from_secs(20));
+        assert_eq!(silent.result.unwrap_err().to_string(), "no step passed");
     }
 
     #[test]
     fn the_last_line_that_says_anything_is_kept() {
-        let mut program = Command::new("sh");
-        program.args(["-c", "echo ok; echo 'Error: no robot' >&2; echo; exit 1"]);
-        let (steps, result) = count("sh", program, Duration::from_secs(20));
-        assert_eq!((steps.failures.len(), &*steps.last), (0, "Error: no robot"));
-        result.unwrap_err();
+        let script = "echo ok; echo 'Error: no robot' >&2; echo; exit 1";
+        let report = report("sh", &["-c", script], Duration::from_secs(20));
+        assert_eq!(
+            (report.failures.len(), &*report.last),
+            (0, "Error: no robot")
+        );
+        report.result.unwrap_err();
     }
 
     #[test]
     fn a_program_without_end_is_killed() {
-        let mut command = Command::new("sleep");
-        command.arg("60");
-        let start = Instant::now();
-        let (_, result) = count("sleep", command, Duration::from_millis(100));
-        let error = result.unwrap_err();
+        let report = report("sleep", &["60"], Duration::from_millis(100));
+        let error = report.result.unwrap_err();
         assert!(error.to_string().contains("took longer"), "{error}");
-        assert!(start.elapsed() < Duration::from_secs(30));
     }
 }

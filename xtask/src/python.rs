@@ -4,7 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use anyhow::bail;
+
 use crate::realtime::succeeds;
+use crate::step::Missing;
 use crate::workspace::Workspace;
 
 /// The Python versions that the wheel and the tools of the steps support.
@@ -17,12 +20,11 @@ pub struct Uv {
 }
 
 impl Uv {
-    /// Installs uv into the build directory by the pip of `python3`, once. The inner error is the
-    /// reason why it cannot be installed.
+    /// Installs uv into the build directory by the pip of `python3`, once.
     ///
     /// # Errors
-    /// If the installation fails.
-    pub fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
+    /// If the installation fails, or if its requirements are missing.
+    pub fn find(workspace: &Workspace) -> anyhow::Result<Self> {
         let requirements = workspace.root().join("xtask/uv.txt");
         let wanted = fs::read_to_string(&requirements)?;
         let directory = workspace.target().join("uv");
@@ -30,7 +32,7 @@ impl Uv {
         if !fs::read_to_string(&installed).is_ok_and(|text| text == wanted) {
             if !succeeds(&["python3", "-c", "import ensurepip, venv"]) {
                 let why = "Python 3 with the modules venv and ensurepip is needed";
-                return Ok(Err(why.to_owned()));
+                bail!(Missing(why.to_owned()));
             }
             let mut create = workspace.program("python3");
             create.args(["-m", "venv", "--clear"]).arg(&directory);
@@ -43,31 +45,30 @@ impl Uv {
             fs::write(&installed, wanted)?;
         }
         let program = directory.join("bin/uv");
-        Ok(Ok(Self { program }))
+        Ok(Self { program })
     }
 
     /// Makes the virtual environment `name` in the build directory, of a Python of these versions
-    /// and with exactly these requirements, and returns its interpreter. The inner error is the
-    /// reason why there is no such Python.
+    /// and with exactly these requirements, and returns its interpreter.
     ///
     /// # Errors
-    /// If the requirements cannot be read or installed.
+    /// If the requirements cannot be read or installed, or if there is no such Python.
     pub fn environment(
         &self,
         workspace: &Workspace,
         name: &str,
         versions: &str,
         requirements: &Path,
-    ) -> anyhow::Result<Result<PathBuf, String>> {
+    ) -> anyhow::Result<PathBuf> {
         let directory = workspace.target().join(name);
         if !self.has(versions) {
-            return Ok(Err(format!("no Python {versions} was found")));
+            bail!(Missing(format!("no Python {versions} was found")));
         }
         let interpreter = self.create(workspace, &directory, versions)?;
         let mut sync = self.pip(workspace, "sync", &interpreter);
         sync.args(["--require-hashes", "--only-binary=:all:"]);
         workspace.run(sync.arg(requirements))?;
-        Ok(Ok(interpreter))
+        Ok(interpreter)
     }
 
     /// Makes a virtual environment in `directory`, which may have an earlier one, and returns its
@@ -110,19 +111,15 @@ impl Uv {
     }
 }
 
-/// Makes the virtual environment `name` of any supported Python by [`Uv::environment`]. The inner
-/// error names the missing requirement.
+/// Makes the virtual environment `name` of any supported Python by [`Uv::environment`].
 ///
 /// # Errors
-/// If something cannot be installed.
+/// If something cannot be installed, or if a requirement is missing.
 pub fn environment(
     workspace: &Workspace,
     name: &str,
     requirements: &str,
-) -> anyhow::Result<Result<PathBuf, String>> {
+) -> anyhow::Result<PathBuf> {
     let requirements = workspace.root().join(requirements);
-    match Uv::find(workspace)? {
-        Ok(uv) => uv.environment(workspace, name, ANY, &requirements),
-        Err(why) => Ok(Err(why)),
-    }
+    Uv::find(workspace)?.environment(workspace, name, ANY, &requirements)
 }

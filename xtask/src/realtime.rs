@@ -16,7 +16,7 @@ pub fn obtain() -> Result<(), String> {
     let granted = || succeeds(&["chrt", "--fifo", "1", "true"]);
     if granted()
         || limit(&[]) && granted()
-        || crate::step::is_ci() && limit(&["sudo", "--non-interactive"]) && granted()
+        || crate::workspace::is_ci() && limit(&["sudo", "--non-interactive"]) && granted()
     {
         return Ok(());
     }

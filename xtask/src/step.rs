@@ -1,11 +1,63 @@
 //! Steps, each with a header, work and a duration, and one line at the end for all of them.
 
-use std::env;
 use std::fmt;
 use std::fs;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
+
+use crate::workspace::{Workspace, is_ci};
+
+/// A step that can be chosen with `--only`.
+#[derive(Debug)]
+pub struct Step {
+    /// The name of the step for `--only`.
+    pub name: &'static str,
+    /// One line of description.
+    pub about: &'static str,
+    /// The work.
+    pub run: fn(&Workspace) -> anyhow::Result<Outcome>,
+}
+
+/// A step of this name, description and work.
+pub const fn step(
+    name: &'static str,
+    about: &'static str,
+    run: fn(&Workspace) -> anyhow::Result<Outcome>,
+) -> Step {
+    Step { name, about, run }
+}
+
+/// Runs the chosen steps, or all if none is chosen, up to the first failure.
+///
+/// # Errors
+/// The error of the first step that fails, or an unknown name among the chosen ones.
+pub fn run(workspace: &Workspace, steps: &[Step], only: &[String]) -> anyhow::Result<()> {
+    check_names(steps, only)?;
+    let mut taken = Steps::default();
+    for Step { name, about, run } in steps {
+        if only.is_empty() || only.iter().any(|chosen| chosen == name) {
+            taken.take(name, about, || run(workspace))?;
+        }
+    }
+    println!("\n{}", taken.summary());
+    Ok(())
+}
+
+/// Fails for a name that no step has.
+///
+/// # Errors
+/// The name, and the names of the steps.
+pub fn check_names(steps: &[Step], only: &[String]) -> anyhow::Result<()> {
+    let names: Vec<_> = steps.iter().map(|step| step.name).collect();
+    match only.iter().find(|name| !names.contains(&name.as_str())) {
+        None => Ok(()),
+        Some(name) => bail!(
+            "got the step `{name}`, expected one of {}",
+            names.join(", ")
+        ),
+    }
+}
 
 /// Result of a step that did not fail.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,23 +70,28 @@ pub enum Outcome {
     Skipped(String),
 }
 
-impl Outcome {
-    /// Result of a step with a missing requirement: skipped, or with `CI=true` failed.
-    ///
-    /// # Errors
-    /// If `CI=true`.
-    pub fn without(why: String) -> anyhow::Result<Self> {
-        if is_ci() {
-            bail!("{why}; with CI=true this step must run");
-        }
-        Ok(Self::Skipped(why))
+/// The error of work whose requirement this machine lacks. A step that returns it is skipped, or
+/// fails with `CI=true`.
+#[derive(Debug)]
+pub struct Missing(pub String);
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
     }
 }
 
-/// True if nothing that can be checked may be left out: the variable `CI` is set, as services set
-/// it.
-pub fn is_ci() -> bool {
-    env::var("CI").is_ok_and(|value| value == "true" || value == "1")
+impl std::error::Error for Missing {}
+
+/// Tells a missing requirement, as the inner error, from failures.
+///
+/// # Errors
+/// All errors except [`Missing`].
+pub fn or_missing<T>(result: anyhow::Result<T>) -> anyhow::Result<Result<T, String>> {
+    match result {
+        Err(error) => error.downcast().map(|Missing(why)| Err(why)),
+        Ok(value) => Ok(Ok(value)),
+    }
 }
 
 /// The duration of a step, in wall-clock time and processor time.
@@ -69,16 +126,13 @@ fn processor_time() -> Option<f64> {
 
 /// The steps taken so far.
 #[derive(Debug, Default)]
-pub struct Steps {
+struct Steps {
     taken: Vec<(String, Outcome, Cost)>,
 }
 
 impl Steps {
     /// Runs a step: header, work, time.
-    ///
-    /// # Errors
-    /// The errors of the work.
-    pub fn take(
+    fn take(
         &mut self,
         name: &str,
         about: &str,
@@ -92,6 +146,12 @@ impl Steps {
             processor: processor_time()
                 .zip(before)
                 .map(|(now, before)| now - before),
+        };
+        let result = match or_missing(result) {
+            Ok(Err(why)) if is_ci() => Err(Missing(why)).context("with CI=true this step must run"),
+            Ok(Err(why)) => Ok(Outcome::Skipped(why)),
+            Ok(Ok(outcome)) => Ok(outcome),
+            Err(error) => Err(error),
         };
         let outcome = result.with_context(|| {
             format!(
@@ -109,7 +169,7 @@ impl Steps {
     }
 
     /// One line: the passed steps and their time, and the skipped steps with their reasons.
-    pub fn summary(&self) -> String {
+    fn summary(&self) -> String {
         let costs = self.taken.iter().map(|(_, _, cost)| cost);
         let total = Cost {
             elapsed: costs.clone().map(|cost| cost.elapsed).sum(),
@@ -158,6 +218,24 @@ mod tests {
         );
         assert!(summary.contains("b SKIPPED (no tool), c "), "{summary}");
         assert!(summary.ends_with("(NOT CHECKED: no right)"), "{summary}");
+    }
+
+    #[test]
+    fn a_missing_requirement_skips_a_step_except_on_ci() {
+        let mut steps = Steps::default();
+        let missing = || Err(Missing("no npm".to_owned()).into());
+        match steps.take("a", "", missing) {
+            Ok(()) => assert!(steps.summary().ends_with("a SKIPPED (no npm)")),
+            Err(error) => assert!(is_ci() && format!("{error:#}").ends_with("no npm")),
+        }
+    }
+
+    #[test]
+    fn a_name_without_a_step_is_refused() {
+        let steps = [step("a", "", |_| Ok(Outcome::Passed))];
+        check_names(&steps, &["a".to_owned()]).unwrap();
+        let error = check_names(&steps, &["b".to_owned()]).unwrap_err();
+        assert_eq!(error.to_string(), "got the step `b`, expected one of a");
     }
 
     #[test]

@@ -3,7 +3,9 @@
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
+use std::{iter, thread};
 
 use anyhow::{Context as _, bail};
 
@@ -68,6 +70,69 @@ impl Workspace {
         }
         Ok(())
     }
+
+    /// The output of a command.
+    ///
+    /// # Errors
+    /// If the command cannot be started or fails, or if the output is no text.
+    pub fn output(&self, command: &mut Command) -> anyhow::Result<String> {
+        let output = command.stderr(Stdio::inherit()).output();
+        let output = output.with_context(|| format!("cannot run `{}`", line(command)))?;
+        if !output.status.success() {
+            bail!("`{}` failed: {}", line(command), output.status);
+        }
+        Ok(String::from_utf8(output.stdout)?)
+    }
+
+    /// The output of git, without the blanks around it.
+    ///
+    /// # Errors
+    /// Those of [`Self::output`].
+    pub fn git(&self, arguments: &[&str]) -> anyhow::Result<String> {
+        let output = self.output(self.program("git").args(arguments))?;
+        Ok(output.trim().to_owned())
+    }
+
+    /// The files that match a pattern of git, unless git ignores them or they were deleted.
+    ///
+    /// # Errors
+    /// Those of [`Self::output`].
+    pub fn files(&self, patterns: &[&str]) -> anyhow::Result<Vec<PathBuf>> {
+        let list = [
+            "ls-files",
+            "-co",
+            "--deduplicate",
+            "--exclude-standard",
+            "--",
+        ];
+        let files = self.git(&[&list, patterns].concat())?;
+        let files = files.lines().map(PathBuf::from);
+        Ok(files
+            .filter(|file| self.root.join(file).is_file())
+            .collect())
+    }
+}
+
+/// True if nothing that can be checked may be left out: the variable `CI` is set, as services set
+/// it.
+pub fn is_ci() -> bool {
+    env::var("CI").is_ok_and(|value| value == "true" || value == "1")
+}
+
+/// Works on all items, as many at a time as there are processors. The results have no order.
+pub fn in_parallel<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    let waiting = Mutex::new(items.into_iter());
+    let next = || {
+        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.next()
+    };
+    thread::scope(|scope| {
+        let worker = || iter::from_fn(next).map(&work).collect::<Vec<_>>();
+        let workers = thread::available_parallelism().map_or(1, usize::from);
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
+        let ended = workers.into_iter().map(|worker| worker.join());
+        ended.flat_map(|ended| ended.expect("no panic")).collect()
+    })
 }
 
 /// The command as typed by a user: changed variables, program, arguments.
@@ -98,7 +163,7 @@ fn cargo_in(root: &Path) -> Command {
     let cargo = env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);
     command.current_dir(root);
-    if crate::step::is_ci() {
+    if is_ci() {
         // Incremental data makes the next build faster and the first one slower.
         command.env("CARGO_INCREMENTAL", "0");
     }

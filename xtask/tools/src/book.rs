@@ -10,27 +10,24 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, ensure};
 
 use crate::metadata::copy_directory;
 use crate::names;
 use crate::package;
 use crate::playground;
 use xtask::python;
-use xtask::step::Outcome;
+use xtask::step::{Outcome, or_missing};
 use xtask::workspace::Workspace;
 
 /// The book's step: every page is in the summary, every Rust program is compiled by a test, and no
 /// link is broken.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let pages = names::pages(&sources(workspace))?;
+    let pages = names::pages(workspace)?;
     let mut found = unlisted(workspace, &pages)?;
     found.extend(untested(workspace, &pages)?);
     ensure!(found.is_empty(), "the book:\n{}", found.join("\n"));
-    let tools = match Tools::find(workspace)? {
-        Ok(tools) => tools,
-        Err(why) => return Outcome::without(why),
-    };
+    let tools = Tools::find(workspace)?;
     let book = build(workspace, &tools)?;
     println!("{} pages", pages.len());
     playground::leave_out(&book, "only the links were checked")?;
@@ -40,10 +37,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
 /// Builds the book with its references. Serves it on this computer until Ctrl-C, unless only a
 /// build is requested.
 pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<()> {
-    let tools = match Tools::find(workspace)? {
-        Ok(tools) => tools,
-        Err(why) => bail!("{why}"),
-    };
+    let tools = Tools::find(workspace)?;
     let book = build(workspace, &tools)?;
     playground::add(workspace, &book)?;
     // Cargo keeps pages of names that no longer exist.
@@ -66,7 +60,7 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
     rust.args(["--package=franka-async", "--package=franka-sim"]);
     workspace.run(&mut rust)?;
     copy_directory(&workspace.target().join("doc"), &book.join("rust"))?;
-    let missing: &[&str] = match package::prepare(workspace)? {
+    let missing: &[&str] = match or_missing(package::prepare(workspace))? {
         Ok(interpreter) => {
             let mut python = package::module(workspace, &interpreter, "pdoc");
             python.args(["--docformat", "google", "--output-directory"]);
@@ -99,10 +93,10 @@ struct Tools {
 }
 
 impl Tools {
-    /// Installs the tools, or returns the missing requirement.
-    fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
+    /// Installs the tools.
+    fn find(workspace: &Workspace) -> anyhow::Result<Self> {
         let interpreter = python::environment(workspace, "python-book", "docs/requirements.txt")?;
-        Ok(interpreter.map(|interpreter| Self { interpreter }))
+        Ok(Self { interpreter })
     }
 
     /// A program of the environment.
@@ -154,16 +148,17 @@ fn links(
 
 /// Pages that are in no chapter of the summary.
 fn unlisted(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
-    let sources = sources(workspace);
-    let summary = fs::read_to_string(sources.join("SUMMARY.md"))?;
-    let mut found = Vec::new();
-    for page in pages {
-        let name = page.strip_prefix(&sources)?.display().to_string();
-        if name != "SUMMARY.md" && !summary.contains(&format!("({name})")) {
-            found.push(format!("{name} is not in SUMMARY.md"));
-        }
-    }
-    Ok(found)
+    let sources = Path::new("docs/src");
+    let summary = fs::read_to_string(workspace.root().join(sources).join("SUMMARY.md"))?;
+    let names = pages.iter().map(|page| page.strip_prefix(sources));
+    let names = names.collect::<Result<Vec<_>, _>>()?.into_iter();
+    let names = names.map(|name| name.display().to_string());
+    let is_missing =
+        |name: &String| name != "SUMMARY.md" && !summary.contains(&format!("({name})"));
+    let missing = names.filter(is_missing);
+    Ok(missing
+        .map(|name| format!("{name} is not in SUMMARY.md"))
+        .collect())
 }
 
 /// Pages with Rust programs that no test compiles.
@@ -171,8 +166,8 @@ fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Stri
     let tests = fs::read_to_string(workspace.root().join(DOCTESTS)).context(DOCTESTS)?;
     let mut found = Vec::new();
     for page in pages {
-        let name = page.strip_prefix(workspace.root())?.display().to_string();
-        let has_program = programs(&fs::read_to_string(page)?);
+        let has_program = programs(&fs::read_to_string(workspace.root().join(page))?);
+        let name = page.display();
         if has_program && !tests.contains(&format!("../{name}\"")) {
             found.push(format!("{name} has Rust programs and is not in {DOCTESTS}"));
         }
@@ -192,10 +187,6 @@ fn programs(page: &str) -> bool {
         }
     }
     false
-}
-
-fn sources(workspace: &Workspace) -> PathBuf {
-    workspace.root().join("docs").join("src")
 }
 
 /// Removes a directory if it exists.

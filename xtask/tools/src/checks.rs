@@ -3,178 +3,158 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::process::{Command, Stdio};
 
-use anyhow::Context as _;
-use clap::ValueEnum;
 use xtask::peers;
 use xtask::selection::{self, LIVE, PACKAGES, packages};
-use xtask::step::{Outcome, Steps};
-use xtask::suite;
+use xtask::step::{Outcome, Step, step};
 use xtask::workspace::Workspace;
 
+use crate::cross::lacks;
 use crate::others::OTHERS;
 use crate::{
-    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground,
-    prose, recordings, reference_pages, release, schemas, texts, tidy,
+    book, circles, commands, cross, dashboard, mujoco, names, package, playground, prose,
+    recordings, reference_pages, release, schemas, texts, tidy,
 };
 
-/// A step that can be chosen with `--only`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Check {
-    /// Formatting, and the width of comments.
-    Fmt,
-    /// No imports in a circle between the modules of a crate.
-    Circles,
-    /// Public names, and their rows in the book.
-    Names,
-    /// Spelling, and the workflows.
-    Texts,
-    /// Plain English in comments, texts and the book.
-    Prose,
-    /// Licences and sources of the dependencies.
-    Dependencies,
-    /// Crates that can be published, one version everywhere, the form of the change log.
-    Release,
-    /// The code of recordings matches its definitions.
-    Schemas,
-    /// The book: its pages, programs and links.
-    Book,
-    /// The files of the dashboard's page match its sources.
-    Assets,
-    /// Lints, warnings denied.
-    Clippy,
-    /// Documentation, warnings denied.
-    Doc,
-    /// The README's first command.
-    Quickstart,
-    /// The tests that `cargo xtask test` leaves out.
-    Rest,
-    /// The parts without features, and without the standard library.
-    Bare,
-    /// The other clients against the simulator.
-    Peers,
-    /// The Python package: its tests and types.
-    Python,
-    /// Recordings, read by the standard reader in Python.
-    Recordings,
+/// The steps of `cargo xtask check`.
+pub(crate) const CHECK: &[Step] = &[
+    step("fmt", "Formatting, and the width of comments", fmt),
+    step(
+        "circles",
+        "No imports in a circle between the modules of a crate",
+        |workspace| passed(circles::check(workspace)),
+    ),
+    step("names", "Public names, and their rows in the book", |it| {
+        let ours = names::check(it)?;
+        reference_pages::check(it, &ours)?;
+        passed(commands::check(it))
+    }),
+    step("texts", "Spelling, and the workflows", texts::check),
+    step(
+        "prose",
+        "Plain English in comments, texts and the book",
+        prose::check,
+    ),
+    step(
+        "dependencies",
+        "Licences and sources of the dependencies",
+        texts::dependencies,
+    ),
+    step(
+        "release",
+        "Crates that can be published, one version everywhere, the form of the change log",
+        |workspace| release::check(workspace, release::Depth::default()),
+    ),
+    step(
+        "schemas",
+        "The code of recordings matches its definitions",
+        |workspace| passed(schemas::check(workspace)),
+    ),
+    step(
+        "book",
+        "The book: its pages, programs and links",
+        book::check,
+    ),
+    step(
+        "assets",
+        "The files of the dashboard's page match its sources",
+        dashboard::check_assets,
+    ),
+    step("clippy", "Lints, warnings denied", |workspace| {
+        let features = format!("--features={FEATURES}");
+        passed(clippy(
+            workspace,
+            &["--workspace", "--all-targets", &features],
+        ))
+    }),
+    step("doc", "Documentation, warnings denied", |workspace| {
+        let mut command = workspace.cargo();
+        command.args(["doc", "--workspace", "--no-deps", "--features"]);
+        command.arg(format!("{FEATURES},franka-diagnosis/serde"));
+        passed(workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings")))
+    }),
+    step("quickstart", "The README's first command", |workspace| {
+        let mut command = workspace.cargo();
+        command.args(["run", "--release", "--example", "quickstart"]);
+        passed(workspace.run(&mut command))
+    }),
+    step("rest", "The tests that `cargo xtask test` leaves out", rest),
+    step(
+        "bare",
+        "The parts without features, and without the standard library",
+        |workspace| {
+            without_features(workspace)?;
+            no_std(workspace)
+        },
+    ),
+    step(
+        "peers",
+        "The other clients against the simulator",
+        |workspace| peers::run(workspace, peers::Set::Rest),
+    ),
+    step(
+        "python",
+        "The Python package: its tests and types",
+        package::run,
+    ),
+    step(
+        "recordings",
+        "Recordings, read by the standard reader in Python",
+        recordings::run,
+    ),
+];
+
+/// The steps of `cargo xtask nightly`.
+pub(crate) const NIGHTLY: &[Step] = &[
+    step(
+        "mujoco",
+        "The simulator's MuJoCo plant: lints and tests",
+        |workspace| {
+            mujoco::provide(workspace)?;
+            let features = format!("--features={MUJOCO_FEATURES}");
+            let mut arguments = packages(&MUJOCO);
+            arguments.extend(["--all-targets".to_owned(), features.clone()]);
+            clippy(workspace, &arguments)?;
+            selection::tests(workspace, &MUJOCO, &[&features], "all()")
+        },
+    ),
+    step(
+        "phases",
+        "All tests with every phase of a cycle timed",
+        |workspace| {
+            let targets = ["--features=franka-tests/cycle-phases"];
+            selection::tests(workspace, &PACKAGES, &targets, "all()")
+        },
+    ),
+    step(
+        "dashboard",
+        "The dashboard's page in a real browser",
+        dashboard::run,
+    ),
+    step(
+        "playground",
+        "The book's playground in a real browser",
+        playground::check,
+    ),
+    step(
+        "targets",
+        "The portable parts, for other systems and machines",
+        cross::check,
+    ),
+];
+
+/// The outcome of work that checks everything or fails.
+fn passed(result: anyhow::Result<()>) -> anyhow::Result<Outcome> {
+    result.map(|()| Outcome::Passed)
 }
 
-/// A step of the nightly run that can be chosen with `--only`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Nightly {
-    /// The simulator's MuJoCo plant: lints and tests.
-    Mujoco,
-    /// All tests with every phase of a cycle timed.
-    Phases,
-    /// The dashboard's page in a real browser.
-    Dashboard,
-    /// The book's playground in a real browser.
-    Playground,
-    /// The portable parts, for other systems and machines.
-    Targets,
-}
-
-/// The steps of a command, for `--only`.
-pub(crate) trait StepOf: ValueEnum + PartialEq {
-    fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome>;
-}
-
-/// Runs the chosen steps, or all if none is chosen, up to the first failure.
-pub(crate) fn run<S: StepOf>(workspace: &Workspace, only: &[S]) -> anyhow::Result<()> {
-    let mut steps = Steps::default();
-    for step in S::value_variants() {
-        if only.is_empty() || only.contains(step) {
-            let value = step.to_possible_value().context("a step has a name")?;
-            let about = value.get_help().map(ToString::to_string);
-            let about = about.unwrap_or_default();
-            steps.take(value.get_name(), &about, || step.run(workspace))?;
-        }
+fn fmt(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    for manifest in MANIFESTS {
+        let mut command = workspace.cargo();
+        command.args(["fmt", "--all", "--check", "--manifest-path", manifest]);
+        workspace.run(&mut command)?;
     }
-    println!("\n{}", steps.summary());
-    Ok(())
-}
-
-impl StepOf for Nightly {
-    fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome> {
-        match self {
-            Self::Mujoco => {
-                if let Err(why) = mujoco::provide(workspace)? {
-                    return Outcome::without(why);
-                }
-                let mut arguments = packages(&MUJOCO);
-                arguments.push("--all-targets".to_owned());
-                arguments.push(format!("--features={MUJOCO_FEATURES}"));
-                clippy(workspace, &arguments)?;
-                let features = format!("--features={MUJOCO_FEATURES}");
-                selection::tests(workspace, &MUJOCO, &[&features], "all()")
-            }
-            Self::Phases => {
-                let targets = ["--features=franka-tests/cycle-phases"];
-                selection::tests(workspace, &PACKAGES, &targets, "all()")
-            }
-            Self::Dashboard => dashboard::run(workspace),
-            Self::Playground => playground::check(workspace),
-            Self::Targets => cross::check(workspace),
-        }
-    }
-}
-
-impl StepOf for Check {
-    fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome> {
-        match self {
-            Self::Fmt => {
-                for manifest in MANIFESTS {
-                    let mut command = workspace.cargo();
-                    command.args(["fmt", "--all", "--check", "--manifest-path", manifest]);
-                    workspace.run(&mut command)?;
-                }
-                tidy::check(workspace)?;
-            }
-            Self::Circles => circles::check(workspace)?,
-            Self::Names => {
-                let ours = names::check(workspace)?;
-                peer_pages::check(workspace, &ours)?;
-                reference_pages::check(workspace, &ours)?;
-                let steps = suite::Step::ALL.map(|step| step.name().to_owned());
-                let mut steps = steps.to_vec();
-                steps.extend(Check::value_variants().iter().map(name_of));
-                steps.extend(Nightly::value_variants().iter().map(name_of));
-                commands::check(workspace, &crate::tasks(), &steps)?;
-            }
-            Self::Texts => return texts::check(workspace),
-            Self::Prose => return prose::check(workspace),
-            Self::Dependencies => return texts::dependencies(workspace),
-            Self::Release => return release::check(workspace, release::Depth::default()),
-            Self::Book => return book::check(workspace),
-            Self::Schemas => schemas::check(workspace)?,
-            Self::Clippy => {
-                let features = format!("--features={FEATURES}");
-                clippy(workspace, &["--workspace", "--all-targets", &features])?;
-            }
-            Self::Doc => {
-                let mut command = workspace.cargo();
-                command.args(["doc", "--workspace", "--no-deps", "--features"]);
-                command.arg(format!("{FEATURES},franka-diagnosis/serde"));
-                workspace.run(command.env("RUSTDOCFLAGS", "-Dwarnings"))?;
-            }
-            Self::Quickstart => {
-                let mut command = workspace.cargo();
-                command.args(["run", "--release", "--example", "quickstart"]);
-                workspace.run(&mut command)?;
-            }
-            Self::Rest => return rest(workspace),
-            Self::Bare => {
-                without_features(workspace)?;
-                return no_std(workspace);
-            }
-            Self::Peers => return peers::run(workspace, peers::Set::Rest),
-            Self::Python => return package::run(workspace),
-            Self::Recordings => return recordings::run(workspace),
-            Self::Assets => return dashboard::check_assets(workspace),
-        }
-        Ok(Outcome::Passed)
-    }
+    passed(tidy::check(workspace))
 }
 
 /// The tests that `cargo xtask test` leaves out: first of the same packages, whose libraries are
@@ -196,11 +176,6 @@ fn rest(workspace: &Workspace) -> anyhow::Result<Outcome> {
     doctests.args(packages(&["franka-record", "franka-doctor", "franka-dash"]));
     workspace.run(&mut doctests)?;
     Ok(outcome)
-}
-
-fn name_of(step: &impl StepOf) -> String {
-    let value = step.to_possible_value();
-    value.map_or(String::new(), |value| value.get_name().to_owned())
 }
 
 /// Lints, warnings denied.
@@ -227,7 +202,8 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
         workspace.root().join("Cargo.lock"),
         package.join("Cargo.lock"),
     )?;
-    let bare = BARE_TARGETS.iter().find(|target| installed(target));
+    let has_core = |target: &&&str| lacks(target, "libcore-").is_none();
+    let bare = BARE_TARGETS.iter().find(has_core);
     let host = None;
     for target in [Some(host), bare.map(Some)].into_iter().flatten() {
         let mut command = workspace.cargo();
@@ -243,18 +219,6 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
             "no bare target is installed; `rustup target add {}` installs one",
             BARE_TARGETS[0]
         )),
-    })
-}
-
-/// True if the toolchain has the `core` of a target.
-fn installed(target: &str) -> bool {
-    let output = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", target])
-        .stderr(Stdio::null())
-        .output();
-    output.is_ok_and(|output| {
-        let libraries = String::from_utf8_lossy(&output.stdout);
-        output.status.success() && std::path::Path::new(libraries.trim()).is_dir()
     })
 }
 

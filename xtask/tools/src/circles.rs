@@ -11,9 +11,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context as _, bail};
-use syn::visit::{self, Visit};
-use syn::{Attribute, Item, UseTree};
+use anyhow::{Context as _, anyhow, ensure};
+use proc_macro2::{TokenStream, TokenTree};
 
 use crate::metadata;
 use xtask::workspace::Workspace;
@@ -24,41 +23,27 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let mut found = Vec::new();
     for (name, root) in &crates {
         let mut imports = Imports::default();
-        let items = parse(root)?.items;
         let directory = root.parent().context("a file is in a directory")?;
-        for item in &items {
-            match item {
-                Item::Mod(item) if item.content.is_none() && !is_for_tests(&item.attrs) => {
-                    let module = item.ident.to_string();
-                    imports.read(&module, &directory.join(&module).with_extension("rs"), 1)?;
-                    imports.read(&module, &directory.join(&module), 1)?;
-                }
-                Item::Use(item) => imports.export(&item.tree, None),
-                _ => {}
-            }
+        for module in imports.read_root(parse(root)?) {
+            imports.read(&module, &directory.join(&module).with_extension("rs"), 1)?;
+            imports.read(&module, &directory.join(&module), 1)?;
         }
-        found.extend(
-            imports
-                .circles()
-                .into_iter()
-                .map(|it| format!("{name}: {it}")),
-        );
+        let circles = imports.circles().into_iter();
+        found.extend(circles.map(|it| format!("{name}: {it}")));
     }
-    if !found.is_empty() {
-        bail!("imports in a circle between modules:\n{}", found.join("\n"));
-    }
+    let list = found.join("\n");
+    ensure!(
+        found.is_empty(),
+        "imports in a circle between modules:\n{list}"
+    );
     println!("{} crates, no circle", crates.len());
     Ok(())
 }
 
-fn parse(file: &Path) -> anyhow::Result<syn::File> {
+fn parse(file: &Path) -> anyhow::Result<TokenStream> {
     let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
-    syn::parse_file(&text).with_context(|| file.display().to_string())
-}
-
-/// True for a Rust file, except one with unit tests.
-fn is_source(path: &Path) -> bool {
-    path.extension().is_some_and(|it| it == "rs") && !path.ends_with("tests.rs")
+    let tokens = text.parse();
+    tokens.map_err(|error| anyhow!("{}: {error}", file.display()))
 }
 
 /// Imports of a crate's modules.
@@ -68,15 +53,55 @@ struct Imports {
     exported: BTreeMap<String, String>,
     /// Imports of each top-level module from the root of the crate, with one file each.
     found: BTreeMap<String, BTreeMap<String, String>>,
-    /// The file that is read, its top-level module, and its number of modules below the root.
+    /// The file that is read, and its top-level module.
     file: String,
     module: String,
-    depth: usize,
 }
 
 impl Imports {
-    /// Reads a file, or all files below a directory, of a top-level module. `depth` is the number
-    /// of modules in its path.
+    /// Reads what the root of the crate exports, and returns its modules in other files.
+    fn read_root(&mut self, tokens: TokenStream) -> Vec<String> {
+        let tokens = without_tests(tokens);
+        let mut modules = Vec::new();
+        for item in tokens.split(|token| token.to_string() == ";") {
+            let words: Vec<_> = item.iter().map(ToString::to_string).collect();
+            let begin = |word: &str| words.iter().position(|it| it == word);
+            if let [.., keyword, module] = &words[..]
+                && keyword == "mod"
+            {
+                modules.push(module.clone());
+            } else if let Some(at) = begin("use") {
+                self.export(&item[at + 1..], None);
+            }
+        }
+        modules
+    }
+
+    /// Records the names that a `use` at the root of the crate imports. `module` is the first
+    /// top-level module of the path, once it is known.
+    fn export(&mut self, tree: &[TokenTree], module: Option<&str>) {
+        for path in tree.split(|token| token.to_string() == ",") {
+            let names = path.iter().filter_map(|token| match token {
+                TokenTree::Ident(name) => Some(name.to_string()),
+                _ => None,
+            });
+            let names: Vec<_> = names.filter(|it| it != "crate" && it != "self").collect();
+            let module = module.or(names.first().map(String::as_str));
+            match (path.last(), module) {
+                (Some(TokenTree::Group(group)), _) => {
+                    let inner: Vec<_> = group.stream().into_iter().collect();
+                    self.export(&inner, module);
+                }
+                (Some(TokenTree::Ident(name)), Some(module)) => {
+                    self.exported.insert(name.to_string(), module.to_owned());
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Reads a file, or all files below a directory, of a top-level module, except files with unit
+    /// tests. `depth` is the number of modules in its path.
     fn read(&mut self, module: &str, path: &Path, depth: usize) -> anyhow::Result<()> {
         if path.is_dir() {
             for entry in fs::read_dir(path)? {
@@ -84,41 +109,53 @@ impl Imports {
                 let is_same = path.ends_with("mod.rs");
                 self.read(module, &path, depth + usize::from(!is_same))?;
             }
-        } else if path.exists() && is_source(path) {
+        } else if path.extension().is_some_and(|it| it == "rs")
+            && path.exists()
+            && !path.ends_with("tests.rs")
+        {
             self.file = path.display().to_string();
-            self.module = module.to_owned();
-            self.depth = depth;
+            module.clone_into(&mut self.module);
             self.found.entry(module.to_owned()).or_default();
-            self.visit_file(&parse(path)?);
+            self.walk(parse(path)?, depth);
         }
         Ok(())
     }
 
-    /// Records a path, by its words, if it begins at the root of the crate.
-    fn note(&mut self, words: &[String]) {
-        let up = words.iter().take_while(|word| *word == "super").count();
-        let name = match words {
-            [first, name, ..] if first == "crate" => name,
-            _ if up > 0 && up == self.depth => match words.get(up) {
-                Some(name) => name,
-                None => return,
-            },
-            _ => return,
-        };
-        let of = self.found.entry(self.module.clone()).or_default();
-        of.entry(name.clone()).or_insert_with(|| self.file.clone());
+    /// Records the paths that begin at the root of the crate, by `crate` or `depth` times `super`.
+    fn walk(&mut self, tokens: TokenStream, depth: usize) {
+        let tokens = without_tests(tokens);
+        let word = |at: usize| tokens.get(at).map(ToString::to_string).unwrap_or_default();
+        let is_path = |at: usize| word(at) == ":" && word(at + 1) == ":";
+        let mut at = 0;
+        while at < tokens.len() {
+            let mut up = 0;
+            while word(at) == "super" && is_path(at + 1) {
+                (up, at) = (up + 1, at + 3);
+            }
+            if up == 0 && word(at) == "crate" && is_path(at + 1) {
+                (up, at) = (depth, at + 3);
+            }
+            match tokens.get(at) {
+                Some(TokenTree::Ident(name)) if up == depth => self.note(name.to_string()),
+                Some(TokenTree::Group(group)) if up == depth => {
+                    let paths: Vec<_> = group.stream().into_iter().collect();
+                    for path in paths.split(|token| token.to_string() == ",") {
+                        self.note(path.first().map_or(String::new(), ToString::to_string));
+                    }
+                }
+                Some(TokenTree::Group(group)) => {
+                    let is_module = at > 1 && word(at - 2) == "mod";
+                    self.walk(group.stream(), depth + usize::from(is_module) - up);
+                }
+                _ => {}
+            }
+            at += 1;
+        }
     }
 
-    /// Records the names that a `use` at the root of the crate imports. `module` is the first
-    /// top-level module of the path, once it is known.
-    fn export(&mut self, tree: &UseTree, module: Option<&str>) {
-        each_path(tree, Vec::new(), &mut |path| {
-            let path: Vec<&String> = path.iter().filter(|word| *word != "crate").collect();
-            if let [first, .., last] = path[..] {
-                let module = module.unwrap_or(first);
-                self.exported.insert(last.clone(), module.to_owned());
-            }
-        });
+    fn note(&mut self, name: String) {
+        let of = self.found.entry(self.module.clone()).or_default();
+        of.entry(name).or_insert_with(|| self.file.clone());
     }
 
     /// A line for each import between modules that import each other, directly or through others.
@@ -156,88 +193,24 @@ impl Imports {
     }
 }
 
-impl<'a> Visit<'a> for Imports {
-    fn visit_item_mod(&mut self, item: &'a syn::ItemMod) {
-        if !is_for_tests(&item.attrs) {
-            self.depth += 1;
-            visit::visit_item_mod(self, item);
-            self.depth -= 1;
-        }
-    }
-
-    fn visit_item_use(&mut self, item: &'a syn::ItemUse) {
-        if !is_for_tests(&item.attrs) {
-            each_path(&item.tree, Vec::new(), &mut |path| self.note(path));
-        }
-    }
-
-    fn visit_item_fn(&mut self, item: &'a syn::ItemFn) {
-        if !is_for_tests(&item.attrs) {
-            visit::visit_item_fn(self, item);
-        }
-    }
-
-    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
-        if !is_for_tests(&item.attrs) {
-            visit::visit_item_impl(self, item);
-        }
-    }
-
-    fn visit_path(&mut self, path: &'a syn::Path) {
-        let words = path
-            .segments
-            .iter()
-            .map(|segment| segment.ident.to_string());
-        self.note(&words.collect::<Vec<_>>());
-        visit::visit_path(self, path);
-    }
-
-    fn visit_macro(&mut self, item: &'a syn::Macro) {
-        let text = item.tokens.to_string();
-        for rest in text.split("crate :: ").skip(1) {
-            let name = rest.split(' ').next().unwrap_or_default();
-            self.note(&["crate".to_owned(), name.to_owned()]);
-        }
-    }
-}
-
-/// Calls `each` with every path of a `use`.
-fn each_path(tree: &UseTree, mut path: Vec<String>, each: &mut impl FnMut(&[String])) {
-    match tree {
-        UseTree::Path(inner) => {
-            path.push(inner.ident.to_string());
-            each_path(&inner.tree, path, each);
-        }
-        UseTree::Group(group) => {
-            for tree in &group.items {
-                each_path(tree, path.clone(), each);
-            }
-        }
-        UseTree::Name(name) if name.ident == "self" => each(&path),
-        UseTree::Name(name) => {
-            path.push(name.ident.to_string());
-            each(&path);
-        }
-        UseTree::Rename(rename) => {
-            let name = if path.is_empty() {
-                &rename.ident
-            } else {
-                &rename.rename
+/// The tokens without the items for tests: an attribute, and all up to a semicolon or a block.
+fn without_tests(tokens: TokenStream) -> Vec<TokenTree> {
+    let mut kept = Vec::new();
+    let mut tokens = tokens.into_iter().peekable();
+    while let Some(token) = tokens.next() {
+        let next = tokens.peek().map(|it| it.to_string().replace(' ', ""));
+        let is_test = ["[cfg(test)]", "[cfg(doctest)]"].contains(&&*next.unwrap_or_default());
+        if token.to_string() == "#" && is_test {
+            let is_end = |token: &TokenTree| {
+                let text = token.to_string();
+                text == ";" || text.starts_with('{')
             };
-            path.push(name.to_string());
-            each(&path);
+            let _ = tokens.find(is_end);
+        } else {
+            kept.push(token);
         }
-        UseTree::Glob(_) => each(&path),
     }
-}
-
-/// True if an attribute keeps its item for tests.
-fn is_for_tests(attributes: &[Attribute]) -> bool {
-    attributes.iter().any(|attribute| {
-        let is_test = |path: &syn::Path| path.is_ident("test") || path.is_ident("doctest");
-        let condition = attribute.parse_args::<syn::Path>();
-        attribute.path().is_ident("cfg") && condition.is_ok_and(|path| is_test(&path))
-    })
+    kept
 }
 
 #[cfg(test)]
@@ -247,17 +220,12 @@ mod tests {
     /// The circles of a crate with this root and these top-level modules.
     fn circles(root: &str, modules: &[(&str, &str)]) -> Vec<String> {
         let mut imports = Imports::default();
-        for item in syn::parse_file(root).expect("it is Rust").items {
-            if let Item::Use(item) = item {
-                imports.export(&item.tree, None);
-            }
-        }
+        imports.read_root(root.parse().expect("it is Rust"));
         for (module, text) in modules {
             imports.module = (*module).to_owned();
             imports.file = format!("{module}.rs");
-            imports.depth = 1;
             imports.found.entry(imports.module.clone()).or_default();
-            imports.visit_file(&syn::parse_file(text).expect("it is Rust"));
+            imports.walk(text.parse().expect("it is Rust"), 1);
         }
         imports.circles()
     }
@@ -280,8 +248,11 @@ mod tests {
     #[test]
     fn an_export_of_the_root_is_in_its_module() {
         let modules = [("a", "use crate::b::C;"), ("b", "use crate::{D, std::E};")];
-        let found = circles("pub use a::{x::D, F as G};", &modules);
+        let found = circles("mod z; pub use a::{x::D, F as G};", &modules);
         assert_eq!(found, ["a imports b in a.rs", "b imports a in b.rs"]);
+        let root = "#[cfg(test)] mod t; mod a; pub mod b;".parse();
+        let found = Imports::default().read_root(root.expect("it is Rust"));
+        assert_eq!(found, ["a", "b"]);
     }
 
     #[test]
@@ -295,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_nested_module_goes_up_through_its_parents() {
-        let nested = "mod m { use super::super::a::X; use super::a::Y; }";
+        let nested = "mod m { use super::{super::a::X, Z}; use super::a::Y; }";
         assert_eq!(
             circles("", &[("a", "use crate::b;"), ("b", nested)]).len(),
             2

@@ -10,35 +10,28 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 
 use crate::book::REPOSITORY_PAGES;
-use crate::metadata;
+use crate::metadata::{self, list, text};
 use crate::names;
 use crate::page::{blocks, prose};
+use xtask::realtime::succeeds;
+use xtask::step;
+use xtask::suite::STEPS;
 use xtask::workspace::Workspace;
 
-/// Fails with every command that cannot be run. `tasks` are the tasks of `cargo xtask`, each with
-/// its flags; `steps` are the steps of `cargo xtask test --only`.
-pub(crate) fn check(
-    workspace: &Workspace,
-    tasks: &[(String, Vec<String>)],
-    steps: &[String],
-) -> anyhow::Result<()> {
+/// Fails with every command that cannot be run.
+pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let targets = targets(workspace)?;
-    let known = Known {
-        targets: &targets,
-        tasks,
-        steps,
-    };
     let mut found = Vec::new();
     let mut count = 0;
-    let mut pages = names::pages(&workspace.root().join("docs/src"))?;
-    pages.extend(REPOSITORY_PAGES.map(|page| workspace.root().join(page)));
+    let mut pages = names::pages(workspace)?;
+    pages.extend(REPOSITORY_PAGES.map(PathBuf::from));
     for path in pages {
-        let name = path.strip_prefix(workspace.root()).unwrap_or(&path);
-        let page = fs::read_to_string(&path).with_context(|| format!("{}", path.display()))?;
-        for command in commands(&page) {
+        let name = path.display();
+        let page = fs::read_to_string(workspace.root().join(&path));
+        for command in commands(&page.with_context(|| name.to_string())?) {
             count += 1;
-            if let Some(fault) = known.fault(&command) {
-                found.push(format!("{}: `{command}`: {fault}", name.display()));
+            if let Some(fault) = fault(&command, &targets) {
+                found.push(format!("{name}: `{command}`: {fault}"));
             }
         }
     }
@@ -79,15 +72,13 @@ struct Target {
 }
 
 fn targets(workspace: &Workspace) -> anyhow::Result<Vec<Target>> {
-    let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
-    let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
     let mut targets = Vec::new();
     for package in metadata::packages(workspace)? {
         for target in list(&package["targets"]) {
             for kind in list(&target["kind"]) {
                 targets.push(Target {
                     package: text(&package["name"]),
-                    kind: text(&kind),
+                    kind: text(kind),
                     name: text(&target["name"]),
                     file: text(&target["src_path"]).into(),
                     features: list(&target["required-features"])
@@ -101,114 +92,87 @@ fn targets(workspace: &Workspace) -> anyhow::Result<Vec<Target>> {
     Ok(targets)
 }
 
-/// All existing targets, tasks and steps.
-struct Known<'a> {
-    targets: &'a [Target],
-    tasks: &'a [(String, Vec<String>)],
-    steps: &'a [String],
+/// The missing object of a command, if any.
+fn fault(command: &str, targets: &[Target]) -> Option<String> {
+    let command = command.split(" -- ").next().unwrap_or(command);
+    let command = command.split(" # ").next().unwrap_or(command);
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    match words[..] {
+        ["xtask", "test"] => None,
+        ["xtask", "test", "--only", steps] => {
+            let steps: Vec<_> = steps.split(',').map(str::to_owned).collect();
+            let fault = step::check_names(STEPS, &steps).err();
+            fault.map(|fault| fault.to_string())
+        }
+        ["xtask", ref words @ ..] => crate::fault_of_task(words),
+        _ => fault_of_build(&words, targets),
+    }
 }
 
-impl Known<'_> {
-    /// The missing object of a command, if any.
-    fn fault(&self, command: &str) -> Option<String> {
-        let command = command.split(" -- ").next().unwrap_or(command);
-        let words: Vec<&str> = command.split(' ').skip(1).collect();
-        match words[..] {
-            ["xtask", task, ref rest @ ..] => self.fault_of_task(task, rest),
-            _ => self.fault_of_build(&words),
-        }
+/// The missing target of a command, if any.
+fn fault_of_build(words: &[&str], targets: &[Target]) -> Option<String> {
+    let behind = |options: &[&str]| {
+        let at = words.iter().position(|word| options.contains(word))?;
+        words.get(at + 1).copied()
+    };
+    let package = behind(&["--package", "-p"]);
+    if let Some(package) = package
+        && !targets.iter().any(|target| target.package == package)
+    {
+        return Some(format!("no package {package}"));
     }
-
-    fn fault_of_task(&self, task: &str, rest: &[&str]) -> Option<String> {
-        let Some((_, flags)) = self.tasks.iter().find(|(name, _)| name == task) else {
-            return Some(format!("no task {task}"));
+    for (option, kind) in [
+        ("--example", "example"),
+        ("--bin", "bin"),
+        ("--test", "test"),
+    ] {
+        let Some(name) = behind(&[option]) else {
+            continue;
         };
-        // Arguments after `--` belong to another program.
-        let flags = (!flags.is_empty()).then_some(flags);
-        for (index, word) in rest.iter().enumerate() {
-            let flag = word.strip_prefix("--");
-            if let (Some(flag), Some(flags)) = (flag, flags)
-                && !flags.iter().any(|name| name == flag)
-            {
-                return Some(format!("no option --{flag}"));
-            }
-            if *word == "--only" && task == "test" {
-                let only = rest.get(index + 1).copied().unwrap_or_default();
-                let unknown = only
-                    .split(',')
-                    .find(|step| !self.steps.iter().any(|it| it == step));
-                if let Some(step) = unknown {
-                    return Some(format!("no step {step}"));
-                }
-            }
+        let target = targets.iter().find(|target| {
+            target.kind == kind
+                && target.name == name
+                && package.is_none_or(|package| target.package == package)
+        });
+        let Some(target) = target else {
+            return Some(format!("no {kind} {name}"));
+        };
+        let given = behind(&["--features", "-F"]).unwrap_or_default();
+        let missing = |feature: &&String| given.split(',').all(|it| it != *feature);
+        if let Some(feature) = target.features.iter().find(missing) {
+            return Some(format!("{name} takes --features {feature}"));
         }
-        None
-    }
-
-    fn fault_of_build(&self, words: &[&str]) -> Option<String> {
-        let behind = |options: &[&str]| {
-            let at = words.iter().position(|word| options.contains(word))?;
-            words.get(at + 1).copied()
-        };
-        let package = behind(&["--package", "-p"]);
-        if let Some(package) = package
-            && !self.targets.iter().any(|target| target.package == package)
+        let at = words.iter().position(|word| *word == option)?;
+        let filter = words.get(at + 2).filter(|word| !word.starts_with('-'));
+        if let (Some(filter), "test") = (filter, kind)
+            && !names_a_test(&target.file, filter)
         {
-            return Some(format!("no package {package}"));
+            return Some(format!("no test {filter} in {name}"));
         }
-        for (option, kind) in [
-            ("--example", "example"),
-            ("--bin", "bin"),
-            ("--test", "test"),
-        ] {
-            let Some(name) = behind(&[option]) else {
-                continue;
-            };
-            let target = self.targets.iter().find(|target| {
-                target.kind == kind
-                    && target.name == name
-                    && package.is_none_or(|package| target.package == package)
-            });
-            let Some(target) = target else {
-                return Some(format!("no {kind} {name}"));
-            };
-            let given = behind(&["--features", "-F"]).unwrap_or_default();
-            let missing = |feature: &&String| given.split(',').all(|it| it != *feature);
-            if let Some(feature) = target.features.iter().find(missing) {
-                return Some(format!("{name} takes --features {feature}"));
-            }
-            let at = words.iter().position(|word| *word == option)?;
-            let filter = words.get(at + 2).filter(|word| !word.starts_with('-'));
-            if let (Some(filter), "test") = (filter, kind)
-                && !names_a_test(&target.file, filter)
-            {
-                return Some(format!("no test {filter} in {name}"));
-            }
-        }
-        None
     }
+    None
 }
 
 /// True if a file in the directory of the tests' root, or below it, contains the last part of the
 /// filter or has it in its name.
 fn names_a_test(root: &Path, filter: &str) -> bool {
     let name = filter.rsplit("::").next().unwrap_or(filter);
-    root.parent()
-        .is_some_and(|directory| is_below(directory, name))
-}
-
-fn is_below(directory: &Path, name: &str) -> bool {
-    let Ok(entries) = fs::read_dir(directory) else {
+    let Some(directory) = root.parent() else {
         return false;
     };
-    entries.flatten().map(|entry| entry.path()).any(|path| {
-        let is_named = path
-            .file_stem()
-            .is_some_and(|stem| stem.to_string_lossy().contains(name));
-        let has =
-            || fs::read_to_string(&path).is_ok_and(|text| text.contains(&format!("fn {name}")));
-        is_named || path.is_dir() && is_below(&path, name) || path.is_file() && has()
-    })
+    let function = format!("fn {name}");
+    let files = format!("{}/*{name}*", directory.display());
+    let directory = directory.display().to_string();
+    succeeds(&["git", "ls-files", "--error-unmatch", &files])
+        || succeeds(&[
+            "git",
+            "grep",
+            "--untracked",
+            "-q",
+            &function,
+            "--",
+            &directory,
+        ])
 }
 
 #[cfg(test)]
@@ -237,38 +201,41 @@ mod tests {
             features: vec!["f".to_owned()],
             ..target("a", "example", "g")
         };
-        let known = Known {
-            targets: &[
-                target("a", "example", "e"),
-                target("b", "bin", "p"),
-                target("b", "test", "t"),
-                with_feature,
-            ],
-            tasks: &[
-                ("test".into(), vec!["only".into()]),
-                ("arms".into(), vec![]),
-            ],
-            steps: &["fmt".into()],
-        };
-        for (command, fault) in [
+        let targets = [
+            target("a", "example", "e"),
+            target("b", "bin", "p"),
+            target("b", "test", "t"),
+            with_feature,
+        ];
+        for (command, expected) in [
             ("cargo run --example e -- --figure x", None),
             ("cargo run --example x", Some("no example x")),
             ("cargo run --example g", Some("g takes --features f")),
             ("cargo run --features e,f --example g", None),
             ("cargo run -p a --bin p", Some("no bin p")),
             ("cargo run --package c", Some("no package c")),
-            ("cargo xtask test --only fmt", None),
-            ("cargo xtask test --only fmt,x", Some("no step x")),
-            ("cargo xtask test --x", Some("no option --x")),
+            ("cargo xtask test --only tests", None),
+            (
+                "cargo xtask test --only tests,x",
+                Some("got the step `x`, expected one of tests, doctests, client"),
+            ),
+            ("cargo xtask check --only fmt,clippy # quick", None),
             ("cargo xtask arms --x", None),
-            ("cargo xtask x", Some("no task x")),
             ("cargo test --test t", None),
             (
                 "cargo test --test t f -- --nocapture",
                 Some("no test f in t"),
             ),
         ] {
-            assert_eq!(known.fault(command).as_deref(), fault, "{command}");
+            let found = fault(command, &targets);
+            assert_eq!(found.as_deref(), expected, "{command}");
+        }
+        for command in [
+            "cargo xtask check --only fmt,x",
+            "cargo xtask check --x",
+            "cargo xtask x",
+        ] {
+            assert!(fault(command, &targets).is_some(), "{command}");
         }
     }
 }

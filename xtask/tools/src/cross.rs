@@ -6,31 +6,35 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
 
 use xtask::python;
-use xtask::step::Outcome;
+use xtask::realtime::succeeds;
+use xtask::step::{Missing, Outcome};
 use xtask::workspace::Workspace;
 
 /// The directory of the compiler's libraries.
-pub(crate) fn sysroot() -> anyhow::Result<PathBuf> {
-    let output = Command::new("rustc")
-        .args(["--print", "sysroot"])
-        .output()?;
-    ensure!(output.status.success(), "rustc does not report its sysroot");
-    Ok(String::from_utf8(output.stdout)?.trim().into())
+pub(crate) fn sysroot(workspace: &Workspace) -> anyhow::Result<PathBuf> {
+    let mut rustc = workspace.program("rustc");
+    let sysroot = workspace.output(rustc.args(["--print", "sysroot"]))?;
+    Ok(sysroot.trim().into())
 }
 
-/// The part of a toolchain's sysroot that is missing to build for a target, if any.
-pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
-    let libraries = sysroot.join("lib/rustlib").join(target).join("lib");
-    let is_std = |entry: fs::DirEntry| {
+/// The part of the toolchain that is missing to build for a target, if any: `library` begins the
+/// name of `libstd-` or `libcore-`.
+pub(crate) fn lacks(target: &str, library: &str) -> Option<String> {
+    let mut rustc = Command::new("rustc");
+    rustc.args(["--print", "target-libdir", "--target", target]);
+    let output = rustc.stderr(Stdio::null()).output();
+    let path = output.map_or(String::new(), |it| {
+        String::from_utf8_lossy(&it.stdout).trim().to_owned()
+    });
+    let is_it = |entry: fs::DirEntry| {
         let name = entry.file_name().to_string_lossy().into_owned();
-        name.starts_with("libstd-") && name.ends_with(".rlib")
+        name.starts_with(library) && name.ends_with(".rlib")
     };
-    let has_std = fs::read_dir(&libraries)
-        .is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(is_std)));
-    (!has_std).then(|| {
+    let is_there = fs::read_dir(path).is_ok_and(|entries| entries.flatten().any(is_it));
+    (!is_there).then(|| {
         format!("its standard library is not installed; `rustup target add {target}` installs it")
     })
 }
@@ -38,19 +42,15 @@ pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
 /// The step `targets`: checks the portable parts for other systems and machines, if the toolchain
 /// has their standard library.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let sysroot = sysroot()?;
     let (there, missing): (Vec<_>, Vec<_>) = TARGETS
         .into_iter()
-        .partition(|(target, _)| lacks(target, &sysroot).is_none());
+        .partition(|(target, _)| lacks(target, STD).is_none());
     let missing: Vec<&str> = missing.iter().map(|(target, _)| *target).collect();
     let missing = format!("not installed: `rustup target add {}`", missing.join(" "));
     if there.is_empty() {
         return Ok(Outcome::Skipped(missing));
     }
-    let path = match zig(workspace)? {
-        Ok(path) => path,
-        Err(why) => return Outcome::without(why),
-    };
+    let path = zig(workspace)?;
     for (target, what) in &there {
         // zig compiles the parts in C.
         let mut check = workspace.program("cargo-zigbuild");
@@ -97,34 +97,29 @@ pub(crate) fn architecture(target: &str) -> &str {
     target.split('-').next().unwrap_or_default()
 }
 
-/// The emulator that runs programs of an architecture here, or the missing requirement; `has`
-/// returns true for an installed program.
-pub(crate) fn emulator(architecture: &str, has: impl Fn(&str) -> bool) -> Result<String, String> {
-    let emulators = [
-        format!("qemu-{architecture}-static"),
-        format!("qemu-{architecture}"),
-    ];
-    let found = emulators.iter().find(|name| has(name)).cloned();
-    found.ok_or_else(|| format!("{} is not installed", emulators[0]))
+/// The emulator that runs programs of an architecture here, preferably the static one.
+pub(crate) fn emulator(architecture: &str) -> anyhow::Result<String> {
+    let mut emulators = ["-static", ""]
+        .map(|it| format!("qemu-{architecture}{it}"))
+        .into_iter();
+    let missing = || Missing(format!("qemu-{architecture}-static is not installed"));
+    Ok(emulators
+        .find(|name| is_installed(name))
+        .ok_or_else(missing)?)
 }
 
 /// True if a program is installed.
 pub(crate) fn is_installed(program: &str) -> bool {
-    let mut command = Command::new(program);
-    command
-        .arg("--version")
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
-    command.status().is_ok_and(|status| status.success())
+    succeeds(&[program, "--version"])
 }
 
-/// The value of `PATH` with which Cargo finds zig and the programs that build with it, or the
-/// missing requirement.
-pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<Result<OsString, String>> {
-    match python::environment(workspace, "python-dist", "franka-cli/dist/build.txt")? {
-        Ok(interpreter) => path_with(&interpreter).map(Ok),
-        Err(why) => Ok(Err(why)),
-    }
+/// The value of `PATH` with which Cargo finds zig and the programs that build with it.
+pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<OsString> {
+    path_with(&python::environment(
+        workspace,
+        "python-dist",
+        "franka-cli/dist/build.txt",
+    )?)
 }
 
 /// The value of `PATH` with which the programs of a virtual environment come first. Programs that
@@ -139,38 +134,24 @@ pub(crate) fn path_with(interpreter: &Path) -> anyhow::Result<OsString> {
     Ok(env::join_paths(path)?)
 }
 
+/// Begins the name of the standard library.
+pub(crate) const STD: &str = "libstd-";
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_target_needs_its_standard_library() {
-        let name = format!("franka-xtask-{}-sysroot", std::process::id());
-        let sysroot = env::temp_dir().join(name);
-        fs::create_dir_all(&sysroot).unwrap();
-        let musl = "x86_64-unknown-linux-musl";
-        let why = lacks(musl, &sysroot).expect("there is nothing");
+        let host = format!("{}-unknown-linux-gnu", env::consts::ARCH);
+        if cfg!(all(target_os = "linux", target_env = "gnu")) {
+            assert_eq!(lacks(&host, STD), None);
+            assert!(lacks(&host, "libnone-").is_some());
+        }
+        let why = lacks("no-such-target", STD).expect("there is nothing");
         assert!(
-            why.ends_with("`rustup target add x86_64-unknown-linux-musl` installs it"),
+            why.ends_with("`rustup target add no-such-target` installs it"),
             "{why}"
         );
-        let libraries = sysroot.join("lib/rustlib").join(musl).join("lib");
-        fs::create_dir_all(&libraries).unwrap();
-        fs::write(libraries.join("libcore-1.rlib"), "").unwrap();
-        assert!(lacks(musl, &sysroot).is_some(), "core alone will not do");
-        fs::write(libraries.join("libstd-1.rlib"), "").unwrap();
-        assert_eq!(lacks(musl, &sysroot), None);
-        assert!(lacks("aarch64-unknown-linux-gnu", &sysroot).is_some());
-        fs::remove_dir_all(sysroot).unwrap();
-    }
-
-    #[test]
-    fn an_emulator_is_the_static_one_if_there_is_one() {
-        let why = emulator("aarch64", |_| false).unwrap_err();
-        assert_eq!(why, "qemu-aarch64-static is not installed");
-        let any = emulator("aarch64", |_| true);
-        assert_eq!(any, Ok("qemu-aarch64-static".to_owned()));
-        let found = emulator("aarch64", |name| name == "qemu-aarch64");
-        assert_eq!(found, Ok("qemu-aarch64".to_owned()));
     }
 }

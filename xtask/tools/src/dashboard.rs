@@ -1,20 +1,15 @@
 //! The dashboard's page: its files made from pinned packages, and its tests in a real browser.
 
 use std::env;
-use std::ffi::OsStr;
 use std::fs;
-use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, ensure};
-use flate2::Compression;
-use flate2::read::GzDecoder;
-use flate2::write::GzEncoder;
+use anyhow::{Context as _, bail, ensure};
 
 use crate::others;
 use xtask::realtime::succeeds;
-use xtask::step::{Outcome, is_ci};
-use xtask::workspace::Workspace;
+use xtask::step::{Missing, Outcome};
+use xtask::workspace::{Workspace, is_ci};
 
 /// Rebuilds the files in `franka-dash/page/dist`.
 pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
@@ -25,9 +20,7 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
 /// differ from those that [`assets`] makes.
 pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let page = page(workspace);
-    if !has_npm() {
-        return Outcome::without("no npm".to_owned());
-    }
+    need_npm()?;
     let mut node = workspace.program("node");
     let tests = fs::read_dir(page.join("test"))?.map(|entry| entry.map(|entry| entry.path()));
     let tests: Vec<_> = tests.collect::<Result<_, _>>()?;
@@ -38,20 +31,22 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     make(workspace, &made)?;
     for name in MADE {
         let read = |directory: &Path| {
-            let path = directory.join(name);
-            fs::read(&path).with_context(|| path.display().to_string())
+            let mut expand = workspace.program("gzip");
+            expand.args(["--decompress", "--force", "--stdout"]);
+            workspace.output(expand.arg(directory.join(name)))
         };
         ensure!(
-            expanded(read(&made)?)? == expanded(read(&page.join("dist"))?)?,
+            read(&made)? == read(&page.join("dist"))?,
             "franka-dash/page/dist/{name} does not match the page's sources: run cargo xtask assets"
         );
     }
     Ok(Outcome::Passed)
 }
 
-/// True if [`bundle`] can run.
-pub(crate) fn has_npm() -> bool {
-    find(&["npm"]).is_some()
+/// Fails without npm, which installs what [`bundle`] and other tasks need.
+pub(crate) fn need_npm() -> anyhow::Result<()> {
+    ensure!(find(&["npm"]).is_some(), Missing("no npm".to_owned()));
+    Ok(())
 }
 
 pub(crate) fn page(workspace: &Workspace) -> PathBuf {
@@ -61,25 +56,13 @@ pub(crate) fn page(workspace: &Workspace) -> PathBuf {
 /// Generated files.
 const MADE: [&str; 3] = ["dash.js.gz", "dash.css", "licenses.txt"];
 
-/// The content of a file, decompressed if necessary.
-pub(crate) fn expanded(content: Vec<u8>) -> anyhow::Result<Vec<u8>> {
-    if !content.starts_with(&[0x1f, 0x8b]) {
-        return Ok(content);
-    }
-    let mut expanded = Vec::new();
-    GzDecoder::new(&content[..]).read_to_end(&mut expanded)?;
-    Ok(expanded)
-}
-
 /// Makes the files of the page in `dist`.
 fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
     let entry = page(workspace).join("src").join("main.js");
     let script = dist.join("dash.js");
     bundle(workspace, &entry, &script, "esm")?;
-    let mut compressed = GzEncoder::new(Vec::new(), Compression::best());
-    compressed.write_all(&fs::read(&script)?)?;
-    fs::write(dist.join("dash.js.gz"), compressed.finish()?)?;
-    fs::remove_file(script)?;
+    let mut compress = workspace.program("gzip");
+    workspace.run(compress.args(["-9", "--no-name", "--force"]).arg(script))?;
     Ok(fs::write(dist.join("licenses.txt"), licences(workspace)?)?)
 }
 
@@ -112,15 +95,17 @@ pub(crate) fn install_packages(
     if fs::read(&installed).is_ok_and(|content| fs::read(&lock).is_ok_and(|it| it == content)) {
         return Ok(());
     }
+    fs::create_dir_all(work)?;
     for name in ["package.json", "package-lock.json"] {
-        copy(&from.join(name), &work.join(name))?;
+        fs::copy(from.join(name), work.join(name)).with_context(|| name.to_owned())?;
     }
     let mut npm = workspace.program("npm");
     npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
     npm.arg("--prefer-offline");
     workspace.run(npm.current_dir(work))?;
     // Written last, so that an interrupted installation is repeated.
-    copy(&lock, &installed)
+    fs::copy(&lock, &installed)?;
+    Ok(())
 }
 
 /// The licences of the packages that [`bundle`] adds, and of the meshes.
@@ -142,13 +127,6 @@ pub(crate) fn licences(workspace: &Workspace) -> anyhow::Result<String> {
 /// Directory of the installed packages.
 fn work(workspace: &Workspace) -> PathBuf {
     workspace.target().join("dashboard-page")
-}
-
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    let directory = to.parent().context("no directory")?;
-    fs::create_dir_all(directory)?;
-    fs::copy(from, to).with_context(|| from.display().to_string())?;
-    Ok(())
 }
 
 /// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` it also records its film.
@@ -180,7 +158,7 @@ pub(crate) fn browse(
     });
     let Some((driver, browser)) = found else {
         let why = "no Chromium with chromedriver (Debian: chromium, chromium-driver)";
-        return Outcome::without(why.to_owned());
+        bail!(Missing(why.to_owned()));
     };
     let mut test = others::other_test(workspace, "browser");
     test.args(which).args(["--ignored", "--nocapture"]);
@@ -206,12 +184,11 @@ fn install() {
 }
 
 /// The first of these programs that exists.
-fn find(names: &[impl AsRef<OsStr>]) -> Option<PathBuf> {
+fn find(names: &[&str]) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
     let places: Vec<_> = env::split_paths(&path).collect();
-    let mut programs = names.iter().flat_map(|name| {
-        let name = name.as_ref();
-        places.iter().map(move |place| place.join(name))
-    });
+    let mut programs = names
+        .iter()
+        .flat_map(|name| places.iter().map(move |place| place.join(name)));
     programs.find(|program| program.is_file())
 }

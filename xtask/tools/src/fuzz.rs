@@ -2,13 +2,11 @@
 
 use std::fs;
 use std::process::Command;
-use std::sync::Mutex;
-use std::thread;
 
 use anyhow::{Context as _, ensure};
 
 use crate::tools;
-use xtask::workspace::Workspace;
+use xtask::workspace::{Workspace, in_parallel};
 
 /// Runs each target for `runs` executions, as many targets at a time as there are processors. A
 /// finding ends its target, but not the others.
@@ -30,7 +28,7 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     let seeds = seeds.find(|program| program.exists());
     let mut seeds = workspace.program(seeds.context("cargo-fuzz built no `seeds`")?);
     workspace.run(seeds.arg(output.join("seeds")))?;
-    let targets = String::from_utf8(fuzz("list").output()?.stdout)?;
+    let targets = workspace.output(&mut fuzz("list"))?;
     let command = |target: &str| -> anyhow::Result<Command> {
         let [corpus, findings, seeds] =
             ["corpus", "findings", "seeds"].map(|kind| output.join(kind).join(target));
@@ -45,34 +43,23 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
         command.args(LIMITS).env("ASAN_OPTIONS", "detect_leaks=0");
         Ok(command)
     };
-    let waiting = Mutex::new(targets.lines());
-    let work = || -> anyhow::Result<Vec<&str>> {
-        let mut found = Vec::new();
-        loop {
-            let Some(target) = waiting.lock().expect("no panic").next() else {
-                return Ok(found);
-            };
-            let output = command(target)?.output().context("cannot run cargo")?;
-            let log = String::from_utf8_lossy(&output.stderr);
-            if output.status.success() {
-                let lines = log.lines().filter(|line| line.starts_with("Done "));
-                println!("{target}: {}", lines.collect::<String>());
-            } else {
-                println!("{log}\n{target}: A FINDING, or it could not be run");
-                found.push(target);
-            }
+    let targets: Vec<&str> = targets.lines().collect();
+    ensure!(!targets.is_empty(), "there are no targets");
+    let run = |target| -> anyhow::Result<Option<&str>> {
+        let output = command(target)?.output().context("cannot run cargo")?;
+        let log = String::from_utf8_lossy(&output.stderr);
+        if output.status.success() {
+            let lines = log.lines().filter(|line| line.starts_with("Done "));
+            println!("{target}: {}", lines.collect::<String>());
+            return Ok(None);
         }
+        println!("{log}\n{target}: A FINDING, or it could not be run");
+        Ok(Some(target))
     };
-    let found = thread::scope(|scope| {
-        let processors = thread::available_parallelism().map_or(1, usize::from);
-        let workers: Vec<_> = (0..processors).map(|_| scope.spawn(work)).collect();
-        let found = workers
-            .into_iter()
-            .map(|worker| worker.join().expect("no panic"));
-        found.collect::<anyhow::Result<Vec<_>>>()
-    })?;
-    let found = found.concat();
-    ensure!(targets.lines().count() > 0, "there are no targets");
+    let found = in_parallel(targets, run)
+        .into_iter()
+        .filter_map(Result::transpose);
+    let found: Vec<&str> = found.collect::<Result<_, _>>()?;
     ensure!(
         found.is_empty(),
         "{}: see target/fuzz/findings",

@@ -1,96 +1,98 @@
-//! Measurements of clients against the simulator over real sockets, and of the simulator.
+//! Measurements of a control cycle, of clients against the simulator over real sockets, and of the
+//! simulator.
 
-use std::process::Command;
+use clap::ValueEnum;
 
-use anyhow::anyhow;
-
+use crate::metadata::measuring_program;
 use crate::{mujoco, package};
 use xtask::peers;
+use xtask::step::or_missing;
 use xtask::workspace::Workspace;
 
-/// Measures each client for `seconds` and writes `target/bench_live.json`.
-pub(crate) fn run(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
-    build(workspace, &[])?;
-    let mut measure = measure(workspace, "clients", "bench_live.json", seconds);
-    match peers::interpreter(workspace)? {
-        Ok(interpreter) => {
-            let script = peers::directory(workspace).join("pylibfranka_torques.py");
-            measure.arg("--python").arg(interpreter).arg(script);
-        }
-        Err(why) => println!("pylibfranka is NOT MEASURED: {why}"),
-    }
-    workspace.run(&mut measure)
+/// The subject of a measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Subject {
+    /// The work of one control cycle.
+    #[default]
+    Cycle,
+    /// The instructions of the model's calls; needs valgrind.
+    Instructions,
+    /// Clients against the simulator over real sockets: `target/bench_live.json`.
+    Live,
+    /// Start-up time, processor time, memory and punctuality of the simulator:
+    /// `target/bench_sim.json`.
+    Sim,
+    /// The package for Python together with others: `target/bench_python.json`.
+    Python,
+    /// The cost of a busy program for the control thread, and for a task in its place.
+    Starvation,
+    /// The cost of a recorder for the control thread, alternately with and without one.
+    Recorder,
+    /// The cost of a dashboard for the control thread, with ten viewers and with a viewer that
+    /// never reads, alternately with and without viewers.
+    Dash,
 }
 
-/// Measures the simulator, each case for `seconds`, and writes `target/bench_sim.json`.
-pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
-    let mujoco = mujoco::provide(workspace)?;
-    let mut measure = measure(workspace, "simulator", "bench_sim.json", seconds);
-    match mujoco {
-        Ok(()) => {
-            build(workspace, &["--features", "mujoco"])?;
-            measure.arg("--mujoco");
-        }
-        Err(why) => {
-            println!("the MuJoCo plant is NOT MEASURED: {why}");
-            build(workspace, &[])?;
+/// Builds the programs that measure, and runs them.
+pub(crate) fn run(
+    workspace: &Workspace,
+    subject: Subject,
+    rounds: usize,
+    seconds: u32,
+) -> anyhow::Result<()> {
+    if subject == Subject::Instructions {
+        return workspace.run(&mut measuring_program(workspace, &[], "instructions"));
+    }
+    let mut features: &[&str] = &[];
+    if matches!(subject, Subject::Cycle | Subject::Sim) {
+        match or_missing(mujoco::provide(workspace))? {
+            Ok(()) => features = &["mujoco"],
+            Err(why) => println!("the MuJoCo plant is NOT MEASURED: {why}"),
         }
     }
-    workspace.run(&mut measure)
-}
-
-/// Measures the cost of a recorder or a dashboard for the control thread, for `seconds` with one
-/// and as long without.
-pub(crate) fn run_beside(workspace: &Workspace, what: &str, seconds: u32) -> anyhow::Result<()> {
-    build(workspace, &[])?;
     let target = workspace.target();
-    let mut measure = workspace.program(target.join("dist").join("live"));
-    measure.arg(what);
-    if what == "recorder" {
-        measure.arg(target);
+    if subject == Subject::Cycle {
+        let mut measure = measuring_program(workspace, features, "bench");
+        measure.arg(target.join("bench.json"));
+        return workspace.run(measure.arg(rounds.to_string()));
     }
-    workspace.run(measure.args(["--seconds", &seconds.to_string()]))
-}
-
-/// Measures the package for Python together with others and writes `target/bench_python.json`.
-pub(crate) fn run_python(workspace: &Workspace) -> anyhow::Result<()> {
-    let mut build = workspace.cargo();
-    build.args([
-        "build",
-        "--profile",
-        "dist",
-        "--package",
-        "franka-sim",
-        "--package",
-    ]);
-    build.args(["franka-bench", "--bin", "franka-sim", "--bin", "live"]);
-    workspace.run(&mut build)?;
-    let interpreter = package::prepare_bench(workspace)?.map_err(|why| anyhow!(why))?;
-    let target = workspace.target();
-    let mut measure = workspace.program(target.join("dist").join("live"));
-    measure
-        .arg("packages")
-        .arg(target.join("bench_python.json"));
-    measure.arg("--python").arg(interpreter);
-    measure
-        .arg("--adapters")
-        .arg(package::directory(workspace).join("bench"));
-    workspace.run(&mut measure)
-}
-
-/// Builds the simulator and the measuring program.
-fn build(workspace: &Workspace, features: &[&str]) -> anyhow::Result<()> {
     let mut build = workspace.cargo();
     build.args(["build", "--profile", "dist", "--package", "franka-sim"]);
-    build.args(["--package", "franka-bench", "--bins"]);
-    workspace.run(build.args(features))
-}
-
-/// The measuring program, with the subject, the output file and the duration.
-fn measure(workspace: &Workspace, what: &str, output: &str, seconds: u32) -> Command {
-    let target = workspace.target();
+    build.args(["--package", "franka-bench", "--bins", "--features"]);
+    workspace.run(build.arg(features.join(",")))?;
     let mut measure = workspace.program(target.join("dist").join("live"));
-    measure.arg(what).arg(target.join(output));
-    measure.args(["--seconds", &seconds.to_string()]);
-    measure
+    match subject {
+        Subject::Cycle | Subject::Instructions => unreachable!("they have other programs"),
+        Subject::Live => {
+            measure.arg("clients").arg(target.join("bench_live.json"));
+            match or_missing(peers::interpreter(workspace))? {
+                Ok(interpreter) => {
+                    let script = peers::directory(workspace).join("pylibfranka_torques.py");
+                    measure.arg("--python").arg(interpreter).arg(script);
+                }
+                Err(why) => println!("pylibfranka is NOT MEASURED: {why}"),
+            }
+        }
+        Subject::Sim => {
+            measure.arg("simulator").arg(target.join("bench_sim.json"));
+            measure.args((!features.is_empty()).then_some("--mujoco"));
+        }
+        Subject::Python => {
+            measure
+                .arg("packages")
+                .arg(target.join("bench_python.json"));
+            measure
+                .arg("--python")
+                .arg(package::prepare_bench(workspace)?);
+            let adapters = package::directory(workspace).join("bench");
+            measure.arg("--adapters").arg(adapters);
+        }
+        Subject::Starvation => _ = measure.arg("starvation"),
+        Subject::Recorder => _ = measure.arg("recorder").arg(target),
+        Subject::Dash => _ = measure.arg("dashboard"),
+    }
+    if !matches!(subject, Subject::Python | Subject::Starvation) {
+        measure.args(["--seconds", &seconds.to_string()]);
+    }
+    workspace.run(&mut measure)
 }

@@ -9,14 +9,12 @@ mod dashboard;
 mod dist;
 mod fuzz;
 mod live;
-mod members;
 mod metadata;
 mod mujoco;
 mod names;
 mod others;
 mod package;
 mod page;
-mod peer_pages;
 mod playground;
 mod prose;
 mod recordings;
@@ -30,10 +28,13 @@ mod tools;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Parser, Subcommand};
 
-use crate::checks::{Check, Nightly};
+use crate::checks::{CHECK, NIGHTLY};
+use crate::live::Subject;
 use crate::metadata::measuring_program;
+use xtask::step::{self, Step};
 use xtask::workspace::Workspace;
 
 /// One-command tasks of this workspace.
@@ -50,14 +51,14 @@ enum Task {
     /// failure.
     Check {
         /// Run only these steps (may be repeated or separated by commas).
-        #[arg(long, value_enum, value_delimiter = ',')]
-        only: Vec<Check>,
+        #[arg(long, value_delimiter = ',', value_parser = names(CHECK))]
+        only: Vec<String>,
     },
     /// Run the slow checks, and stop at the first failure.
     Nightly {
         /// Run only these steps (may be repeated or separated by commas).
-        #[arg(long, value_enum, value_delimiter = ',')]
-        only: Vec<Nightly>,
+        #[arg(long, value_delimiter = ',', value_parser = names(NIGHTLY))]
+        only: Vec<String>,
     },
     /// List the texts that break the rules of the step `prose`.
     Prose {
@@ -80,44 +81,15 @@ enum Task {
         #[arg(long, default_value_t = 10_000_000)]
         runs: u64,
     },
-    /// Measure the work of one control cycle and write `target/bench.json`.
-    ///
-    /// With --live: measure clients against the simulator over real sockets, and write
-    /// `target/bench_live.json`. With --sim: measure the cost of one simulated arm, and write
-    /// `target/bench_sim.json`. With --python: measure the package for Python together with others,
-    /// and write `target/bench_python.json`.
+    /// Measure, and write `target/bench.json` or another file; nothing else should run meanwhile.
     Bench {
-        /// Rounds; each runs every benchmark once.
+        #[arg(value_enum, default_value_t)]
+        subject: Subject,
+        /// Rounds of `cycle`; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
         rounds: usize,
-        /// Count the instructions of the model's calls instead; needs valgrind.
-        #[arg(long, conflicts_with = "live")]
-        instructions: bool,
-        /// Measure over real sockets instead; nothing else should run meanwhile.
-        #[arg(long, group = "sockets")]
-        live: bool,
-        /// Measure the cost of a busy program for the control thread, and for a task in its place.
-        #[arg(long, conflicts_with_all = ["live", "instructions"])]
-        starvation: bool,
-        /// Measure start-up time, processor time, memory and punctuality of the simulator; nothing
-        /// else should run meanwhile.
-        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
-        sim: bool,
-        /// Measure the package for Python and others against the simulator; nothing else should run
-        /// meanwhile.
-        #[arg(long, conflicts_with_all = ["sockets", "instructions", "starvation"])]
-        python: bool,
-        /// Measure the cost of a recorder for the control thread, alternately with and without one;
-        /// nothing else should run meanwhile.
-        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
-        recorder: bool,
-        /// Measure the cost of a dashboard for the control thread, with ten viewers and with a
-        /// viewer that never reads, alternately with and without viewers; nothing else should run
-        /// meanwhile.
-        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
-        dash: bool,
-        /// Duration of each case of --live, --sim, --recorder and --dash, in seconds.
-        #[arg(long, default_value_t = 30, requires = "sockets")]
+        /// Duration of each case over real sockets, in seconds.
+        #[arg(long, default_value_t = 30)]
         seconds: u32,
     },
     /// Measure target control on realistic simulated arms, and write `target/arms.json`.
@@ -144,7 +116,7 @@ enum Task {
         check: bool,
     },
     /// Build the program `franka` for machines without other software: static for x86-64 and 64-bit
-    /// Arm, and for C libraries from 2.17 on. Measures the builds, moves a simulated robot with
+    /// Arm, and for C libraries from 2.17 on. Moves a simulated robot with
     /// each, under qemu if necessary, and packs them in `target/artefacts`: archives, packages for
     /// Debian, a container image, bills of materials, checksums.
     Dist {
@@ -185,22 +157,17 @@ enum Task {
     },
 }
 
-/// The tasks, each with the names of its options; no options for a task that passes its arguments
-/// on. `test` is a task of the package `xtask` itself.
-fn tasks() -> Vec<(String, Vec<String>)> {
-    let options = |task: &clap::Command| {
-        let passes_on = task.get_arguments().any(clap::Arg::is_trailing_var_arg_set);
-        let options = task.get_arguments().filter_map(clap::Arg::get_long);
-        match passes_on {
-            true => Vec::new(),
-            false => options.map(str::to_owned).collect(),
-        }
-    };
-    let arguments = <Arguments as clap::CommandFactory>::command();
-    let tasks = arguments.get_subcommands();
-    let tasks = tasks.map(|task| (task.get_name().to_owned(), options(task)));
-    let test = ("test".to_owned(), vec!["only".to_owned()]);
-    tasks.chain([test]).collect()
+/// The names of steps, with their descriptions.
+fn names(steps: &[Step]) -> PossibleValuesParser {
+    let value = |step: &Step| PossibleValue::new(step.name).help(step.about);
+    steps.iter().map(value).collect::<Vec<_>>().into()
+}
+
+/// Why the words after `cargo xtask` are no task, if so.
+fn fault_of_task(words: &[&str]) -> Option<String> {
+    let words = ["cargo xtask"].iter().chain(words);
+    let error = Arguments::try_parse_from(words).err()?;
+    Some(error.to_string().lines().next()?.to_owned())
 }
 
 fn main() -> ExitCode {
@@ -217,8 +184,8 @@ fn main() -> ExitCode {
 fn run(task: Task) -> anyhow::Result<()> {
     let workspace = Workspace::find()?;
     match task {
-        Task::Check { only } => checks::run(&workspace, &only),
-        Task::Nightly { only } => checks::run(&workspace, &only),
+        Task::Check { only } => step::run(&workspace, CHECK, &only),
+        Task::Nightly { only } => step::run(&workspace, NIGHTLY, &only),
         Task::Prose { paths, lower } => prose::run(&workspace, &paths, lower),
         Task::Schemas => schemas::write(&workspace),
         Task::Vectors { dir } => {
@@ -229,44 +196,10 @@ fn run(task: Task) -> anyhow::Result<()> {
         }
         Task::Fuzz { runs } => fuzz::run(&workspace, runs),
         Task::Bench {
-            instructions: true, ..
-        } => workspace.run(&mut measuring_program(&workspace, &[], "instructions")),
-        Task::Bench {
-            live: true,
+            subject,
+            rounds,
             seconds,
-            ..
-        } => live::run(&workspace, seconds),
-        Task::Bench {
-            sim: true, seconds, ..
-        } => live::run_simulator(&workspace, seconds),
-        Task::Bench {
-            recorder: true,
-            seconds,
-            ..
-        } => live::run_beside(&workspace, "recorder", seconds),
-        Task::Bench {
-            dash: true,
-            seconds,
-            ..
-        } => live::run_beside(&workspace, "dashboard", seconds),
-        Task::Bench { python: true, .. } => live::run_python(&workspace),
-        Task::Bench {
-            starvation: true, ..
-        } => workspace.run(measuring_program(&workspace, &[], "live").arg("starvation")),
-        Task::Bench { rounds, .. } => {
-            let output = workspace.target().join("bench.json");
-            // Without MuJoCo its row is missing.
-            let features = match mujoco::provide(&workspace)? {
-                Ok(()) => &["mujoco"][..],
-                Err(why) => {
-                    println!("the MuJoCo plant is not measured: {why}");
-                    &[]
-                }
-            };
-            let mut command = measuring_program(&workspace, features, "bench");
-            command.arg(&output).arg(rounds.to_string());
-            workspace.run(&mut command)
-        }
+        } => live::run(&workspace, subject, rounds, seconds),
         Task::Arms { arguments } => {
             let mut command = measuring_program(&workspace, &[], "arms");
             command.args(arguments);
@@ -289,7 +222,7 @@ fn run(task: Task) -> anyhow::Result<()> {
             println!("{:?}", dashboard::film(&workspace)?);
             Ok(())
         }
-        Task::Mujoco => mujoco::provide(&workspace)?.map_err(anyhow::Error::msg),
+        Task::Mujoco => mujoco::provide(&workspace),
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;
             println!("{outcome:?}");

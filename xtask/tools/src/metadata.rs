@@ -2,53 +2,46 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use anyhow::{Context as _, ensure};
+use anyhow::Context as _;
 use serde_json::Value;
 use xtask::workspace::Workspace;
 
 /// Name of each library and program of the workspace, and the file of its root.
 pub(crate) fn crates(workspace: &Workspace) -> anyhow::Result<Vec<(String, PathBuf)>> {
-    Ok(libraries_and_programs(&packages(workspace)?))
+    let mut crates = Vec::new();
+    for package in packages(workspace)? {
+        for target in list(&package["targets"]) {
+            let kinds = list(&target["kind"]);
+            if kinds.iter().any(|kind| kind == "lib" || kind == "bin") {
+                crates.push((text(&target["name"]), text(&target["src_path"]).into()));
+            }
+        }
+    }
+    Ok(crates)
 }
 
 /// Cargo's description of each package of the workspace.
 pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<Value>> {
-    Ok(list(&of(workspace)?["packages"]))
+    Ok(list(&of(workspace)?["packages"]).to_vec())
 }
 
 /// Cargo's description of the workspace.
 pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<Value> {
-    let output = workspace
-        .cargo()
-        .args(["metadata", "--format-version=1", "--no-deps"])
-        .stderr(Stdio::inherit())
-        .output()
-        .context("cannot run cargo")?;
-    ensure!(output.status.success(), "cargo metadata failed");
-    Ok(serde_json::from_slice(&output.stdout)?)
-}
-
-/// The targets of all packages that are libraries or programs.
-fn libraries_and_programs(packages: &[Value]) -> Vec<(String, PathBuf)> {
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let mut crates = Vec::new();
-    for target in packages
-        .iter()
-        .flat_map(|package| list(&package["targets"]))
-    {
-        let kinds = list(&target["kind"]);
-        if kinds.iter().any(|kind| kind == "lib" || kind == "bin") {
-            crates.push((text(&target["name"]), text(&target["src_path"]).into()));
-        }
-    }
-    crates
+    let mut metadata = workspace.cargo();
+    metadata.args(["metadata", "--format-version=1", "--no-deps"]);
+    Ok(serde_json::from_str(&workspace.output(&mut metadata)?)?)
 }
 
 /// The elements of an array; none if the value is no array.
-fn list(value: &Value) -> Vec<Value> {
-    value.as_array().cloned().unwrap_or_default()
+pub(crate) fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+/// A text; empty if the value is none.
+pub(crate) fn text(value: &Value) -> String {
+    value.as_str().unwrap_or_default().to_owned()
 }
 
 /// The command that builds and runs a benchmark or measuring program, in the release profile;

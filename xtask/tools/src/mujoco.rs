@@ -15,83 +15,58 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
+use anyhow::bail;
 use xtask::python::Uv;
+use xtask::step::Missing;
 use xtask::workspace::Workspace;
 
-/// Makes the library available, unless it is there or the user names another one. The inner error
-/// is the reason why this machine cannot have it.
-pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
+/// Makes the library available, unless it is there or the user names another one.
+pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
     if let Some(variable) = named_by_user(workspace) {
         println!("using the library of {variable}");
-        return Ok(Ok(()));
+        return Ok(());
     }
-    let Some(wheel) = Wheel::of(env::consts::OS, env::consts::ARCH) else {
-        return Ok(Err(format!(
+    if env::consts::OS != "linux" || !["x86_64", "aarch64"].contains(&env::consts::ARCH) {
+        bail!(Missing(format!(
             "MuJoCo {VERSION} is fetched for Linux on x86-64 and aarch64 only; install it, and set \
              MUJOCO_DYNAMIC_LINK_DIR to the absolute path of its libraries"
         )));
-    };
+    }
     let directory = workspace.root().join(".mujoco");
     let stamp = directory.join("installed.txt");
     let library = directory.join(LIBRARIES).join(LIBRARY);
-    if library.exists() && fs::read_to_string(&stamp).is_ok_and(|text| text == wheel.hash) {
+    if library.exists() && fs::read_to_string(&stamp).is_ok_and(|text| text == WHEELS) {
         println!("{} is up to date", library.display());
-        return Ok(Ok(()));
+        return Ok(());
     }
-    let uv = match Uv::find(workspace)? {
-        Ok(uv) => uv,
-        Err(why) => return Ok(Err(format!("MuJoCo is fetched with uv: {why}"))),
-    };
+    let uv = Uv::find(workspace)?;
     if directory.exists() {
         fs::remove_dir_all(&directory)?;
     }
     fs::create_dir_all(directory.join(LIBRARIES))?;
-    wheel.unpack(workspace, &uv, &directory)?;
+    let scratch = directory.join("scratch");
+    fs::create_dir(&scratch)?;
+    let requirement = scratch.join("requirements.txt");
+    fs::write(&requirement, WHEELS)?;
+    let interpreter = uv.create(workspace, &scratch.join("python"), ">=3.9")?;
+    let mut install = uv.pip(workspace, "install", &interpreter);
+    install.args(["--no-deps", "--require-hashes", "--only-binary=:all:"]);
+    install.args(["--python-version", PYTHON, "--python-platform"]);
+    install.arg(format!("{}-manylinux_2_28", env::consts::ARCH));
+    install.arg("--target").arg(&scratch);
+    workspace.run(install.arg("--requirement").arg(&requirement))?;
+    fs::rename(
+        scratch.join("mujoco").join(VERSIONED),
+        directory.join(LIBRARIES).join(VERSIONED),
+    )?;
+    fs::remove_dir_all(&scratch)?;
     // Linkers look for the plain name, programs for the name with the version.
     #[cfg(unix)]
     std::os::unix::fs::symlink(VERSIONED, &library)?;
     // Written last, so that an interrupted installation is repeated.
-    fs::write(&stamp, wheel.hash)?;
+    fs::write(&stamp, WHEELS)?;
     println!("{} exists", library.display());
-    Ok(Ok(()))
-}
-
-/// A wheel that carries the library, pinned.
-struct Wheel {
-    system: &'static str,
-    machine: &'static str,
-    /// SHA-256 of the file for [`PYTHON`].
-    hash: &'static str,
-}
-
-impl Wheel {
-    fn of(system: &str, machine: &str) -> Option<&'static Self> {
-        WHEELS
-            .iter()
-            .find(|wheel| wheel.system == system && wheel.machine == machine)
-    }
-
-    /// Puts the library below `directory`.
-    fn unpack(&self, workspace: &Workspace, uv: &Uv, directory: &Path) -> anyhow::Result<()> {
-        let scratch = directory.join("scratch");
-        fs::create_dir(&scratch)?;
-        let requirement = scratch.join("requirements.txt");
-        let text = format!("mujoco=={VERSION} --hash=sha256:{}\n", self.hash);
-        fs::write(&requirement, text)?;
-        let interpreter = uv.create(workspace, &scratch.join("python"), ">=3.9")?;
-        let mut install = uv.pip(workspace, "install", &interpreter);
-        install.args(["--no-deps", "--require-hashes", "--only-binary=:all:"]);
-        install.args(["--python-version", PYTHON, "--python-platform"]);
-        install.arg(format!("{}-manylinux_2_28", self.machine));
-        install.arg("--target").arg(&scratch);
-        workspace.run(install.arg("--requirement").arg(&requirement))?;
-        fs::rename(
-            scratch.join("mujoco").join(VERSIONED),
-            directory.join(LIBRARIES).join(VERSIONED),
-        )?;
-        fs::remove_dir_all(&scratch)?;
-        Ok(())
-    }
+    Ok(())
 }
 
 /// The variable with which the user names a library. Cargo sets one of them itself, from its
@@ -126,19 +101,10 @@ const VERSIONED: &str = "libmujoco.so.3.17.0";
 /// another: all wheels contain the same library.
 const PYTHON: &str = "3.12";
 
-/// The wheels on PyPI.
-const WHEELS: &[Wheel] = &[
-    Wheel {
-        system: "linux",
-        machine: "x86_64",
-        hash: "42371356efe53a5f5f73ed03fcb967bdf04048017f80e2fca01e71a360e42da2",
-    },
-    Wheel {
-        system: "linux",
-        machine: "aarch64",
-        hash: "525e09a00ecd964f06582773d9eeb03bb0e5a1675edf296a6868024759b3b235",
-    },
-];
+/// The wheels on PyPI for [`PYTHON`], pinned: x86-64, then aarch64.
+const WHEELS: &str = "mujoco==3.17.0 \
+    --hash=sha256:42371356efe53a5f5f73ed03fcb967bdf04048017f80e2fca01e71a360e42da2 \
+    --hash=sha256:525e09a00ecd964f06582773d9eeb03bb0e5a1675edf296a6868024759b3b235\n";
 
 #[cfg(test)]
 mod tests {
@@ -174,7 +140,6 @@ mod tests {
     #[test]
     fn the_library_has_the_version_of_the_wheel() {
         assert_eq!(VERSIONED, format!("{LIBRARY}.{VERSION}"));
-        assert!(Wheel::of("linux", "x86_64").is_some());
-        assert!(Wheel::of("plan9", "mips").is_none());
+        assert!(WHEELS.starts_with(&format!("mujoco=={VERSION} ")));
     }
 }

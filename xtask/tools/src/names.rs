@@ -10,9 +10,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
-use syn::{Item, UseTree, Visibility};
+use syn::visit::{self, Visit};
+use syn::{Ident, Item, UseTree, Visibility};
 
-use crate::members::Members;
 use crate::metadata;
 use xtask::workspace::Workspace;
 
@@ -32,8 +32,68 @@ pub(crate) struct Ours {
     /// Names that each public module of `franka-async` offers, and the paths of the items behind
     /// them. The root is the module "".
     modules: BTreeMap<String, BTreeMap<String, String>>,
-    /// Members of the types of all our crates.
-    pub(crate) members: Members,
+    /// Fields and variants of the types of all our crates.
+    pub(crate) parts: Parts,
+}
+
+/// Fields and variants, by `struct S` and `enum E`, and all identifiers of declarations. Types of the same name in
+/// several modules are merged.
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    of: BTreeMap<String, BTreeSet<String>>,
+    words: BTreeSet<String>,
+}
+
+impl Parts {
+    /// Reads the files that match these patterns of git.
+    pub(crate) fn read(workspace: &Workspace, files: &[impl AsRef<str>]) -> anyhow::Result<Self> {
+        let mut parts = Self::default();
+        let files: Vec<_> = files.iter().map(AsRef::as_ref).collect();
+        for path in workspace.files(&files)? {
+            let text = fs::read_to_string(workspace.root().join(&path))?;
+            let file = syn::parse_file(&text).with_context(|| path.display().to_string())?;
+            parts.visit_file(&file);
+        }
+        Ok(parts)
+    }
+
+    /// The fields of `struct S`, or the variants of `enum E`.
+    pub(crate) fn of(&self, of: &str) -> BTreeSet<&str> {
+        let parts = self.of.get(of).into_iter().flatten();
+        parts.map(String::as_str).collect()
+    }
+
+    fn insert<'a>(&mut self, kind: &str, name: &Ident, parts: impl Iterator<Item = &'a Ident>) {
+        let all = self.of.entry(format!("{kind} {name}")).or_default();
+        all.extend(parts.map(ToString::to_string));
+    }
+}
+
+impl<'a> Visit<'a> for Parts {
+    fn visit_item_struct(&mut self, item: &'a syn::ItemStruct) {
+        let fields = item.fields.iter().filter_map(|field| field.ident.as_ref());
+        self.insert("struct", &item.ident, fields);
+        visit::visit_item_struct(self, item);
+    }
+
+    fn visit_item_enum(&mut self, item: &'a syn::ItemEnum) {
+        let variants = item.variants.iter().map(|variant| &variant.ident);
+        self.insert("enum", &item.ident, variants);
+        visit::visit_item_enum(self, item);
+    }
+
+    fn visit_ident(&mut self, name: &'a Ident) {
+        self.words.insert(name.to_string());
+    }
+
+    /// Words in the bodies of functions do not count.
+    fn visit_block(&mut self, _: &'a syn::Block) {}
+
+    fn visit_macro(&mut self, item: &'a syn::Macro) {
+        let text = item.tokens.to_string();
+        let words = text.split(|it: char| !it.is_alphanumeric() && it != '_');
+        self.words.extend(words.map(str::to_owned));
+    }
 }
 
 /// Fails with every name that breaks a rule; returns the names.
@@ -46,8 +106,8 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Ours> {
     if at_root >= ROOT_MAX {
         found.push(format!("{at_root} names at the root, of {ROOT_MAX}"));
     }
-    for page in pages(&workspace.root().join("docs/src"))? {
-        let text = fs::read_to_string(&page)?;
+    for page in pages(workspace)? {
+        let text = fs::read_to_string(workspace.root().join(&page))?;
         let lines = text.lines().filter(|line| names_another_crate(line));
         found.extend(lines.map(|line| format!("{}: {line}", page.display())));
     }
@@ -69,15 +129,17 @@ impl Ours {
     /// Reads the sources of our crates.
     fn read(workspace: &Workspace) -> anyhow::Result<Self> {
         let mut ours = Self::default();
+        let mut sources = Vec::new();
         for (name, root) in metadata::crates(workspace)? {
             if name == "franka_async" {
                 ours.read_module(&root, "", true)?;
             }
-            let directory = root.parent().context("a file is in a directory")?;
             if name.starts_with("franka_") && root.ends_with(Path::new("src/lib.rs")) {
-                ours.members.read(directory)?;
+                let directory = root.parent().context("a file is in a directory")?;
+                sources.push(format!("{}/*.rs", directory.display()));
             }
         }
+        ours.parts = Parts::read(workspace, &sources)?;
         Ok(ours)
     }
 
@@ -87,35 +149,16 @@ impl Ours {
         let names = self.modules.get("error").into_iter().flatten();
         let is_error = |name: &&String| ENDINGS.iter().any(|ending| name.ends_with(ending));
         let names = names.map(|(name, _)| name).filter(is_error).cloned();
-        let is_enumeration =
-            |name: &String| !self.members.parts(&format!("enum {name}")).is_empty();
+        let is_enumeration = |name: &String| !self.parts.of(&format!("enum {name}")).is_empty();
         let motion = ["MotionError".to_owned()];
         names.chain(motion).filter(is_enumeration).collect()
     }
 
-    /// True if a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
-    /// `.method(..)` of any type, `franka_sim::Sim::fr3`.
+    /// True if all words of a path, such as `module::Type::method`, are in our sources.
     pub(crate) fn has(&self, span: &str) -> bool {
         let path = span.split(['(', '<', ' ']).next().unwrap_or_default();
-        if let Some(member) = path.strip_prefix('.') {
-            return self.members.any_has(member);
-        }
-        let path = path.strip_prefix("franka_async::").unwrap_or(path);
-        let (outer, last) = path.rsplit_once("::").unwrap_or(("", path));
-        let names = |module: &str| self.modules.get(module);
-        let item = |module: &str, name: &str| names(module).and_then(|names| names.get(name));
-        if names(path).is_some() || item(outer, last).is_some() {
-            return true;
-        }
-        let (module, of) = outer.rsplit_once("::").unwrap_or(("", outer));
-        let found = item(module, of);
-        // A module of another crate may be exported as a whole.
-        let first = outer.split("::").next().unwrap_or_default();
-        let is_module = first.starts_with(char::is_lowercase) && item("", first).is_some();
-        // The item may have another name where it is declared.
-        let of = found.map_or(of, |path| path.rsplit("::").next().unwrap_or(of));
-        (found.is_some() || is_module || first == "franka_sim")
-            && (self.members.has(of, last) || self.members.declares(last))
+        let mut words = path.trim_start_matches('.').split("::");
+        words.all(|word| word.starts_with("franka_") || self.parts.words.contains(word))
     }
 
     fn read_module(&mut self, file: &Path, module: &str, is_root: bool) -> anyhow::Result<()> {
@@ -245,19 +288,11 @@ fn join(module: &str, name: &str) -> String {
     }
 }
 
-/// The pages in a directory and its subdirectories, which also contain pictures.
-pub(crate) fn pages(directory: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(directory)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            found.extend(pages(&path)?);
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    Ok(found)
+/// The pages of the book, in order.
+pub(crate) fn pages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
+    let mut pages = workspace.files(&["docs/src/*.md"])?;
+    pages.sort();
+    Ok(pages)
 }
 
 #[cfg(test)]
@@ -280,6 +315,18 @@ mod tests {
             "{found:?}"
         );
         assert_eq!(found.len(), 2);
+    }
+
+    #[test]
+    fn fields_and_variants_are_parts_and_words_are_in_macros_too() {
+        let mut ours = Ours::default();
+        let source = "pub struct S { pub a: u8 } mod m { enum E { H } } impl S { fn e() {} } \
+             macro_rules! m { ($t:ident) => { impl $t { pub fn i(self) {} } } }";
+        ours.parts
+            .visit_file(&syn::parse_file(source).expect("it is Rust"));
+        assert_eq!(ours.parts.of("enum E"), BTreeSet::from(["H"]));
+        assert_eq!(ours.parts.of("struct S"), BTreeSet::from(["a"]));
+        assert!(ours.has("S::e(..)") && ours.has(".i") && !ours.has("S::f"));
     }
 
     #[test]

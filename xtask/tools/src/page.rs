@@ -1,6 +1,4 @@
-//! Tables, code spans and anchors of a page of the book.
-
-use std::collections::{BTreeMap, BTreeSet};
+//! Tables and code spans of a page of the book.
 
 /// A table: its header, and its rows.
 pub(crate) struct Table<'a> {
@@ -12,11 +10,6 @@ impl<'a> Table<'a> {
     /// The number of the column with this header.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
         self.header.0.iter().position(|cell| *cell == name)
-    }
-
-    /// The text of the first cell of the header.
-    pub(crate) fn first(&self) -> &'a str {
-        self.header.cell(0)
     }
 
     /// The code spans of a cell of the header.
@@ -52,11 +45,6 @@ impl<'a> Row<'a> {
     /// The code spans of a cell; none if the row has fewer cells.
     pub(crate) fn spans(&self, column: usize) -> Vec<&'a str> {
         spans(self.cell(column))
-    }
-
-    /// The cells, for a report.
-    pub(crate) fn text(&self) -> String {
-        self.0.join(" | ").trim().to_owned()
     }
 }
 
@@ -113,38 +101,6 @@ pub(crate) fn blocks(page: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The anchors of a page: anchors of headings, as mdBook makes them, and attributes `id`.
-pub(crate) fn anchors(page: &str) -> BTreeSet<String> {
-    let mut found = BTreeSet::new();
-    let mut headings: BTreeMap<String, usize> = BTreeMap::new();
-    for line in prose(page) {
-        let text = line.trim_start_matches('#');
-        if line.starts_with('#') && text.starts_with(' ') {
-            let anchor = anchor_of(text.trim());
-            let times = headings.entry(anchor.clone()).or_default();
-            found.insert(match *times {
-                0 => anchor,
-                times => format!("{anchor}-{times}"),
-            });
-            *times += 1;
-        }
-        for rest in line.split("id=\"").skip(1) {
-            found.extend(rest.split('"').next().map(str::to_owned));
-        }
-    }
-    found
-}
-
-/// The anchor of a heading: lower case, blanks as hyphens, other punctuation left out.
-fn anchor_of(heading: &str) -> String {
-    let kept = heading.chars().filter_map(|c| match c {
-        c if c.is_alphanumeric() || c == '-' || c == '_' => Some(c.to_ascii_lowercase()),
-        c if c.is_whitespace() => Some('-'),
-        _ => None,
-    });
-    kept.collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,13 +114,6 @@ mod tests {
         assert_eq!(tables[0].column("b"), Some(1));
         assert_eq!(tables[0].rows[0].spans(0), ["x", "y\\|z"]);
         assert_eq!(tables[0].rows[0].spans(1), Vec::<&str>::new());
-        assert_eq!(tables[0].rows[0].text(), "`x`, `y\\|z` | c");
-    }
-
-    #[test]
-    fn headings_and_ids_are_anchors() {
-        let page = "# The `law`, derived\n## A\n## A\n<a id=\"x-y\"></a> # no\n```text\n# B\n```\n";
-        let found: Vec<_> = anchors(page).into_iter().collect();
-        assert_eq!(found, ["a", "a-1", "the-law-derived", "x-y"]);
+        assert_eq!(tables[0].rows[0].cell(1), "c");
     }
 }

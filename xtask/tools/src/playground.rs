@@ -9,16 +9,19 @@
 use std::fs;
 use std::path::Path;
 
+use anyhow::bail;
+
 use crate::cross;
 use crate::dashboard;
-use xtask::step::Outcome;
+use crate::metadata::copy_directory;
+use xtask::step::{Missing, Outcome, or_missing};
 use xtask::workspace::Workspace;
 
 /// Adds the playground to a built book, or in its place a page with the requirements.
 pub(crate) fn add(workspace: &Workspace, book: &Path) -> anyhow::Result<()> {
-    match lacks()? {
-        None => build(workspace, &book.join("playground")),
-        Some(why) => {
+    match or_missing(build(workspace, &book.join("playground")))? {
+        Ok(()) => Ok(()),
+        Err(why) => {
             println!("without the playground: {why}");
             leave_out(book, &why)
         }
@@ -42,11 +45,10 @@ pub(crate) fn leave_out(book: &Path, why: &str) -> anyhow::Result<()> {
 
 /// The step `playground`: builds it, and uses it in a real browser.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    if let Some(why) = lacks()? {
+    let folder = workspace.target().join("playground");
+    if let Err(why) = or_missing(build(workspace, &folder))? {
         return Ok(Outcome::Skipped(why));
     }
-    let folder = workspace.target().join("playground");
-    build(workspace, &folder)?;
     dashboard::browse(
         workspace,
         &["the_playground"],
@@ -54,16 +56,11 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     )
 }
 
-/// The missing requirement to build it, if any.
-fn lacks() -> anyhow::Result<Option<String>> {
-    if !dashboard::has_npm() {
-        return Ok(Some("there was no npm".to_owned()));
-    }
-    let why = cross::lacks(TARGET, &cross::sysroot()?);
-    Ok(why.map(|why| format!("of the target {TARGET}, {why}")))
-}
-
 fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
+    dashboard::need_npm()?;
+    if let Some(why) = cross::lacks(TARGET, cross::STD) {
+        bail!(Missing(format!("of the target {TARGET}, {why}")));
+    }
     let mut cargo = workspace.cargo();
     cargo.args(["build", "--profile=dist", "--package=franka-playground"]);
     workspace.run(cargo.args(["--target", TARGET]))?;
@@ -73,7 +70,15 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     let entry = sources.join("playground.js");
     // Not a module: modules cannot be loaded from a file, and the page could not report that.
     dashboard::bundle(workspace, &entry, &folder.join("playground.js"), "iife")?;
-    expand_directory(&dashboard.join("meshes"), &folder.join("meshes"))?;
+    let meshes = folder.join("meshes");
+    copy_directory(&dashboard.join("meshes"), &meshes)?;
+    // No server informs the browser of the compression.
+    let mut expand = workspace.program("gzip");
+    workspace.run(
+        expand
+            .args(["--decompress", "--force", "--recursive"])
+            .arg(&meshes),
+    )?;
     let wasm = workspace.target().join(TARGET).join("dist");
     for (from, name) in [
         (&wasm, "franka_playground.wasm"),
@@ -84,26 +89,6 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     }
     let licences = dashboard::licences(workspace)?;
     Ok(fs::write(folder.join("licenses.txt"), licences)?)
-}
-
-/// Copies a directory and decompresses its files, because no server informs the browser of the
-/// compression.
-fn expand_directory(from: &Path, to: &Path) -> anyhow::Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from)? {
-        let (path, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
-        if path.is_dir() {
-            expand_directory(&path, &target)?;
-        } else if path.extension().is_some_and(|extension| extension == "gz") {
-            fs::write(
-                target.with_extension(""),
-                dashboard::expanded(fs::read(path)?)?,
-            )?;
-        } else {
-            fs::copy(path, target)?;
-        }
-    }
-    Ok(())
 }
 
 const TARGET: &str = "wasm32-unknown-unknown";

@@ -10,10 +10,7 @@ use xtask::workspace::Workspace;
 /// `FRANKA_LEROBOT_PYTHON` names an interpreter that has it.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let requirements = "franka-record/tests/python/requirements.txt";
-    let interpreter = match python::environment(workspace, "python-recordings", requirements)? {
-        Ok(interpreter) => interpreter,
-        Err(why) => return Outcome::without(why),
-    };
+    let interpreter = python::environment(workspace, "python-recordings", requirements)?;
     let mut test = others::other_test(workspace, "recording");
     test.args(["--ignored", "--nocapture", "python_"]);
     workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;

@@ -1,51 +1,80 @@
 //! Required content of the reference chapters: every field of a state, every error of the robot,
-//! every variant of the errors of `franka-async`, and a target for each link of an error.
+//! every variant of the errors of `franka-async`, and a target for each link of an error. The names
+//! in the chapters for users of other Rust and C++ packages exist.
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, ensure};
 
-use crate::members::Members;
-use crate::names::Ours;
-use crate::page::{anchors, tables};
+use crate::names::{Ours, Parts};
+use crate::page::{Table, tables};
 use xtask::workspace::Workspace;
 
 /// Fails with every name that a chapter lacks, or that does not exist.
 pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
-    let page = |name: &str| {
-        let path = workspace.root().join("docs/src").join(name);
-        fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    let read = |path: &str| {
+        let text = fs::read_to_string(workspace.root().join(path));
+        text.with_context(|| format!("cannot read {path}"))
     };
-    let errors = page("errors.md")?;
-    let mut state = Members::default();
-    state.read(&workspace.root().join("franka-proto/src/robot/state"))?;
-    let mut found = states(&page("states.md")?, &state);
+    let errors = read("docs/src/errors.md")?;
+    let state = Parts::read(workspace, &["franka-proto/src/robot/state/*.rs"])?;
+    let mut found = states(&read("docs/src/states.md")?, &state);
     found.extend(variants(&errors, ours));
-    let sources = ["franka-proto/src", "franka-rt/src", "franka-async/src"]
-        .map(|path| workspace.root().join(path));
-    let entries = entries(&sources)?;
-    found.extend(robot_errors(&errors, workspace)?);
-    let anchors = anchors(&errors);
-    let lost = entries.iter().filter(|entry| !anchors.contains(*entry));
-    found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
-    if !found.is_empty() {
-        bail!("reference chapters:\n{}", found.join("\n"));
+    let mut entries = robot_errors(&read("franka-proto/src/robot/robot_error.rs")?);
+    ensure!(
+        entries.len() == 41,
+        "robot_error.rs: {} errors",
+        entries.len()
+    );
+    let sources = [
+        "franka-proto/src/*.rs",
+        "franka-rt/src/*.rs",
+        "franka-async/src/*.rs",
+    ];
+    for source in workspace.files(&sources)? {
+        let text = fs::read_to_string(workspace.root().join(source))?;
+        entries.extend(texts_of_entries(&text));
     }
+    let is_lost = |entry: &&String| !errors.contains(&format!("id=\"{entry}\""));
+    let lost = entries.iter().filter(is_lost);
+    found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
+    for chapter in ["from-libfranka.md", "from-franka-rs.md"] {
+        let page = read(&format!("docs/src/{chapter}"))?;
+        let tables = tables(&page);
+        let strange = tables.iter().flat_map(|table| strange(table, ours));
+        found.extend(strange.map(|name| format!("{chapter}: {name} is not a name of ours")));
+    }
+    ensure!(
+        found.is_empty(),
+        "reference chapters:\n{}",
+        found.join("\n")
+    );
     println!("{} places for errors to lead to", entries.len());
     Ok(())
 }
 
+/// The names in the column `Rust` with a word that is in no source of ours. The tests of the Python
+/// package check the column `Python`, and that every name of a package has a row.
+fn strange<'a>(table: &Table<'a>, ours: &Ours) -> Vec<&'a str> {
+    let Some(column) = table.column("Rust") else {
+        return Vec::new();
+    };
+    let spans = table.rows.iter().flat_map(|row| row.spans(column));
+    spans
+        .filter(|span| !span.starts_with("std::") && !ours.has(span))
+        .collect()
+}
+
 /// The fields of the robot's state, and of values computed from it.
-fn states(page: &str, state: &Members) -> Vec<String> {
+fn states(page: &str, parts: &Parts) -> Vec<String> {
     let tables = tables(page);
-    let of_robot = tables.iter().filter(|table| table.first() == "field");
+    let of_robot = tables.iter().filter(|it| it.column("field") == Some(0));
     let named: BTreeSet<&str> = of_robot
         .flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)))
         .collect();
-    let mut fields = state.parts("struct RobotState");
-    fields.extend(state.parts("struct TotalLoad"));
+    let mut fields = parts.of("struct RobotState");
+    fields.extend(parts.of("struct TotalLoad"));
     differences("states.md", &named, &fields)
 }
 
@@ -57,64 +86,24 @@ fn variants(page: &str, ours: &Ours) -> Vec<String> {
         let header = table.spans(0);
         let [name] = header[..] else { continue };
         let named: BTreeSet<&str> = table.rows.iter().flat_map(|row| row.spans(0)).collect();
-        let variants = ours.members.parts(&format!("enum {name}"));
-        found.extend(differences(
-            &format!("errors.md: {name}"),
-            &named,
-            &variants,
-        ));
+        let variants = ours.parts.of(&format!("enum {name}"));
+        let place = format!("errors.md: {name}");
+        found.extend(differences(&place, &named, &variants));
         told.insert(name.to_owned());
     }
-    let wanted = ours
-        .errors()
-        .into_iter()
-        .filter(|name| !told.contains(name));
+    let errors = ours.errors().into_iter();
+    let wanted = errors.filter(|name| !told.contains(name));
     found.extend(wanted.map(|name| format!("errors.md: no table of {name}")));
     found
 }
 
-/// The errors that a state can carry, each with an anchor.
-fn robot_errors(page: &str, workspace: &Workspace) -> anyhow::Result<Vec<String>> {
-    let source = workspace
-        .root()
-        .join("franka-proto/src/robot/robot_error.rs");
-    let source = fs::read_to_string(&source).context("robot_error.rs")?;
-    // `Variant = "name",`, a line each.
+/// The errors that a state can carry: `Variant = "name",`, a line each.
+fn robot_errors(source: &str) -> BTreeSet<String> {
     let names = source.lines().filter_map(|line| {
         let (_, name) = line.strip_suffix("\",")?.split_once(" = \"")?;
         Some(name.to_owned())
     });
-    let names: Vec<String> = names.collect();
-    if names.len() != 41 {
-        bail!("robot_error.rs: {} errors, expected 41", names.len());
-    }
-    let anchors = anchors(page);
-    let lost = names.into_iter().filter(|name| !anchors.contains(name));
-    Ok(lost
-        .map(|name| format!("errors.md: no place {name}"))
-        .collect())
-}
-
-/// Appends all Rust files below a directory.
-fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
-    for entry in fs::read_dir(directory)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            read_all(&path, texts)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            texts.push_str(&fs::read_to_string(&path)?);
-        }
-    }
-    Ok(())
-}
-
-/// The names that methods `entry` return: all texts in functions called `entry` or `row`.
-fn entries(directories: &[impl AsRef<Path>]) -> anyhow::Result<BTreeSet<String>> {
-    let mut texts = String::new();
-    for directory in directories {
-        read_all(directory.as_ref(), &mut texts)?;
-    }
-    Ok(texts_of_entries(&texts).into_iter().collect())
+    names.collect()
 }
 
 /// The texts in the bodies of functions called `entry` or `row`, which rustfmt has laid out.

@@ -5,14 +5,13 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, bail};
 use jiff::civil::Date;
 use semver::Version;
 use serde_json::Value;
 
-use crate::metadata;
+use crate::metadata::{self, list, text};
 use xtask::realtime::succeeds;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
@@ -51,7 +50,7 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
     let metadata = metadata::of(workspace)?;
     let mut found: Vec<String> = published(&metadata).flat_map(description_faults).collect();
     for package in pack(workspace, &metadata, depth.verify)? {
-        found.extend(package_faults(&package)?);
+        found.extend(package_faults(workspace, &package)?);
     }
     let read =
         |name: &str| fs::read_to_string(workspace.root().join(name)).context(name.to_owned());
@@ -97,13 +96,12 @@ pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
 /// The version of the workspace.
 pub(crate) fn version(metadata: &Value) -> String {
     let package = published(metadata).next();
-    let version = package.and_then(|package| package["version"].as_str());
-    version.unwrap_or_default().to_owned()
+    package.map_or(String::new(), |package| text(&package["version"]))
 }
 
 /// The packages that `cargo publish` publishes.
 fn published(metadata: &Value) -> impl Iterator<Item = &Value> {
-    let packages = metadata["packages"].as_array().into_iter().flatten();
+    let packages = list(&metadata["packages"]).iter();
     packages.filter(|package| package["publish"].is_null())
 }
 
@@ -113,16 +111,15 @@ fn description_faults(package: &Value) -> Vec<String> {
     let missing = texts.filter(|name| package[name].as_str().is_none_or(str::is_empty));
     let mut found: Vec<String> = missing.map(|name| format!("no {name}")).collect();
     for name in ["keywords", "categories"] {
-        let words = package[name].as_array().into_iter().flatten();
-        let words: Vec<&str> = words.filter_map(Value::as_str).collect();
+        let words: Vec<String> = list(&package[name]).iter().map(text).collect();
         let allowed = |it: char| it.is_ascii_alphanumeric() || "_-+:".contains(it);
-        let is_good = |word: &&str| word.chars().all(allowed);
+        let is_good = |word: &String| word.chars().all(allowed);
         let short = name == "categories" || words.iter().all(|word| word.len() <= 20);
         if !(1..=5).contains(&words.len()) || !words.iter().all(is_good) || !short {
             found.push(format!("the {name} {words:?} would be refused"));
         }
     }
-    let name = package["name"].as_str().unwrap_or_default();
+    let name = text(&package["name"]);
     let found = found.into_iter();
     found.map(|fault| format!("{name}: {fault}")).collect()
 }
@@ -145,11 +142,10 @@ fn pack(workspace: &Workspace, metadata: &Value, verify: bool) -> anyhow::Result
 }
 
 /// Missing files of a package, and files that should not be in it.
-fn package_faults(package: &PathBuf) -> anyhow::Result<Vec<String>> {
+fn package_faults(workspace: &Workspace, package: &PathBuf) -> anyhow::Result<Vec<String>> {
     let name = package.file_stem().unwrap_or_default().to_string_lossy();
     let size = fs::metadata(package).with_context(|| name.to_string())?;
-    let list = Command::new("tar").arg("-tzf").arg(package).output()?;
-    let files = String::from_utf8(list.stdout)?;
+    let files = workspace.output(workspace.program("tar").arg("-tzf").arg(package))?;
     let prefix = format!("{name}/");
     let files: Vec<&str> = files
         .lines()
@@ -192,8 +188,8 @@ fn log_faults(log: &str) -> Vec<String> {
 
 /// Compares the public names with the last release, if any.
 fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let tags = git(workspace, &["tag", "--list", "v*", "--sort=-v:refname"])?;
-    let head = git(workspace, &["tag", "--points-at", "HEAD"])?;
+    let tags = workspace.git(&["tag", "--list", "v*", "--sort=-v:refname"])?;
+    let head = workspace.git(&["tag", "--points-at", "HEAD"])?;
     let Some(last) = tags.lines().find(|tag| !head.lines().any(|it| it == *tag)) else {
         println!("nothing was released yet that public names could be compared with");
         return Ok(Outcome::Passed);
@@ -209,20 +205,6 @@ fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
     compare.args(["--package", "franka-async", "--package", "franka-sim"]);
     workspace.run(&mut compare)?;
     Ok(Outcome::Passed)
-}
-
-/// Output of git.
-pub(crate) fn git(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<String> {
-    let mut git = workspace.program("git");
-    let output = git.args(arguments).stderr(Stdio::inherit()).output();
-    let output = output.context("cannot run git")?;
-    ensure!(
-        output.status.success(),
-        "`git {}` failed: {}",
-        arguments.join(" "),
-        output.status
-    );
-    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use anyhow::bail;
 
 use crate::cross::is_installed;
-use crate::release::git;
 use xtask::python;
 use xtask::realtime::succeeds;
 use xtask::step::Outcome;
@@ -15,12 +14,9 @@ use xtask::workspace::Workspace;
 /// The step `texts`: names of files, spelling by typos, and workflows by zizmor and, if it is
 /// installed, actionlint.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    check_paths(&git(workspace, &["ls-files", "-z"])?)?;
+    check_paths(&workspace.git(&["ls-files", "-z"])?)?;
     let tools = "xtask/tools/texts/tools.txt";
-    let interpreter = match python::environment(workspace, "python-texts", tools)? {
-        Ok(interpreter) => interpreter,
-        Err(why) => return Outcome::without(why),
-    };
+    let interpreter = python::environment(workspace, "python-texts", tools)?;
     let tool = |name| workspace.program(interpreter.with_file_name(name));
     workspace.run(tool("typos").args(["--format", "brief"]))?;
     // Without the network, in which it would only look up the hashes behind tags.

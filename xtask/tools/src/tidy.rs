@@ -4,7 +4,6 @@ use std::fs;
 
 use anyhow::bail;
 
-use crate::release::git;
 use xtask::workspace::Workspace;
 
 /// Columns of a line, as rustfmt has them for code.
@@ -12,14 +11,14 @@ const WIDTH_MAX: usize = 100;
 
 /// Fails with every comment line that is too wide, by file and line.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
-    let sources = git(workspace, &["ls-files", "*.rs"])?;
     let mut found = Vec::new();
-    for source in sources.lines().filter(|it| !it.contains("/generated/")) {
-        let path = workspace.root().join(source);
-        // A file may be deleted, and the deletion not committed.
-        let text = fs::read_to_string(path).unwrap_or_default();
-        let lines = wide_comments(&text);
-        found.extend(lines.iter().map(|line| format!("{source}:{line}")));
+    for source in workspace.files(&["*.rs", ":!*/generated/*"])? {
+        let lines = wide_comments(&fs::read_to_string(workspace.root().join(&source))?);
+        found.extend(
+            lines
+                .iter()
+                .map(|line| format!("{}:{line}", source.display())),
+        );
     }
     if !found.is_empty() {
         bail!(

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, ensure};
 use serde_json::{Value, json};
 
+use crate::metadata::{list, text};
 use xtask::workspace::Workspace;
 
 /// The package of the program.
@@ -44,7 +45,7 @@ impl Bill {
         let mut tree = workspace.cargo();
         tree.args(["tree", "--locked", "--package", ROOT, "--target", target]);
         tree.args(["--edges", "normal", "--prefix", "none", "--format", "{p}"]);
-        let parts = parse_tree(&output(&mut tree)?);
+        let parts = parse_tree(&workspace.output(&mut tree)?);
         ensure!(parts.len() > 1, "cargo tree names no dependencies");
         let mut metadata = workspace.cargo();
         metadata.args([
@@ -54,7 +55,7 @@ impl Bill {
             "--filter-platform",
             target,
         ]);
-        let metadata: Value = serde_json::from_str(&output(&mut metadata)?)?;
+        let metadata: Value = serde_json::from_str(&workspace.output(&mut metadata)?)?;
         let lock = fs::read_to_string(workspace.root().join("Cargo.lock"))?;
         let page = fs::read_to_string(workspace.root().join("franka-dash/page/package.json"))?;
         Ok(Self {
@@ -157,13 +158,6 @@ fn purl(kind: &str, (name, version): &Id) -> String {
     format!("pkg:{kind}/{name}@{version}")
 }
 
-/// Output of a command.
-fn output(command: &mut std::process::Command) -> anyhow::Result<String> {
-    let output = command.stderr(std::process::Stdio::inherit()).output()?;
-    ensure!(output.status.success(), "{command:?} failed");
-    Ok(String::from_utf8(output.stdout)?)
-}
-
 /// Name and version of each line of `cargo tree`.
 fn parse_tree(text: &str) -> BTreeSet<Id> {
     let id = |line: &str| {
@@ -177,11 +171,9 @@ fn parse_tree(text: &str) -> BTreeSet<Id> {
 /// The hash of each package of a registry, from the lock file.
 fn hashes(lock: &str) -> BTreeMap<Id, String> {
     let hash = |package: &str| {
-        let text = |name| {
-            let value =
-                |line: &str| Some(line.strip_prefix(name)?.strip_prefix(" = \"")?.to_owned());
-            let value: String = package.lines().find_map(value)?;
-            Some(value.trim_end_matches('"').to_owned())
+        let text = |name: &str| {
+            let (_, rest) = package.split_once(&format!("\n{name} = \""))?;
+            Some(rest.split('"').next()?.to_owned())
         };
         Some(((text("name")?, text("version")?), text("checksum")?))
     };
@@ -194,15 +186,14 @@ fn details(
     metadata: &Value,
     hashes: &BTreeMap<Id, String>,
 ) -> anyhow::Result<BTreeMap<Id, Part>> {
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let id = |package: &Value| (text(&package["name"]), text(&package["version"]));
-    let packages = array(&metadata["packages"]);
+    let packages = list(&metadata["packages"]);
     let ids: BTreeMap<&str, Id> = packages
         .iter()
         .filter_map(|package| Some((package["id"].as_str()?, id(package))))
         .collect();
     let mut parts = BTreeMap::new();
-    for node in array(&metadata["resolve"]["nodes"]) {
+    for node in list(&metadata["resolve"]["nodes"]) {
         let known = node["id"].as_str().and_then(|it| ids.get(it));
         let Some(this) = known.filter(|it| chosen.contains(it)) else {
             continue;
@@ -211,11 +202,11 @@ fn details(
         let package = package.context("a node has a package")?;
         let manifest = PathBuf::from(text(&package["manifest_path"]));
         let is_normal = |need: &&Value| {
-            array(&need["dep_kinds"])
+            list(&need["dep_kinds"])
                 .iter()
                 .any(|it| it["kind"].is_null())
         };
-        let needs = array(&node["deps"]).iter().filter(is_normal);
+        let needs = list(&node["deps"]).iter().filter(is_normal);
         let needs = needs.filter_map(|need| ids.get(need["pkg"].as_str()?));
         let part = Part {
             license: text(&package["license"]),
@@ -235,11 +226,6 @@ fn details(
     Ok(parts)
 }
 
-/// The elements of an array; none if the value is no array.
-fn array(value: &Value) -> &[Value] {
-    value.as_array().map_or(&[], Vec::as_slice)
-}
-
 /// Packages of the page: the dependencies of its manifest, whose versions are exact.
 fn of_page(manifest: &str) -> anyhow::Result<Vec<Id>> {
     let manifest: Value = serde_json::from_str(manifest)?;
@@ -255,19 +241,15 @@ fn of_page(manifest: &str) -> anyhow::Result<Vec<Id>> {
 
 /// The texts of the licence files of a package, in the order of their names.
 fn licence_files(sources: &Path) -> anyhow::Result<String> {
-    let mut names: Vec<PathBuf> = Vec::new();
-    for entry in fs::read_dir(sources).with_context(|| sources.display().to_string())? {
-        let path = entry?.path();
-        let name = path
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .to_uppercase();
-        let is_licence = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "COPYRIGHT"];
-        if path.is_file() && is_licence.iter().any(|it| name.starts_with(it)) {
-            names.push(path);
-        }
-    }
+    let entries = fs::read_dir(sources).with_context(|| sources.display().to_string())?;
+    let is_licence = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default();
+        let name = name.to_string_lossy().to_uppercase();
+        let names = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "COPYRIGHT"];
+        path.is_file() && names.iter().any(|it| name.starts_with(it))
+    };
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut names: Vec<PathBuf> = paths.filter(is_licence).collect();
     names.sort();
     let mut text = String::new();
     for name in names {
@@ -280,17 +262,6 @@ fn licence_files(sources: &Path) -> anyhow::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_line_of_the_tree_has_name_and_version() {
-        let text = "franka-cli v0.1.0 (/x/franka-cli)\nserde v1.0.228\nserde v1.0.228 (*)\n\n";
-        let ids: Vec<_> = parse_tree(text).into_iter().collect();
-        let expected = [("franka-cli", "0.1.0"), ("serde", "1.0.228")];
-        assert_eq!(
-            ids,
-            expected.map(|(name, version)| (name.to_owned(), version.to_owned()))
-        );
-    }
 
     #[test]
     fn bill_names_the_driver_and_its_dependencies() {

@@ -2,7 +2,7 @@
 //! checks the program where it can run, and packs it for a release.
 //!
 //! ```text
-//! standard library of the target? ── cargo zigbuild ──> franka ── static? size, time of --help
+//! standard library of the target? ── cargo zigbuild ──> franka ── static? size
 //!    ── here, or under qemu: a simulated robot, and a motion of it in virtual time
 //!    ──> target/artefacts: archive, package for Debian, bill of materials; image of all; SHA256SUMS
 //! ```
@@ -26,17 +26,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use anyhow::{Context as _, ensure};
+use anyhow::{Context as _, bail, ensure};
 use jiff::Timestamp;
 
-use crate::cross::{architecture, is_installed, lacks, sysroot, zig};
+use crate::cross::{STD, architecture, is_installed, lacks, sysroot, zig};
 use crate::metadata::{self, copy_directory};
 use crate::release;
 use crate::tools;
 use bill::Bill;
 use program::Program;
-use xtask::step::is_ci;
-use xtask::workspace::Workspace;
+use xtask::step::{Missing, or_missing};
+use xtask::workspace::{Workspace, is_ci};
 
 /// A machine to build for.
 struct Machine {
@@ -82,7 +82,7 @@ impl Release {
             version: release::version(&metadata),
             epoch: match env::var("SOURCE_DATE_EPOCH") {
                 Ok(epoch) => epoch,
-                Err(_) => release::git(workspace, &["log", "-1", "--format=%ct"])?,
+                Err(_) => workspace.git(&["log", "-1", "--format=%ct"])?,
             },
             maintainer: match maintainer.unwrap_or_default() {
                 // No address below `.invalid` exists (RFC 2606).
@@ -123,10 +123,11 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
     let (mut built, mut lines) = (0, Vec::new());
     let mut of_this_machine = None;
     for machine in &chosen {
-        let line = match machine.build(workspace, &release, "")? {
+        let line = match or_missing(machine.build(workspace, &release, ""))? {
             Ok(path) => {
                 built += 1;
-                let mut line = match Program::new(path.clone(), architecture(machine.target)) {
+                let program = Program::new(path.clone(), architecture(machine.target));
+                let mut line = match or_missing(program)? {
                     Err(why) => format!("NOT CHECKED, NOT PACKED: {why}"),
                     Ok(program) => {
                         let about = program.check(machine.is_static())?;
@@ -167,22 +168,18 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
 }
 
 impl Machine {
-    /// The program, or the missing requirement to build it. The output goes to the build directory,
-    /// or to a directory in it.
+    /// The program. The output goes to the build directory, or to a directory in it.
     fn build(
         &self,
         workspace: &Workspace,
         release: &Release,
         directory: &str,
-    ) -> anyhow::Result<Result<PathBuf, String>> {
-        let sysroot = sysroot()?;
-        if let Some(why) = lacks(self.target, &sysroot) {
-            return Ok(Err(why));
+    ) -> anyhow::Result<PathBuf> {
+        if let Some(why) = lacks(self.target, STD) {
+            bail!(Missing(why));
         }
-        let path = match zig(workspace)? {
-            Ok(path) => path,
-            Err(why) => return Ok(Err(why)),
-        };
+        let path = zig(workspace)?;
+        let sysroot = sysroot(workspace)?;
         let target = match directory {
             "" => workspace.target().to_owned(),
             directory => workspace.target().join(directory),
@@ -211,7 +208,7 @@ impl Machine {
             places.map(|(from, to)| format!("-ffile-prefix-map={}={to}", from.display()));
         build.env("CFLAGS", prefixes.join(" "));
         workspace.run(&mut build)?;
-        Ok(Ok(target.join(self.target).join("dist/franka")))
+        Ok(target.join(self.target).join("dist/franka"))
     }
 
     fn is_static(&self) -> bool {
@@ -325,7 +322,6 @@ impl Machine {
         first: &Path,
     ) -> anyhow::Result<&'static str> {
         let second = self.build(workspace, release, "second")?;
-        let second = second.map_err(|why| anyhow::anyhow!("the second build: {why}"))?;
         let is_same = fs::read(first)? == fs::read(second)?;
         ensure!(is_same, "two builds of {} differ", self.target);
         Ok("; built twice, both times the same")
@@ -391,7 +387,7 @@ fn containers(workspace: &Workspace, release: &Release, context: &Path) -> anyho
     build.args(["--platform", &platforms, "--manifest", &name]);
     build.args(["--timestamp", &release.epoch]);
     build.args(["--build-arg", &format!("VERSION={}", release.version)]);
-    let revision = release::git(workspace, &["rev-parse", "HEAD"])?;
+    let revision = workspace.git(&["rev-parse", "HEAD"])?;
     build.arg(format!(
         "--label=org.opencontainers.image.revision={revision}"
     ));
@@ -428,38 +424,3 @@ fn cargo_home() -> anyhow::Result<PathBuf> {
 
 /// Texts of the workspace in the image.
 const PAPERS: [&str; 3] = ["LICENSE", "NOTICE", "README.md"];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Skipped without buildah. Its programs cannot run; nothing runs in a build from nothing.
-    #[test]
-    fn an_image_has_a_program_per_architecture() {
-        let workspace = Workspace::find().expect("built by Cargo");
-        let name = format!("franka-xtask-{}-image", std::process::id());
-        let directory = empty(env::temp_dir().join(name)).expect("a directory");
-        let release = Release {
-            version: "0.1.0".to_owned(),
-            epoch: "1800000000".to_owned(),
-            maintainer: String::new(),
-            artefacts: directory.clone(),
-        };
-        let context = directory.join("context");
-        for architecture in ["amd64", "arm64"] {
-            let programs = context.join(architecture).join("usr/bin");
-            fs::create_dir_all(&programs).expect("a directory");
-            fs::write(programs.join("franka"), architecture).expect("a file");
-        }
-        let about = containers(&workspace, &release, &context).expect("an image");
-        if !about.starts_with("NOT BUILT") {
-            assert_eq!(about, "for linux/amd64,linux/arm64");
-            let mut list = workspace.program("tar");
-            let list = list.arg("-tf").arg(directory.join("franka-0.1.0.oci.tar"));
-            let files = String::from_utf8(list.output().expect("tar").stdout).expect("names");
-            // Per architecture a manifest, a description and a layer; one list of them.
-            assert_eq!(files.matches("sha256/").count(), 7 + 1, "{files}");
-        }
-        fs::remove_dir_all(directory).expect("it is there");
-    }
-}

@@ -1,16 +1,15 @@
-//! Checks of a built program: its requirements, its size and speed, and a motion of a simulated
+//! Checks of a built program: its requirements, its size, and a motion of a simulated
 //! robot.
 
 use std::env;
 use std::fs;
-use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
-use std::process::{Child, ChildStdout, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, ensure};
 
-use crate::cross::{emulator, is_installed};
+use crate::cross::emulator;
+use xtask::running::Running;
 
 /// A program that can run here.
 #[derive(Debug)]
@@ -21,11 +20,11 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// The program, or the missing requirement to run one of `architecture`.
-    pub(super) fn new(path: PathBuf, architecture: &str) -> Result<Self, String> {
+    /// The program of `architecture`, and what it takes to run it.
+    pub(super) fn new(path: PathBuf, architecture: &str) -> anyhow::Result<Self> {
         let emulator = match architecture == env::consts::ARCH {
             true => None,
-            false => Some(emulator(architecture, is_installed)?),
+            false => Some(emulator(architecture)?),
         };
         Ok(Self { path, emulator })
     }
@@ -65,33 +64,19 @@ impl Program {
             true => "static",
             false => "dynamic",
         };
-        let help = time_of_help(|| self.command())?;
         moves_a_simulated_robot(|| self.command())?;
         let by = self.emulator.as_deref().unwrap_or("this machine");
         Ok(format!(
-            "{kind}, {size:.1} MB, --help in {:.1} ms, moved a simulated robot; by {by}",
-            help.as_secs_f64() * 1e3
+            "{kind}, {size:.1} MB, moved a simulated robot; by {by}"
         ))
     }
-}
-
-/// The median of 21 starts.
-fn time_of_help(run: impl Fn() -> Command) -> anyhow::Result<Duration> {
-    let mut times = Vec::new();
-    for _ in 0..21 {
-        let begin = Instant::now();
-        let status = run().arg("--help").stdout(Stdio::null()).status()?;
-        times.push(begin.elapsed());
-        ensure!(status.success(), "--help failed");
-    }
-    times.sort_unstable();
-    Ok(times[times.len() / 2])
 }
 
 /// Starts a simulated robot in virtual time and moves its hand by 5 cm.
 fn moves_a_simulated_robot(run: impl Fn() -> Command) -> anyhow::Result<()> {
     let mut sim = run();
-    let mut sim = Running::start(sim.args(["sim", "--port", "0", "--virtual-time=5"]))?;
+    sim.args(["sim", "--port", "0", "--virtual-time=5"]);
+    let mut sim = Running::start("franka sim", sim)?;
     let address = sim.address("listening on ")?;
     moves(run(), &address)
 }
@@ -105,40 +90,4 @@ pub(super) fn moves(mut franka: Command, address: &str) -> anyhow::Result<()> {
         "the simulated robot at {address} was not moved"
     );
     Ok(())
-}
-
-/// A program that prints its address; killed at the end.
-#[derive(Debug)]
-pub(super) struct Running {
-    program: Child,
-    output: BufReader<ChildStdout>,
-}
-
-impl Running {
-    pub(super) fn start(command: &mut Command) -> anyhow::Result<Self> {
-        let mut program = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()?;
-        let output = BufReader::new(program.stdout.take().context("piped")?);
-        Ok(Self { program, output })
-    }
-
-    /// The text after `before` in the next line that contains it.
-    pub(super) fn address(&mut self, before: &str) -> anyhow::Result<String> {
-        for line in (&mut self.output).lines() {
-            if let Some((_, address)) = line?.split_once(before) {
-                return Ok(address.trim().to_owned());
-            }
-        }
-        bail!("the program ended without a line {before:?}")
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        // The program may have ended already.
-        let _ = self.program.kill();
-        let _ = self.program.wait();
-    }
 }

@@ -19,11 +19,13 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
 
-use super::program::{Running, moves};
+use super::program::moves;
 use super::{Machine, Release};
 use crate::cross::is_installed;
 use crate::package::wheels;
 use xtask::python::{ANY, Uv};
+use xtask::running::Running;
+use xtask::step::or_missing;
 use xtask::workspace::Workspace;
 
 /// Tries archive and package of a program for this machine, and crates and wheel as packed now;
@@ -34,7 +36,7 @@ pub(super) fn run(
     machine: &Machine,
 ) -> anyhow::Result<Vec<String>> {
     let packages = crate::release::packages(workspace)?;
-    let wheel = wheels::for_this_machine(workspace)?;
+    let wheel = or_missing(wheels::for_this_machine(workspace))?;
     let directory = env::temp_dir().join(format!("franka-try-{}", std::process::id()));
     let outside = Outside { directory };
     fs::create_dir_all(outside.at("nothing"))?;
@@ -105,7 +107,8 @@ impl Outside {
     fn simulator(&self, franka: &Path) -> anyhow::Result<(Running, String)> {
         let mut sim = self.alone(franka);
         sim.args(["sim", "--port", "0", "--virtual-time=60"]);
-        let mut sim = Running::start(sim.args(["--dash", "127.0.0.1:0"]))?;
+        sim.args(["--dash", "127.0.0.1:0"]);
+        let mut sim = Running::start("franka sim", sim)?;
         let address = sim.address("listening on ")?;
         Ok((sim, address))
     }
@@ -155,7 +158,8 @@ impl Outside {
         let built = Instant::now();
         let (_sim, address) = self.simulator(franka)?;
         let mut service = self.alone(&project.join("target/debug/service"));
-        let mut service = Running::start(service.arg(address))?;
+        service.arg(address);
+        let mut service = Running::start("service", service)?;
         let listening = service.address("listening on ")?;
         let job = "POST /jobs HTTP/1.0\r\ncontent-type: application/json";
         let taken = ask(&listening, job, "[0, 0, 0.05]")?;
@@ -185,7 +189,7 @@ impl Outside {
         franka: &Path,
         wheel: &Path,
     ) -> anyhow::Result<String> {
-        let uv = Uv::find(workspace)?.map_err(anyhow::Error::msg)?;
+        let uv = Uv::find(workspace)?;
         let interpreter = uv.create(workspace, &self.at("python"), ANY)?;
         let mut install = self.beside(uv.pip(workspace, "install", &interpreter));
         workspace.run(install.arg("--only-binary=:all:").arg(wheel))?;

@@ -3,83 +3,61 @@
 
 pub(crate) mod wheels;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
+
+use anyhow::Context as _;
 
 use xtask::python::{ANY, Uv};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
 /// Builds and installs the package and the requirements of its tests. Returns the interpreter that
-/// has them, or the reason why none is available.
-pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+/// has them.
+pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<PathBuf> {
     // The profile of the tests, in which the computations of a cycle are optimised.
-    match Uv::find(workspace)? {
-        Ok(uv) => install(workspace, &uv, "python-package", ANY, "tests", "dev"),
-        Err(why) => Ok(Err(why)),
-    }
+    Ok(install(workspace, "python-package", ANY, "tests", "dev")?.0)
 }
 
 /// Builds the package optimised and installs it together with the packages for comparison. Returns
-/// the interpreter that has them, or the reason why none is available.
-pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
-    let uv = match Uv::find(workspace)? {
-        Ok(uv) => uv,
-        Err(why) => return Ok(Err(why)),
-    };
+/// the interpreter that has them.
+pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<PathBuf> {
     // Some packages have no wheels for newer versions, but ours does.
     let of_all = ">=3.10,<3.13";
-    let versions = if uv.has(of_all) { of_all } else { ANY };
-    install(workspace, &uv, "python-bench", versions, "bench", "dist")
+    let has_them = Uv::find(workspace)?.has(of_all);
+    let versions = if has_them { of_all } else { ANY };
+    Ok(install(workspace, "python-bench", versions, "bench", "dist")?.0)
 }
 
 /// Builds the package and installs it in a virtual environment with the requirements in one of its
-/// directories; returns the interpreter.
+/// directories; returns the interpreter and the wheel.
 fn install(
     workspace: &Workspace,
-    uv: &Uv,
     environment: &str,
     versions: &str,
     requirements: &str,
     profile: &str,
-) -> anyhow::Result<Result<PathBuf, String>> {
+) -> anyhow::Result<(PathBuf, PathBuf)> {
+    let uv = Uv::find(workspace)?;
     let requirements = directory(workspace)
         .join(requirements)
         .join("requirements.txt");
-    let environment = uv.environment(workspace, environment, versions, &requirements)?;
-    let interpreter = match environment {
-        Ok(interpreter) => interpreter,
-        Err(why) => return Ok(Err(why)),
-    };
-    let wheels = built(workspace, profile);
-    if wheels.exists() {
-        // A wheel of an earlier version must not be mistaken for this one.
-        fs::remove_dir_all(&wheels)?;
-    }
-    let mut build = module(workspace, &interpreter, "maturin");
-    build.args(["build", "--quiet", "--locked", "--profile", profile]);
-    build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
-    build.arg(&wheels).arg("--interpreter").arg(&interpreter);
-    build.env("CARGO_TARGET_DIR", workspace.target());
-    workspace.run(&mut build)?;
+    let interpreter = uv.environment(workspace, environment, versions, &requirements)?;
+    let options = ["--interpreter", interpreter.to_str().context("path")?];
+    let wheel = wheels::maturin(workspace, &interpreter, profile, "here", &options)?;
     let mut install = uv.pip(workspace, "install", &interpreter);
-    install.args(["--reinstall", "--no-deps", "--no-index", "--find-links"]);
-    workspace.run(install.arg(&wheels).arg("franka-async"))?;
-    Ok(Ok(interpreter))
+    install.args(["--reinstall", "--no-deps", "--no-index"]);
+    workspace.run(install.arg(&wheel))?;
+    Ok((interpreter, wheel))
 }
 
 /// Runs the tests and the checks of the types at the same time.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
-    let interpreter = match prepare(workspace)? {
-        Ok(interpreter) => interpreter,
-        Err(why) => return Outcome::without(why),
-    };
+    let (interpreter, wheel) = install(workspace, "python-package", ANY, "tests", "dev")?;
     thread::scope(|scope| {
         let beside = scope.spawn(|| {
             types(workspace, &interpreter)?;
-            let wheel = wheels::only_wheel(&built(workspace, "dev"))?;
             println!("{}", wheels::import(workspace, &wheel)?);
             anyhow::Ok(Outcome::Passed)
         });
@@ -90,11 +68,6 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         workspace.run(&mut tests)?;
         beside.join().expect("no panic")
     })
-}
-
-/// Directory of the wheel for this machine.
-fn built(workspace: &Workspace, profile: &str) -> PathBuf {
-    workspace.target().join("wheels").join(profile)
 }
 
 /// Checks the tests and examples against the stubs, and the stubs against the package.

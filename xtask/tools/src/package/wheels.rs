@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
 
-use crate::cross::{lacks, path_with, sysroot};
+use crate::cross::{STD, lacks, path_with};
 use crate::package::{directory, module};
 use xtask::python::{self, Uv};
+use xtask::step::{Missing, or_missing};
 use xtask::workspace::Workspace;
 
 /// The platforms, the most common first, and the oldest C library that each supports. maturin fails
@@ -29,7 +30,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
     let chosen = PLATFORMS.iter().filter(|(target, _)| is_chosen(target));
     let (mut built, mut lines) = (0, Vec::new());
     for (target, compatibility) in chosen.clone() {
-        lines.push(match build(workspace, target, compatibility)? {
+        lines.push(match or_missing(build(workspace, target, compatibility))? {
             Ok(wheel) => {
                 built += 1;
                 let by = match *target == this_machine() {
@@ -44,18 +45,18 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
     println!("\n{}", lines.join("\n"));
     ensure!(built > 0, "no wheel was built");
     ensure!(
-        built == chosen.count() || !xtask::step::is_ci(),
+        built == chosen.count() || !xtask::workspace::is_ci(),
         "with CI=true every chosen wheel has to be built"
     );
     Ok(())
 }
 
-/// The optimised wheel for this machine, or the missing requirement to build it.
-pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+/// The optimised wheel for this machine.
+pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<PathBuf> {
     let this = this_machine();
     match PLATFORMS.iter().find(|(target, _)| *target == this) {
         Some((target, compatibility)) => build(workspace, target, compatibility),
-        None => Ok(Err(format!("no wheels are made for {this}"))),
+        None => bail!(Missing(format!("no wheels are made for {this}"))),
     }
 }
 
@@ -67,33 +68,46 @@ fn this_machine() -> String {
     format!("{}-unknown-{}-{libc}", env::consts::ARCH, env::consts::OS)
 }
 
-/// The wheel for a platform, or the missing requirement to build it.
-fn build(
-    workspace: &Workspace,
-    target: &str,
-    compatibility: &str,
-) -> anyhow::Result<Result<PathBuf, String>> {
-    if let Some(why) = lacks(target, &sysroot()?) {
-        return Ok(Err(why));
+/// The wheel for a platform.
+fn build(workspace: &Workspace, target: &str, compatibility: &str) -> anyhow::Result<PathBuf> {
+    if let Some(why) = lacks(target, STD) {
+        bail!(Missing(why));
     }
     let requirements = "franka-py/wheels/build.txt";
-    let interpreter = match python::environment(workspace, "python-wheels", requirements)? {
-        Ok(interpreter) => interpreter,
-        Err(why) => return Ok(Err(why)),
-    };
-    let out = workspace.target().join("wheels").join(target).join("dist");
+    let interpreter = python::environment(workspace, "python-wheels", requirements)?;
+    let target = [
+        "--target",
+        target,
+        "--compatibility",
+        compatibility,
+        "--zig",
+    ];
+    maturin(workspace, &interpreter, "dist", target[1], &target)
+}
+
+/// Builds a wheel in a directory of its own, which it returns.
+pub(crate) fn maturin(
+    workspace: &Workspace,
+    interpreter: &Path,
+    profile: &str,
+    name: &str,
+    options: &[&str],
+) -> anyhow::Result<PathBuf> {
+    let out = workspace.target().join("wheels").join(name).join(profile);
     // A wheel of an earlier version must not be mistaken for this one.
     if out.exists() {
         fs::remove_dir_all(&out)?;
     }
-    let mut build = module(workspace, &interpreter, "maturin");
-    build.args(["build", "--quiet", "--locked", "--zig", "--profile", "dist"]);
-    build.args(["--target", target, "--compatibility", compatibility]);
+    let mut build = module(workspace, interpreter, "maturin");
+    build.args(["build", "--quiet", "--locked", "--profile", profile]);
     build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
-    build.arg(&out).env("CARGO_TARGET_DIR", workspace.target());
-    build.env("PATH", path_with(&interpreter)?);
+    build.arg(&out).args(options);
+    build.env("CARGO_TARGET_DIR", workspace.target());
+    if options.contains(&"--zig") {
+        build.env("PATH", path_with(interpreter)?);
+    }
     workspace.run(&mut build)?;
-    only_wheel(&out).map(Ok)
+    only_wheel(&out)
 }
 
 /// The only wheel in a directory, for every Python.
@@ -117,16 +131,13 @@ pub(crate) fn only_wheel(directory: &Path) -> anyhow::Result<PathBuf> {
 /// Installs a wheel into an environment of each Python of this machine, and imports it there.
 /// Returns their versions.
 pub(crate) fn import(workspace: &Workspace, wheel: &Path) -> anyhow::Result<String> {
-    let uv = Uv::find(workspace)?.map_err(anyhow::Error::msg)?;
+    let uv = Uv::find(workspace)?;
     let requirements = directory(workspace).join("wheels/import.txt");
     let mut by = Vec::new();
-    for minor in 10..=14 {
-        let version = format!("3.{minor}");
+    let versions = (10..=14).map(|minor| format!("3.{minor}"));
+    for version in versions.filter(|version| uv.has(version)) {
         let name = format!("python-imports/{version}");
-        let environment = uv.environment(workspace, &name, &version, &requirements)?;
-        let Ok(interpreter) = environment else {
-            continue;
-        };
+        let interpreter = uv.environment(workspace, &name, &version, &requirements)?;
         let mut install = uv.pip(workspace, "install", &interpreter);
         install.args(["--reinstall", "--no-deps", "--no-index"]);
         workspace.run(install.arg(wheel))?;
