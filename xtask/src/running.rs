@@ -28,7 +28,7 @@ impl Running {
         thread::spawn(move || {
             for line in BufReader::new(output).lines().map_while(Result::ok) {
                 println!("{name}: {line}");
-                // Nobody may wait for a line any more.
+                // The receiver may be gone.
                 let _ = sender.send(line);
             }
         });

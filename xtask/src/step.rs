@@ -83,7 +83,7 @@ impl fmt::Display for Missing {
 
 impl std::error::Error for Missing {}
 
-/// Tells a missing requirement, as the inner error, from failures.
+/// Separates a missing requirement, which becomes the inner error, from failures.
 ///
 /// # Errors
 /// All errors except [`Missing`].

@@ -87,7 +87,7 @@ impl Workspace {
     /// The output of git, without the blanks around it.
     ///
     /// # Errors
-    /// Those of [`Self::output`].
+    /// The errors of [`Self::output`].
     pub fn git(&self, arguments: &[&str]) -> anyhow::Result<String> {
         let output = self.output(self.program("git").args(arguments))?;
         Ok(output.trim().to_owned())
@@ -96,7 +96,7 @@ impl Workspace {
     /// The files that match a pattern of git, unless git ignores them or they were deleted.
     ///
     /// # Errors
-    /// Those of [`Self::output`].
+    /// The errors of [`Self::output`].
     pub fn files(&self, patterns: &[&str]) -> anyhow::Result<Vec<PathBuf>> {
         let list = [
             "ls-files",

@@ -163,7 +163,7 @@ fn names(steps: &[Step]) -> PossibleValuesParser {
     steps.iter().map(value).collect::<Vec<_>>().into()
 }
 
-/// Why the words after `cargo xtask` are no task, if so.
+/// The reason if the words after `cargo xtask` are no task.
 fn fault_of_task(words: &[&str]) -> Option<String> {
     let words = ["cargo xtask"].iter().chain(words);
     let error = Arguments::try_parse_from(words).err()?;

@@ -85,7 +85,7 @@ fn build(workspace: &Workspace, target: &str, compatibility: &str) -> anyhow::Re
     maturin(workspace, &interpreter, "dist", target[1], &target)
 }
 
-/// Builds a wheel in a directory of its own, which it returns.
+/// Builds a wheel in a separate directory, which it returns.
 pub(crate) fn maturin(
     workspace: &Workspace,
     interpreter: &Path,
