@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
@@ -36,12 +37,15 @@ pub(crate) struct Ours {
     pub(crate) parts: Parts,
 }
 
-/// Fields and variants, by `struct S` and `enum E`, and all identifiers of declarations. Types of the same name in
-/// several modules are merged.
+/// Names of declarations: members by `struct S`, `enum E`, or `S` for its functions and constants,
+/// and free functions and constants by "". Types of the same name in several modules are merged.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
     of: BTreeMap<String, BTreeSet<String>>,
-    words: BTreeSet<String>,
+    /// The words in macros, which may write functions of any type.
+    in_macros: BTreeSet<String>,
+    /// The declaration that is read, a key of `of`.
+    owner: String,
 }
 
 impl Parts {
@@ -63,36 +67,102 @@ impl Parts {
         parts.map(String::as_str).collect()
     }
 
-    fn insert<'a>(&mut self, kind: &str, name: &Ident, parts: impl Iterator<Item = &'a Ident>) {
-        let all = self.of.entry(format!("{kind} {name}")).or_default();
-        all.extend(parts.map(ToString::to_string));
+    /// True if a type of this name may have this member, or if it is a type or free itself.
+    fn has(&self, name: &str, member: &str) -> bool {
+        let keys = |name: &str| {
+            [
+                name.into(),
+                format!("struct {name}"),
+                format!("enum {name}"),
+            ]
+        };
+        let mut of = keys(name).into_iter().filter_map(|key| self.of.get(&key));
+        let is_free = self.of("").contains(member)
+            || keys(member).iter().any(|key| self.of.contains_key(key));
+        is_free || of.any(|members| members.contains(member) || self.in_macros.contains(member))
+    }
+
+    /// True if any type may have this member.
+    fn any_has(&self, member: &str) -> bool {
+        self.in_macros.contains(member) || self.of.values().any(|of| of.contains(member))
+    }
+
+    fn insert(&mut self, name: &Ident) {
+        let of = self.of.entry(self.owner.clone()).or_default();
+        of.insert(name.to_string());
+    }
+
+    fn within(&mut self, owner: String, visit: impl FnOnce(&mut Self)) {
+        self.of.entry(owner.clone()).or_default();
+        let outer = mem::replace(&mut self.owner, owner);
+        visit(self);
+        self.owner = outer;
     }
 }
 
 impl<'a> Visit<'a> for Parts {
     fn visit_item_struct(&mut self, item: &'a syn::ItemStruct) {
-        let fields = item.fields.iter().filter_map(|field| field.ident.as_ref());
-        self.insert("struct", &item.ident, fields);
-        visit::visit_item_struct(self, item);
+        self.within(format!("struct {}", item.ident), |it| {
+            visit::visit_item_struct(it, item)
+        });
     }
 
     fn visit_item_enum(&mut self, item: &'a syn::ItemEnum) {
-        let variants = item.variants.iter().map(|variant| &variant.ident);
-        self.insert("enum", &item.ident, variants);
-        visit::visit_item_enum(self, item);
+        self.within(format!("enum {}", item.ident), |it| {
+            item.variants
+                .iter()
+                .for_each(|variant| it.insert(&variant.ident));
+        });
     }
 
-    fn visit_ident(&mut self, name: &'a Ident) {
-        self.words.insert(name.to_string());
+    fn visit_item_trait(&mut self, item: &'a syn::ItemTrait) {
+        self.within(item.ident.to_string(), |it| {
+            visit::visit_item_trait(it, item)
+        });
     }
 
-    /// Words in the bodies of functions do not count.
+    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
+        if let (syn::Type::Path(path), None) = (&*item.self_ty, &item.trait_)
+            && let Some(of) = path.path.segments.last()
+        {
+            self.within(of.ident.to_string(), |it| visit::visit_item_impl(it, item));
+        }
+    }
+
+    fn visit_field(&mut self, field: &'a syn::Field) {
+        field.ident.iter().for_each(|name| self.insert(name));
+    }
+
+    fn visit_signature(&mut self, function: &'a syn::Signature) {
+        self.insert(&function.ident);
+    }
+
+    fn visit_impl_item_const(&mut self, item: &'a syn::ImplItemConst) {
+        self.insert(&item.ident);
+    }
+
+    fn visit_trait_item_const(&mut self, item: &'a syn::TraitItemConst) {
+        self.insert(&item.ident);
+    }
+
+    fn visit_item_const(&mut self, item: &'a syn::ItemConst) {
+        self.insert(&item.ident);
+    }
+
+    /// Names in the bodies of functions do not count.
     fn visit_block(&mut self, _: &'a syn::Block) {}
 
     fn visit_macro(&mut self, item: &'a syn::Macro) {
         let text = item.tokens.to_string();
         let words = text.split(|it: char| !it.is_alphanumeric() && it != '_');
-        self.words.extend(words.map(str::to_owned));
+        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+        for pair in words
+            .windows(2)
+            .filter(|pair| ["struct", "enum"].contains(&pair[0]))
+        {
+            self.of.entry(pair.join(" ")).or_default();
+        }
+        self.in_macros.extend(words.into_iter().map(str::to_owned));
     }
 }
 
@@ -154,11 +224,27 @@ impl Ours {
         names.chain(motion).filter(is_enumeration).collect()
     }
 
-    /// True if all words of a path, such as `module::Type::method`, are in our sources.
+    /// True if a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
+    /// `.method(..)` of any type, `franka_sim::Sim::fr3`.
     pub(crate) fn has(&self, span: &str) -> bool {
         let path = span.split(['(', '<', ' ']).next().unwrap_or_default();
-        let mut words = path.trim_start_matches('.').split("::");
-        words.all(|word| word.starts_with("franka_") || self.parts.words.contains(word))
+        if let Some(member) = path.strip_prefix('.') {
+            return self.parts.any_has(member);
+        }
+        let path = path.strip_prefix("franka_async::").unwrap_or(path);
+        let (outer, last) = path.rsplit_once("::").unwrap_or(("", path));
+        let item = |module: &str, name: &str| self.modules.get(module)?.get(name);
+        if self.modules.contains_key(path) || item(outer, last).is_some() {
+            return true;
+        }
+        let (module, of) = outer.rsplit_once("::").unwrap_or(("", outer));
+        let found = item(module, of);
+        // A module of another crate may be exported as a whole.
+        let first = outer.split("::").next().unwrap_or_default();
+        let is_module = first.starts_with(char::is_lowercase) && item("", first).is_some();
+        // The item may have another name where it is declared.
+        let of = found.map_or(of, |path| path.rsplit("::").next().unwrap_or(of));
+        (found.is_some() || is_module || first == "franka_sim") && self.parts.has(of, last)
     }
 
     fn read_module(&mut self, file: &Path, module: &str, is_root: bool) -> anyhow::Result<()> {
@@ -318,15 +404,27 @@ mod tests {
     }
 
     #[test]
-    fn fields_and_variants_are_parts_and_words_are_in_macros_too() {
-        let mut ours = Ours::default();
-        let source = "pub struct S { pub a: u8 } mod m { enum E { H } } impl S { fn e() {} } \
-             macro_rules! m { ($t:ident) => { impl $t { pub fn i(self) {} } } }";
-        ours.parts
-            .visit_file(&syn::parse_file(source).expect("it is Rust"));
-        assert_eq!(ours.parts.of("enum E"), BTreeSet::from(["H"]));
-        assert_eq!(ours.parts.of("struct S"), BTreeSet::from(["a"]));
-        assert!(ours.has("S::e(..)") && ours.has(".i") && !ours.has("S::f"));
+    fn methods_fields_variants_and_constants_are_members() {
+        let mut parts = Parts::default();
+        let source = "pub struct S { pub a: u8 } enum E { C } trait T { fn d(); } \
+             impl S { pub fn e() {} pub const G: u8 = 0; } mod m { enum E { H } } \
+             impl X for S { fn z() {} } macro_rules! m { ($t:ident) => { impl $t { pub fn i(self) {} } struct M; } }";
+        parts.visit_file(&syn::parse_file(source).expect("it is Rust"));
+        for member in [
+            "S a", "E C", "T d", "S e", "S G", "E H", "S i", "Y M", "Y S",
+        ] {
+            let (name, member) = member.split_once(' ').expect("two words");
+            assert!(parts.has(name, member), "{name}::{member}");
+        }
+        assert!(
+            !parts.has("S", "f")
+                && !parts.has("S", "z")
+                && !parts.has("E", "a")
+                && !parts.has("Y", "i")
+        );
+        assert!(parts.any_has("i") && !parts.any_has("z"));
+        assert_eq!(parts.of("enum E"), BTreeSet::from(["C", "H"]));
+        assert_eq!(parts.of("struct S"), BTreeSet::from(["a"]));
     }
 
     #[test]

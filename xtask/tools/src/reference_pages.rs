@@ -39,10 +39,17 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let is_lost = |entry: &&String| !errors.contains(&format!("id=\"{entry}\""));
     let lost = entries.iter().filter(is_lost);
     found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
-    for chapter in ["from-libfranka.md", "from-franka-rs.md"] {
+    for (chapter, list) in [
+        ("from-libfranka.md", "libfranka.txt"),
+        ("from-franka-rs.md", "franka_rs.txt"),
+    ] {
         let page = read(&format!("docs/src/{chapter}"))?;
+        let names = read(&format!("tests/peers/names/{list}"))?;
         let tables = tables(&page);
-        let strange = tables.iter().flat_map(|table| strange(table, ours));
+        let strange = tables
+            .iter()
+            .flat_map(|table| ours_in(table, &tables, &names));
+        let strange = strange.filter(|name| !name.starts_with("std::") && !ours.has(name));
         found.extend(strange.map(|name| format!("{chapter}: {name} is not a name of ours")));
     }
     ensure!(
@@ -54,16 +61,34 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The names in the column `Rust` with a word that is in no source of ours. The tests of the Python
-/// package check the column `Python`, and that every name of a package has a row.
-fn strange<'a>(table: &Table<'a>, ours: &Ours) -> Vec<&'a str> {
+/// The names of ours in the column `Rust`. A cell that begins with `same: ` names a type of ours
+/// with members of the names in its row; `*` stands for those in the list of `names` without a row.
+/// The tests of the Python package check the column `Python`, and that every name has a row.
+fn ours_in(table: &Table<'_>, tables: &[Table<'_>], names: &str) -> Vec<String> {
     let Some(column) = table.column("Rust") else {
         return Vec::new();
     };
-    let spans = table.rows.iter().flat_map(|row| row.spans(column));
-    spans
-        .filter(|span| !span.starts_with("std::") && !ours.has(span))
-        .collect()
+    let mut found = Vec::new();
+    for row in &table.rows {
+        let spans = row.spans(column);
+        let mut members = row.spans(0);
+        if members == ["*"] {
+            let of = table.spans(0).concat() + "::";
+            let members_of = names.lines().filter_map(|name| name.strip_prefix(&of));
+            let same = tables.iter().filter(|it| it.spans(0) == table.spans(0));
+            let rows: Vec<_> = same
+                .flat_map(|it| it.rows.iter().flat_map(|row| row.spans(0)))
+                .collect();
+            members = members_of.filter(|name| !rows.contains(name)).collect();
+        }
+        if row.cell(column).starts_with("same: ") {
+            for of in &spans {
+                found.extend(members.iter().map(|member| format!("{of}::{member}")));
+            }
+        }
+        found.extend(spans.into_iter().map(str::to_owned));
+    }
+    found
 }
 
 /// The fields of the robot's state, and of values computed from it.
