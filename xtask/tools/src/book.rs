@@ -15,6 +15,7 @@ use anyhow::{Context as _, ensure};
 use crate::metadata::copy_directory;
 use crate::names;
 use crate::package;
+use crate::page::Page;
 use crate::playground;
 use xtask::python;
 use xtask::step::{Outcome, or_missing};
@@ -175,18 +176,13 @@ fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Stri
     Ok(found)
 }
 
-/// True if a page contains a Rust program that must not be ignored.
+/// True if a page contains a Rust program that must not be ignored. An included program is a file
+/// that builds.
 fn programs(page: &str) -> bool {
-    let mut lines = page.lines();
-    while let Some(line) = lines.next() {
-        if line.starts_with("```rust") && !line.contains("ignore") {
-            // An included program is a file that builds.
-            if !lines.next().is_some_and(|line| line.starts_with("{{#")) {
-                return true;
-            }
-        }
-    }
-    false
+    let mut blocks = Page::parse(page).blocks.into_iter();
+    blocks.any(|(kind, code)| {
+        kind.starts_with("rust") && !kind.contains("ignore") && !code.starts_with("{{#")
+    })
 }
 
 /// Removes a directory if it exists.

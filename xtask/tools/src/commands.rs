@@ -8,11 +8,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
+use cargo_metadata::{Package, TargetKind};
 
 use crate::book::REPOSITORY_PAGES;
-use crate::metadata::{self, list, text};
+use crate::metadata;
 use crate::names;
-use crate::page::{blocks, prose};
+use crate::page::Page;
 use xtask::realtime::succeeds;
 use xtask::step;
 use xtask::suite::STEPS;
@@ -20,7 +21,7 @@ use xtask::workspace::Workspace;
 
 /// Fails with every command that cannot be run.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
-    let targets = targets(workspace)?;
+    let packages = metadata::of(workspace)?.packages;
     let mut found = Vec::new();
     let mut count = 0;
     let mut pages = names::pages(workspace)?;
@@ -30,7 +31,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
         let page = fs::read_to_string(workspace.root().join(&path));
         for command in commands(&page.with_context(|| name.to_string())?) {
             count += 1;
-            if let Some(fault) = fault(&command, &targets) {
+            if let Some(fault) = fault(&command, &packages) {
                 found.push(format!("{name}: `{command}`: {fault}"));
             }
         }
@@ -44,12 +45,10 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
 
 /// The commands of Cargo on a page: code in its text, and lines of its blocks.
 fn commands(page: &str) -> Vec<String> {
-    let prose: String = prose(page).map(|line| format!("{line} ")).collect();
-    let spans = prose.split('`').skip(1).step_by(2);
-    let lines = blocks(page);
-    let words = spans
-        .chain(lines)
-        .map(|text| text.split_whitespace().collect::<Vec<_>>());
+    let page = Page::parse(page);
+    let lines = page.blocks.iter().flat_map(|(_, code)| code.lines());
+    let code = page.spans.iter().map(String::as_str).chain(lines);
+    let words = code.map(|text| text.split_whitespace().collect::<Vec<_>>());
     let commands = words.map(|words| {
         let is_setting = |word: &&&str| word.contains('=') && !word.starts_with('-');
         let settings = words.iter().take_while(is_setting).count();
@@ -60,40 +59,8 @@ fn commands(page: &str) -> Vec<String> {
         .collect()
 }
 
-/// A target that Cargo builds.
-struct Target {
-    package: String,
-    kind: String,
-    name: String,
-    /// The file of its root.
-    file: PathBuf,
-    /// The features that it requires.
-    features: Vec<String>,
-}
-
-fn targets(workspace: &Workspace) -> anyhow::Result<Vec<Target>> {
-    let mut targets = Vec::new();
-    for package in metadata::packages(workspace)? {
-        for target in list(&package["targets"]) {
-            for kind in list(&target["kind"]) {
-                targets.push(Target {
-                    package: text(&package["name"]),
-                    kind: text(kind),
-                    name: text(&target["name"]),
-                    file: text(&target["src_path"]).into(),
-                    features: list(&target["required-features"])
-                        .iter()
-                        .map(text)
-                        .collect(),
-                });
-            }
-        }
-    }
-    Ok(targets)
-}
-
 /// The missing object of a command, if any.
-fn fault(command: &str, targets: &[Target]) -> Option<String> {
+fn fault(command: &str, packages: &[Package]) -> Option<String> {
     let command = command.split(" -- ").next().unwrap_or(command);
     let command = command.split(" # ").next().unwrap_or(command);
     let words: Vec<&str> = command.split(' ').skip(1).collect();
@@ -105,47 +72,46 @@ fn fault(command: &str, targets: &[Target]) -> Option<String> {
             fault.map(|fault| fault.to_string())
         }
         ["xtask", ref words @ ..] => crate::fault_of_task(words),
-        _ => fault_of_build(&words, targets),
+        _ => fault_of_build(&words, packages),
     }
 }
 
 /// The missing target of a command, if any.
-fn fault_of_build(words: &[&str], targets: &[Target]) -> Option<String> {
+fn fault_of_build(words: &[&str], packages: &[Package]) -> Option<String> {
     let behind = |options: &[&str]| {
         let at = words.iter().position(|word| options.contains(word))?;
         words.get(at + 1).copied()
     };
     let package = behind(&["--package", "-p"]);
-    if let Some(package) = package
-        && !targets.iter().any(|target| target.package == package)
-    {
-        return Some(format!("no package {package}"));
+    let mut chosen: Vec<_> = packages.iter().collect();
+    if let Some(name) = package {
+        chosen.retain(|package| *package.name == name);
+        if chosen.is_empty() {
+            return Some(format!("no package {name}"));
+        }
     }
     for (option, kind) in [
-        ("--example", "example"),
-        ("--bin", "bin"),
-        ("--test", "test"),
+        ("--example", TargetKind::Example),
+        ("--bin", TargetKind::Bin),
+        ("--test", TargetKind::Test),
     ] {
         let Some(name) = behind(&[option]) else {
             continue;
         };
-        let target = targets.iter().find(|target| {
-            target.kind == kind
-                && target.name == name
-                && package.is_none_or(|package| target.package == package)
-        });
+        let mut targets = chosen.iter().flat_map(|package| &package.targets);
+        let target = targets.find(|target| target.is_kind(kind.clone()) && target.name == name);
         let Some(target) = target else {
-            return Some(format!("no {kind} {name}"));
+            return Some(format!("no {} {name}", option.trim_start_matches('-')));
         };
         let given = behind(&["--features", "-F"]).unwrap_or_default();
         let missing = |feature: &&String| given.split(',').all(|it| it != *feature);
-        if let Some(feature) = target.features.iter().find(missing) {
+        if let Some(feature) = target.required_features.iter().find(missing) {
             return Some(format!("{name} takes --features {feature}"));
         }
         let at = words.iter().position(|word| *word == option)?;
         let filter = words.get(at + 2).filter(|word| !word.starts_with('-'));
-        if let (Some(filter), "test") = (filter, kind)
-            && !names_a_test(&target.file, filter)
+        if let (Some(filter), TargetKind::Test) = (filter, kind)
+            && !names_a_test(target.src_path.as_std_path(), filter)
         {
             return Some(format!("no test {filter} in {name}"));
         }
@@ -177,6 +143,8 @@ fn names_a_test(root: &Path, filter: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]
@@ -190,22 +158,22 @@ mod tests {
 
     #[test]
     fn missing_command_target_is_reported() {
-        let target = |package: &str, kind: &str, name: &str| Target {
-            package: package.to_owned(),
-            kind: kind.to_owned(),
-            name: name.to_owned(),
-            file: Path::new("none/main.rs").to_owned(),
-            features: vec![],
+        let package = |name: &str, targets: &[(&str, &str)]| -> Package {
+            let targets = targets.iter().map(|(kind, name)| {
+                let features = if *name == "g" { &["f"][..] } else { &[] };
+                json!({"kind": [kind], "name": name, "crate_types": [], "edition": "2024",
+                    "src_path": "none/main.rs", "required-features": features})
+            });
+            let targets: Vec<_> = targets.collect();
+            serde_json::from_value(
+                json!({"name": name, "version": "1.0.0", "id": name, "features": {},
+                "dependencies": [], "targets": targets, "manifest_path": "none"}),
+            )
+            .expect("a package")
         };
-        let with_feature = Target {
-            features: vec!["f".to_owned()],
-            ..target("a", "example", "g")
-        };
-        let targets = [
-            target("a", "example", "e"),
-            target("b", "bin", "p"),
-            target("b", "test", "t"),
-            with_feature,
+        let packages = [
+            package("a", &[("example", "e"), ("example", "g")]),
+            package("b", &[("bin", "p"), ("test", "t")]),
         ];
         for (command, expected) in [
             ("cargo run --example e -- --figure x", None),
@@ -227,7 +195,7 @@ mod tests {
                 Some("no test f in t"),
             ),
         ] {
-            let found = fault(command, &targets);
+            let found = fault(command, &packages);
             assert_eq!(found.as_deref(), expected, "{command}");
         }
         for command in [
@@ -235,7 +203,7 @@ mod tests {
             "cargo xtask check --x",
             "cargo xtask x",
         ] {
-            assert!(fault(command, &targets).is_some(), "{command}");
+            assert!(fault(command, &packages).is_some(), "{command}");
         }
     }
 }

@@ -5,43 +5,22 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::Context as _;
-use serde_json::Value;
+use cargo_metadata::{Metadata, MetadataCommand};
 use xtask::workspace::Workspace;
 
 /// Name of each library and program of the workspace, and the file of its root.
 pub(crate) fn crates(workspace: &Workspace) -> anyhow::Result<Vec<(String, PathBuf)>> {
-    let mut crates = Vec::new();
-    for package in packages(workspace)? {
-        for target in list(&package["targets"]) {
-            let kinds = list(&target["kind"]);
-            if kinds.iter().any(|kind| kind == "lib" || kind == "bin") {
-                crates.push((text(&target["name"]), text(&target["src_path"]).into()));
-            }
-        }
-    }
-    Ok(crates)
-}
-
-/// Cargo's description of each package of the workspace.
-pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<Value>> {
-    Ok(list(&of(workspace)?["packages"]).to_vec())
+    let packages = of(workspace)?.packages.into_iter();
+    let targets = packages.flat_map(|package| package.targets);
+    let crates = targets.filter(|target| target.is_lib() || target.is_bin());
+    Ok(crates.map(|it| (it.name, it.src_path.into())).collect())
 }
 
 /// Cargo's description of the workspace.
-pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<Value> {
+pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<Metadata> {
     let mut metadata = workspace.cargo();
     metadata.args(["metadata", "--format-version=1", "--no-deps"]);
-    Ok(serde_json::from_str(&workspace.output(&mut metadata)?)?)
-}
-
-/// The elements of an array; none if the value is no array.
-pub(crate) fn list(value: &Value) -> &[Value] {
-    value.as_array().map_or(&[], Vec::as_slice)
-}
-
-/// A text; empty if the value is none.
-pub(crate) fn text(value: &Value) -> String {
-    value.as_str().unwrap_or_default().to_owned()
+    Ok(MetadataCommand::parse(workspace.output(&mut metadata)?)?)
 }
 
 /// The command that builds and runs a benchmark or measuring program, in the release profile;

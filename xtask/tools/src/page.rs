@@ -1,104 +1,79 @@
-//! Tables and code spans of a page of the book.
+//! Tables and code of a page.
 
-/// A table: its header, and its rows.
-pub(crate) struct Table<'a> {
-    header: Row<'a>,
-    pub(crate) rows: Vec<Row<'a>>,
+use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
+
+/// The content of a page, in its order.
+#[derive(Debug, Default)]
+pub(crate) struct Page {
+    pub(crate) tables: Vec<Table>,
+    /// The code in its text.
+    pub(crate) spans: Vec<String>,
+    /// Blocks of code, each with the words after its fence.
+    pub(crate) blocks: Vec<(String, String)>,
 }
 
-impl<'a> Table<'a> {
+/// A table: its header and its rows.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    pub(crate) header: Vec<Cell>,
+    pub(crate) rows: Vec<Vec<Cell>>,
+}
+
+/// A cell: its text, and the code in it.
+#[derive(Debug, Default)]
+pub(crate) struct Cell {
+    pub(crate) text: String,
+    pub(crate) spans: Vec<String>,
+}
+
+impl Page {
+    pub(crate) fn parse(text: &str) -> Self {
+        let mut page = Self::default();
+        let mut row = Vec::new();
+        let mut is_block = false;
+        for event in Parser::new_ext(text, Options::ENABLE_TABLES) {
+            let (table, cell) = (page.tables.last_mut(), row.last_mut());
+            match (event, table, cell) {
+                (Event::Start(Tag::Table(_)), ..) => page.tables.push(Table::default()),
+                (Event::Start(Tag::TableCell), ..) => row.push(Cell::default()),
+                (Event::End(TagEnd::TableHead), Some(table), _) => table.header.append(&mut row),
+                (Event::End(TagEnd::TableRow), Some(table), _) => table.rows.push(row.split_off(0)),
+                (Event::Start(Tag::CodeBlock(kind)), ..) => {
+                    is_block = true;
+                    let info = match kind {
+                        CodeBlockKind::Fenced(info) => info.to_string(),
+                        CodeBlockKind::Indented => String::new(),
+                    };
+                    page.blocks.push((info, String::new()));
+                }
+                (Event::End(TagEnd::CodeBlock), ..) => is_block = false,
+                (Event::Text(text), ..) if is_block => {
+                    page.blocks.iter_mut().last().unwrap().1 += &text
+                }
+                (Event::Text(text), _, Some(cell)) => cell.text += &text,
+                (Event::Code(code), _, cell) => {
+                    cell.into_iter()
+                        .for_each(|cell| cell.spans.push(code.to_string()));
+                    page.spans.push(code.into_string());
+                }
+                _ => {}
+            }
+        }
+        page
+    }
+}
+
+impl Table {
     /// The number of the column with this header.
     pub(crate) fn column(&self, name: &str) -> Option<usize> {
-        self.header.0.iter().position(|cell| *cell == name)
+        self.header.iter().position(|cell| cell.text == name)
     }
 
-    /// The code spans of a cell of the header.
-    pub(crate) fn spans(&self, column: usize) -> Vec<&'a str> {
-        self.header.spans(column)
+    /// The code in the first column.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        let cells = self.rows.iter().filter_map(|row| row.first());
+        cells.flat_map(|cell| cell.spans.iter().map(String::as_str))
     }
-}
-
-/// The cells of a line, without the blanks around them.
-pub(crate) struct Row<'a>(Vec<&'a str>);
-
-impl<'a> Row<'a> {
-    fn of(line: &'a str) -> Option<Self> {
-        let line = line.trim().strip_prefix('|')?;
-        let line = line.strip_suffix('|').unwrap_or(line);
-        let mut cells = Vec::new();
-        let mut begin = 0;
-        for (at, _) in line.match_indices('|') {
-            if !line[..at].ends_with('\\') {
-                cells.push(line[begin..at].trim());
-                begin = at + 1;
-            }
-        }
-        cells.push(line[begin..].trim());
-        Some(Self(cells))
-    }
-
-    /// The text of a cell; empty if the row has fewer cells.
-    pub(crate) fn cell(&self, column: usize) -> &'a str {
-        self.0.get(column).copied().unwrap_or_default()
-    }
-
-    /// The code spans of a cell; none if the row has fewer cells.
-    pub(crate) fn spans(&self, column: usize) -> Vec<&'a str> {
-        spans(self.cell(column))
-    }
-}
-
-/// Text between backticks.
-fn spans(text: &str) -> Vec<&str> {
-    text.split('`').skip(1).step_by(2).collect()
-}
-
-/// The tables of a page, except tables in its programs.
-pub(crate) fn tables(page: &str) -> Vec<Table<'_>> {
-    let mut tables: Vec<Table<'_>> = Vec::new();
-    let mut before = None;
-    let mut is_open = false;
-    for line in prose(page) {
-        let row = Row::of(line);
-        let is_rule = line.starts_with("|--") || line.starts_with("| --");
-        match (row, before.take()) {
-            (Some(_), Some(header)) if is_rule && !is_open => {
-                let rows = Vec::new();
-                tables.push(Table { header, rows });
-                is_open = true;
-            }
-            (Some(row), _) if is_open => {
-                if let Some(table) = tables.last_mut() {
-                    table.rows.push(row);
-                }
-            }
-            (row, _) => {
-                before = row;
-                is_open = false;
-            }
-        }
-    }
-    tables
-}
-
-/// The lines outside fenced blocks.
-pub(crate) fn prose(page: &str) -> impl Iterator<Item = &str> {
-    let mut is_program = false;
-    page.lines().filter(move |line| {
-        let is_fence = line.trim_start().starts_with("```");
-        is_program ^= is_fence;
-        !is_program && !is_fence
-    })
-}
-
-/// The lines inside fenced blocks.
-pub(crate) fn blocks(page: &str) -> impl Iterator<Item = &str> {
-    let mut is_program = false;
-    page.lines().filter(move |line| {
-        let is_fence = line.trim_start().starts_with("```");
-        is_program ^= is_fence;
-        is_program && !is_fence
-    })
 }
 
 #[cfg(test)]
@@ -107,13 +82,19 @@ mod tests {
 
     #[test]
     fn tables_are_cut_into_cells_and_programs_are_none() {
-        let page =
-            "| a | b |\n|---|---|\n| `x`, `y\\|z` | c |\n\n```text\n| d |\n|---|\n| e |\n```\n";
-        let tables = tables(page);
-        assert_eq!(tables.len(), 1);
-        assert_eq!(tables[0].column("b"), Some(1));
-        assert_eq!(tables[0].rows[0].spans(0), ["x", "y\\|z"]);
-        assert_eq!(tables[0].rows[0].spans(1), Vec::<&str>::new());
-        assert_eq!(tables[0].rows[0].cell(1), "c");
+        let page = Page::parse(
+            "| a | b |\n|---|---|\n| `x`, `y\\|z` | c |\n\n```text\n| d |\n|---|\n| e |\n```\n",
+        );
+        let [table] = &page.tables[..] else {
+            panic!("{page:?}");
+        };
+        assert_eq!(table.column("b"), Some(1));
+        assert_eq!(table.names().collect::<Vec<_>>(), ["x", "y|z"]);
+        assert_eq!(
+            (&*table.rows[0][1].text, table.rows[0][1].spans.len()),
+            ("c", 0)
+        );
+        let block = ("text".to_owned(), "| d |\n|---|\n| e |\n".to_owned());
+        assert_eq!(page.blocks, [block]);
     }
 }

@@ -8,7 +8,7 @@ use std::fs;
 use anyhow::{Context as _, ensure};
 
 use crate::names::{Ours, Parts};
-use crate::page::{Table, tables};
+use crate::page::{Page, Table};
 use xtask::workspace::Workspace;
 
 /// Fails with every name that a chapter lacks, or that does not exist.
@@ -45,7 +45,7 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     ] {
         let page = read(&format!("docs/src/{chapter}"))?;
         let names = read(&format!("tests/peers/names/{list}"))?;
-        let tables = tables(&page);
+        let tables = Page::parse(&page).tables;
         let strange = tables
             .iter()
             .flat_map(|table| ours_in(table, &tables, &names));
@@ -64,40 +64,38 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
 /// The names of ours in the column `Rust`. A cell that begins with `same: ` names a type of ours
 /// with members of the names in its row; `*` stands for those in the list of `names` without a row.
 /// The tests of the Python package check the column `Python`, and that every name has a row.
-fn ours_in(table: &Table<'_>, tables: &[Table<'_>], names: &str) -> Vec<String> {
+fn ours_in(table: &Table, tables: &[Table], names: &str) -> Vec<String> {
     let Some(column) = table.column("Rust") else {
         return Vec::new();
     };
     let mut found = Vec::new();
+    let of = &table.header[0].spans;
     for row in &table.rows {
-        let spans = row.spans(column);
-        let mut members = row.spans(0);
+        let (cell, mut members) = (&row[column], row[0].spans.clone());
         if members == ["*"] {
-            let of = table.spans(0).concat() + "::";
-            let members_of = names.lines().filter_map(|name| name.strip_prefix(&of));
-            let same = tables.iter().filter(|it| it.spans(0) == table.spans(0));
-            let rows: Vec<_> = same
-                .flat_map(|it| it.rows.iter().flat_map(|row| row.spans(0)))
-                .collect();
-            members = members_of.filter(|name| !rows.contains(name)).collect();
+            let members_of = names
+                .lines()
+                .filter_map(|name| name.strip_prefix(&(of.concat() + "::")));
+            let same = tables.iter().filter(|it| it.header[0].spans == *of);
+            let rows: Vec<&str> = same.flat_map(Table::names).collect();
+            let left = members_of.filter(|name| !rows.contains(name));
+            members = left.map(str::to_owned).collect();
         }
-        if row.cell(column).starts_with("same: ") {
-            for of in &spans {
+        if cell.text.starts_with("same: ") {
+            for of in &cell.spans {
                 found.extend(members.iter().map(|member| format!("{of}::{member}")));
             }
         }
-        found.extend(spans.into_iter().map(str::to_owned));
+        found.extend(cell.spans.clone());
     }
     found
 }
 
 /// The fields of the robot's state, and of values computed from it.
 fn states(page: &str, parts: &Parts) -> Vec<String> {
-    let tables = tables(page);
+    let tables = Page::parse(page).tables;
     let of_robot = tables.iter().filter(|it| it.column("field") == Some(0));
-    let named: BTreeSet<&str> = of_robot
-        .flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)))
-        .collect();
+    let named: BTreeSet<&str> = of_robot.flat_map(Table::names).collect();
     let mut fields = parts.of("struct RobotState");
     fields.extend(parts.of("struct TotalLoad"));
     differences("states.md", &named, &fields)
@@ -107,10 +105,11 @@ fn states(page: &str, parts: &Parts) -> Vec<String> {
 fn variants(page: &str, ours: &Ours) -> Vec<String> {
     let mut found = Vec::new();
     let mut told = BTreeSet::new();
-    for table in tables(page) {
-        let header = table.spans(0);
-        let [name] = header[..] else { continue };
-        let named: BTreeSet<&str> = table.rows.iter().flat_map(|row| row.spans(0)).collect();
+    for table in Page::parse(page).tables {
+        let [name] = &table.header[0].spans[..] else {
+            continue;
+        };
+        let named: BTreeSet<&str> = table.names().collect();
         let variants = ours.parts.of(&format!("enum {name}"));
         let place = format!("errors.md: {name}");
         found.extend(differences(&place, &named, &variants));

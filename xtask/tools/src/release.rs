@@ -7,11 +7,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context as _, bail};
+use cargo_metadata::{Metadata, Package};
 use jiff::civil::Date;
 use semver::Version;
-use serde_json::Value;
 
-use crate::metadata::{self, list, text};
+use crate::metadata;
 use xtask::realtime::succeeds;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
@@ -61,11 +61,11 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
     }
     found.extend(log_faults(&log));
     if depth.last {
-        let set = |value: &Value| value.as_str().is_some_and(|text| !text.is_empty());
-        if !published(&metadata).all(|package| set(&package["repository"])) {
+        let set = |text: Option<&str>| text.is_some_and(|text| !text.is_empty());
+        if !published(&metadata).all(|package| set(package.repository.as_deref())) {
             found.push("Cargo.toml: `repository` is not set".to_owned());
         }
-        if !set(&metadata["metadata"]["maintainer"]) {
+        if !set(metadata.workspace_metadata["maintainer"].as_str()) {
             found.push("Cargo.toml: `maintainer` of the package for Debian is not set".to_owned());
         }
         let date = citation.lines().find_map(|line| {
@@ -94,45 +94,58 @@ pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
 }
 
 /// The version of the workspace.
-pub(crate) fn version(metadata: &Value) -> String {
+pub(crate) fn version(metadata: &Metadata) -> String {
     let package = published(metadata).next();
-    package.map_or(String::new(), |package| text(&package["version"]))
+    package.map_or(String::new(), |package| package.version.to_string())
 }
 
 /// The packages that `cargo publish` publishes.
-fn published(metadata: &Value) -> impl Iterator<Item = &Value> {
-    let packages = list(&metadata["packages"]).iter();
-    packages.filter(|package| package["publish"].is_null())
+fn published(metadata: &Metadata) -> impl Iterator<Item = &Package> {
+    metadata
+        .packages
+        .iter()
+        .filter(|package| package.publish.is_none())
 }
 
 /// Defects that a registry would refuse after it took other crates, or that readers would miss.
-fn description_faults(package: &Value) -> Vec<String> {
-    let texts = ["description", "license", "rust_version", "readme"].into_iter();
-    let missing = texts.filter(|name| package[name].as_str().is_none_or(str::is_empty));
-    let mut found: Vec<String> = missing.map(|name| format!("no {name}")).collect();
-    for name in ["keywords", "categories"] {
-        let words: Vec<String> = list(&package[name]).iter().map(text).collect();
-        let allowed = |it: char| it.is_ascii_alphanumeric() || "_-+:".contains(it);
-        let is_good = |word: &String| word.chars().all(allowed);
-        let short = name == "categories" || words.iter().all(|word| word.len() <= 20);
-        if !(1..=5).contains(&words.len()) || !words.iter().all(is_good) || !short {
-            found.push(format!("the {name} {words:?} would be refused"));
+fn description_faults(package: &Package) -> Vec<String> {
+    let mut found = Vec::new();
+    let (readme, version) = (package.readme.as_ref(), package.rust_version.as_ref());
+    for (name, value) in [
+        ("description", package.description.clone()),
+        ("license", package.license.clone()),
+        ("rust_version", version.map(ToString::to_string)),
+        ("readme", readme.map(ToString::to_string)),
+    ] {
+        if value.unwrap_or_default().is_empty() {
+            found.push(format!("{}: no {name}", package.name));
         }
     }
-    let name = text(&package["name"]);
-    let found = found.into_iter();
-    found.map(|fault| format!("{name}: {fault}")).collect()
+    for (name, words, max) in [
+        ("keywords", &package.keywords, 20),
+        ("categories", &package.categories, usize::MAX),
+    ] {
+        let allowed = |it: char| it.is_ascii_alphanumeric() || "_-+:".contains(it);
+        let is_good = |word: &String| word.chars().all(allowed) && word.len() <= max;
+        if !(1..=5).contains(&words.len()) || !words.iter().all(is_good) {
+            found.push(format!(
+                "{}: the {name} {words:?} would be refused",
+                package.name
+            ));
+        }
+    }
+    found
 }
 
 /// Packs the published crates as `cargo publish` does, with `verify` also builds each from its
 /// package, and returns the paths of the packages.
-fn pack(workspace: &Workspace, metadata: &Value, verify: bool) -> anyhow::Result<Vec<PathBuf>> {
+fn pack(workspace: &Workspace, metadata: &Metadata, verify: bool) -> anyhow::Result<Vec<PathBuf>> {
     let mut pack = workspace.cargo();
     pack.args(["package", "--locked", "--allow-dirty", "--quiet"]);
     pack.args((!verify).then_some("--no-verify"));
     let mut packages = Vec::new();
     for package in published(metadata) {
-        let name = package["name"].as_str().context("a package has a name")?;
+        let name = package.name.as_str();
         pack.args(["--package", name]);
         let file = format!("package/{name}-{}.crate", version(metadata));
         packages.push(workspace.target().join(file));
@@ -209,7 +222,7 @@ fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
 
@@ -234,8 +247,13 @@ mod tests {
     fn a_manifest_has_all_that_a_reader_looks_for() {
         let package = json!({"name": "face", "description": "A crate", "license": "Apache-2.0",
             "rust_version": "1.89", "readme": "README.md", "keywords": ["robotics"],
-            "categories": ["science::robotics"]});
-        assert_eq!(description_faults(&package), Vec::<String>::new());
+            "categories": ["science::robotics"], "version": "1.0.0", "id": "face", "features": {},
+            "dependencies": [], "targets": [], "manifest_path": "Cargo.toml"});
+        let faults = |it: &Value| {
+            let package = serde_json::from_value(it.clone()).expect("a package");
+            description_faults(&package)
+        };
+        assert_eq!(faults(&package), Vec::<String>::new());
         for (name, value) in [
             ("description", json!("")),
             ("readme", json!(null)),
@@ -246,7 +264,7 @@ mod tests {
         ] {
             let mut changed = package.clone();
             changed[name] = value;
-            assert_eq!(description_faults(&changed).len(), 1, "{changed}");
+            assert_eq!(faults(&changed).len(), 1, "{changed}");
         }
     }
 }

@@ -9,9 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, NodeDep};
 use serde_json::{Value, json};
 
-use crate::metadata::{list, text};
 use xtask::workspace::Workspace;
 
 /// The package of the program.
@@ -55,7 +55,7 @@ impl Bill {
             "--filter-platform",
             target,
         ]);
-        let metadata: Value = serde_json::from_str(&workspace.output(&mut metadata)?)?;
+        let metadata = MetadataCommand::parse(workspace.output(&mut metadata)?)?;
         let lock = fs::read_to_string(workspace.root().join("Cargo.lock"))?;
         let page = fs::read_to_string(workspace.root().join("franka-dash/page/package.json"))?;
         Ok(Self {
@@ -183,42 +183,37 @@ fn hashes(lock: &str) -> BTreeMap<Id, String> {
 /// Details of the chosen crates from Cargo's description.
 fn details(
     chosen: &BTreeSet<Id>,
-    metadata: &Value,
+    metadata: &Metadata,
     hashes: &BTreeMap<Id, String>,
 ) -> anyhow::Result<BTreeMap<Id, Part>> {
-    let id = |package: &Value| (text(&package["name"]), text(&package["version"]));
-    let packages = list(&metadata["packages"]);
-    let ids: BTreeMap<&str, Id> = packages
-        .iter()
-        .filter_map(|package| Some((package["id"].as_str()?, id(package))))
-        .collect();
+    let id = |of| {
+        (
+            metadata[of].name.to_string(),
+            metadata[of].version.to_string(),
+        )
+    };
     let mut parts = BTreeMap::new();
-    for node in list(&metadata["resolve"]["nodes"]) {
-        let known = node["id"].as_str().and_then(|it| ids.get(it));
-        let Some(this) = known.filter(|it| chosen.contains(it)) else {
-            continue;
-        };
-        let package = packages.iter().find(|package| package["id"] == node["id"]);
-        let package = package.context("a node has a package")?;
-        let manifest = PathBuf::from(text(&package["manifest_path"]));
-        let is_normal = |need: &&Value| {
-            list(&need["dep_kinds"])
+    for node in &metadata.resolve.as_ref().context("no dependencies")?.nodes {
+        let is_normal = |need: &&NodeDep| {
+            need.dep_kinds
                 .iter()
-                .any(|it| it["kind"].is_null())
+                .any(|it| it.kind == DependencyKind::Normal)
         };
-        let needs = list(&node["deps"]).iter().filter(is_normal);
-        let needs = needs.filter_map(|need| ids.get(need["pkg"].as_str()?));
+        let needs = node.deps.iter().filter(is_normal).map(|need| id(&need.pkg));
+        let package = &metadata[&node.id];
+        let sources = package
+            .manifest_path
+            .parent()
+            .context("a manifest is in a directory")?;
         let part = Part {
-            license: text(&package["license"]),
-            sources: manifest
-                .parent()
-                .context("a manifest is in a directory")?
-                .to_owned(),
-            hash: hashes.get(this).cloned(),
-            needs: needs.filter(|id| chosen.contains(id)).cloned().collect(),
+            license: package.license.clone().unwrap_or_default(),
+            sources: sources.into(),
+            hash: hashes.get(&id(&node.id)).cloned(),
+            needs: needs.filter(|id| chosen.contains(id)).collect(),
         };
-        parts.insert(this.clone(), part);
+        parts.insert(id(&node.id), part);
     }
+    parts.retain(|id, _| chosen.contains(id));
     ensure!(
         parts.len() == chosen.len(),
         "cargo metadata knows fewer crates than cargo tree"

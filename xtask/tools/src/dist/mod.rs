@@ -77,7 +77,7 @@ impl Release {
     fn begin(workspace: &Workspace) -> anyhow::Result<Self> {
         let metadata = metadata::of(workspace)?;
         let artefacts = empty(workspace.target().join("artefacts"))?;
-        let maintainer = metadata["metadata"]["maintainer"].as_str();
+        let maintainer = metadata.workspace_metadata["maintainer"].as_str();
         Ok(Self {
             version: release::version(&metadata),
             epoch: match env::var("SOURCE_DATE_EPOCH") {
