@@ -44,20 +44,7 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
     // Cargo keeps pages of names that no longer exist.
     remove(&workspace.target().join("doc"))?;
     let mut rust = workspace.cargo();
-    rust.args(["doc", "--no-deps", "--features"]);
-    let features = [
-        "admission",
-        "blocking",
-        "doctor",
-        "export",
-        "metrics",
-        "pcap",
-    ];
-    rust.arg(
-        features
-            .map(|name| format!("franka-async/{name}"))
-            .join(","),
-    );
+    rust.args(["doc", "--no-deps", "--features", FEATURES]);
     rust.args(["--package=franka-async", "--package=franka-sim"]);
     workspace.run(&mut rust)?;
     copy_directory(&workspace.target().join("doc"), &book.join("rust"))?;
@@ -135,10 +122,7 @@ fn links(
     for reference in missing {
         check.args(["--exclude", reference]);
     }
-    for page in REFERENCES {
-        check.args(["--exclude-path", page]);
-    }
-    for page in ["print.html", "404.html"] {
+    for page in REFERENCES.iter().chain(&["print.html", "404.html"]) {
         check.args(["--exclude-path", page]);
     }
     check.arg(book);
@@ -194,6 +178,10 @@ fn remove(directory: &Path) -> anyhow::Result<()> {
         _ => Ok(()),
     }
 }
+
+/// Features of the reference of Rust.
+const FEATURES: &str = "franka-async/admission,franka-async/blocking,franka-async/doctor,\
+    franka-async/export,franka-async/metrics,franka-async/pcap";
 
 /// Directories of the references, which only `cargo xtask book` builds.
 const REFERENCES: [&str; 2] = ["book/rust/", "book/python/"];

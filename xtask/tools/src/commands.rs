@@ -129,16 +129,16 @@ fn names_a_test(root: &Path, filter: &str) -> bool {
     let function = format!("fn {name}");
     let files = format!("{}/*{name}*", directory.display());
     let directory = directory.display().to_string();
-    succeeds(&["git", "ls-files", "--error-unmatch", &files])
-        || succeeds(&[
-            "git",
-            "grep",
-            "--untracked",
-            "-q",
-            &function,
-            "--",
-            &directory,
-        ])
+    let grep = [
+        "git",
+        "grep",
+        "--untracked",
+        "-q",
+        &function,
+        "--",
+        &directory,
+    ];
+    succeeds(&["git", "ls-files", "--error-unmatch", &files]) || succeeds(&grep)
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ use clap::{Parser, Subcommand};
 use crate::checks::{CHECK, NIGHTLY};
 use crate::live::Subject;
 use crate::metadata::measuring_program;
-use xtask::step::{self, Step};
+use xtask::step::{self, Outcome, Step};
 use xtask::workspace::Workspace;
 
 /// One-command tasks of this workspace.
@@ -208,25 +208,23 @@ fn run(task: Task) -> anyhow::Result<()> {
         }
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
         Task::Assets { check: false } => dashboard::assets(&workspace),
-        Task::Assets { check: true } => {
-            let outcome = dashboard::check_assets(&workspace)?;
-            println!("{outcome:?}");
-            Ok(())
-        }
+        Task::Assets { check: true } => report(dashboard::check_assets(&workspace)),
         Task::Dist { only, twice, trial } => {
             dist::run(&workspace, &only, dist::Depth { twice, trial })
         }
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
         Task::Pictures => {
             workspace.run(&mut measuring_program(&workspace, &[], "pictures"))?;
-            println!("{:?}", dashboard::film(&workspace)?);
-            Ok(())
+            report(dashboard::film(&workspace))
         }
         Task::Mujoco => mujoco::provide(&workspace),
         Task::ReleaseCheck { verify, last } => {
-            let outcome = release::check(&workspace, release::Depth { verify, last })?;
-            println!("{outcome:?}");
-            Ok(())
+            report(release::check(&workspace, release::Depth { verify, last }))
         }
     }
+}
+
+/// Prints the outcome of work that is not a step.
+fn report(outcome: anyhow::Result<Outcome>) -> anyhow::Result<()> {
+    outcome.map(|outcome| println!("{outcome:?}"))
 }

@@ -109,32 +109,28 @@ fn published(metadata: &Metadata) -> impl Iterator<Item = &Package> {
 
 /// Defects that a registry would refuse after it took other crates, or that readers would miss.
 fn description_faults(package: &Package) -> Vec<String> {
-    let mut found = Vec::new();
-    let (readme, version) = (package.readme.as_ref(), package.rust_version.as_ref());
-    for (name, value) in [
-        ("description", package.description.clone()),
-        ("license", package.license.clone()),
-        ("rust_version", version.map(ToString::to_string)),
-        ("readme", readme.map(ToString::to_string)),
-    ] {
-        if value.unwrap_or_default().is_empty() {
-            found.push(format!("{}: no {name}", package.name));
-        }
-    }
-    for (name, words, max) in [
-        ("keywords", &package.keywords, 20),
-        ("categories", &package.categories, usize::MAX),
-    ] {
+    let is_missing = |text: &Option<String>| text.as_deref().is_none_or(str::is_empty);
+    let missing = [
+        ("description", is_missing(&package.description)),
+        ("license", is_missing(&package.license)),
+        ("rust_version", package.rust_version.is_none()),
+        ("readme", package.readme.is_none()),
+    ];
+    let missing = missing.iter().filter(|(_, is_missing)| *is_missing);
+    let mut found: Vec<_> = missing.map(|(name, _)| format!("no {name}")).collect();
+    let (keywords, categories) = (&package.keywords, &package.categories);
+    for (name, words, max) in [("keywords", keywords, 20), ("categories", categories, 200)] {
         let allowed = |it: char| it.is_ascii_alphanumeric() || "_-+:".contains(it);
         let is_good = |word: &String| word.chars().all(allowed) && word.len() <= max;
         if !(1..=5).contains(&words.len()) || !words.iter().all(is_good) {
-            found.push(format!(
-                "{}: the {name} {words:?} would be refused",
-                package.name
-            ));
+            found.push(format!("the {name} {words:?} would be refused"));
         }
     }
+    let name = &package.name;
     found
+        .iter()
+        .map(|fault| format!("{name}: {fault}"))
+        .collect()
 }
 
 /// Packs the published crates as `cargo publish` does, with `verify` also builds each from its

@@ -48,13 +48,8 @@ impl Bill {
         let parts = parse_tree(&workspace.output(&mut tree)?);
         ensure!(parts.len() > 1, "cargo tree names no dependencies");
         let mut metadata = workspace.cargo();
-        metadata.args([
-            "metadata",
-            "--locked",
-            "--format-version=1",
-            "--filter-platform",
-            target,
-        ]);
+        metadata.args(["metadata", "--locked", "--format-version=1"]);
+        metadata.args(["--filter-platform", target]);
         let metadata = MetadataCommand::parse(workspace.output(&mut metadata)?)?;
         let lock = fs::read_to_string(workspace.root().join("Cargo.lock"))?;
         let page = fs::read_to_string(workspace.root().join("franka-dash/page/package.json"))?;
@@ -120,11 +115,8 @@ impl Bill {
         let sections = by_title.into_iter().map(|(titles, text)| {
             format!("{rule}\n{}\n\n{}\n", titles.join("\n"), text.trim_end())
         });
-        let count = self
-            .parts
-            .values()
-            .filter(|part| part.hash.is_some())
-            .count();
+        let of_others = self.parts.values().filter(|part| part.hash.is_some());
+        let count = of_others.count();
         Ok(format!(
             "{count} libraries of others are part of this program, with these licences.\n\n{}",
             sections.collect::<String>()
