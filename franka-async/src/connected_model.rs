@@ -1,13 +1,11 @@
-//! The model of the connected arm, from the robot's description if it has one.
+//! The model of the connected arm, from the robot's description if it has one, and a hash of what
+//! the robot sends about its model.
 
-#[cfg(feature = "urdf")]
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::time::Duration;
 
 use franka_model::Model;
-#[cfg(feature = "urdf")]
-use franka_proto::Command;
-use franka_proto::{Architecture, Request, System, Version};
+use franka_proto::{Architecture, Command, Request, System, Version};
 
 use crate::builder::Builder;
 use crate::command_channel::{Channel, Response};
@@ -16,7 +14,6 @@ use crate::error::CommandError;
 use crate::error::ConnectError;
 #[cfg(feature = "urdf")]
 use crate::error::ModelError;
-#[cfg(feature = "urdf")]
 use crate::parameters;
 use crate::robot::Robot;
 use crate::state_model::nominal;
@@ -24,9 +21,9 @@ use crate::state_model::nominal;
 /// Time limit for the download of a library.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
-/// Returns the model of the arm and a hash of the robot's description. The model comes from the
-/// description, if there is one and it is wanted. Otherwise, it contains the constants of the kind
-/// of robot.
+/// Returns the model of the arm, and a hash of the robot's description if the model comes from it.
+/// Without a description, or if it is not wanted, the model contains the constants of the kind of
+/// robot.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -35,8 +32,7 @@ pub(crate) async fn of(
 ) -> Result<(Model, Option<u64>), ModelError> {
     if version.supports(Command::GetRobotModel) && !builder.nominal_model {
         let text = parameters::urdf(channel, builder.connect_timeout).await?;
-        let hash = BuildHasherDefault::<DefaultHasher>::default().hash_one(&text);
-        return Ok((Model::from_urdf(&text)?, Some(hash)));
+        return Ok((Model::from_urdf(&text)?, Some(hash(text.as_bytes()))));
     }
     Ok((nominal(version), None))
 }
@@ -49,6 +45,45 @@ pub(crate) async fn of(
     _: &Builder,
 ) -> Result<(Model, Option<u64>), ConnectError> {
     Ok((nominal(version), None))
+}
+
+/// Asks the robot for its description, or else for its model library, and returns a hash of it. A
+/// robot that sends neither in time has no hash.
+pub(crate) async fn hash_of(version: Version, channel: &Channel, limit: Duration) -> Option<u64> {
+    let sent = if version.supports(Command::GetRobotModel) {
+        parameters::urdf(channel, limit)
+            .await
+            .map(String::into_bytes)
+    } else {
+        library(channel, (Architecture::X64, System::Linux), limit).await
+    };
+    match sent {
+        Ok(bytes) => Some(hash(&bytes)),
+        Err(error) => {
+            tracing::debug!(%error, "the robot is recognised without a model");
+            None
+        }
+    }
+}
+
+fn hash(bytes: &[u8]) -> u64 {
+    BuildHasherDefault::<DefaultHasher>::default().hash_one(bytes)
+}
+
+/// Returns the bytes of the robot's model library; waits for `limit` at most.
+async fn library(
+    channel: &Channel,
+    (architecture, system): (Architecture, System),
+    limit: Duration,
+) -> Result<Vec<u8>, CommandError> {
+    let request = Request::LoadModelLibrary {
+        architecture,
+        system,
+    };
+    match channel.call(request, limit).await? {
+        Response::Library(bytes) => Ok(bytes),
+        _ => unreachable!("the session matches replies to the commands they answer"),
+    }
 }
 
 impl Robot {
@@ -66,14 +101,7 @@ impl Robot {
         architecture: Architecture,
         system: System,
     ) -> Result<Vec<u8>, CommandError> {
-        let request = Request::LoadModelLibrary {
-            architecture,
-            system,
-        };
-        match self.channel().call(request, DOWNLOAD).await? {
-            Response::Library(bytes) => Ok(bytes),
-            _ => unreachable!("the session matches replies to the commands they answer"),
-        }
+        library(&self.channel(), (architecture, system), DOWNLOAD).await
     }
 }
 

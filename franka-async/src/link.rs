@@ -22,7 +22,7 @@ use crate::world;
 /// connection, in the background.
 pub(crate) struct Link {
     pub(crate) address: SocketAddr,
-    /// Hash of the robot's description, if it has one.
+    /// Hash of the robot's description or model library, if it sent one.
     pub(crate) description: Option<u64>,
     pub(crate) geometry: GeometryCheck,
     pub(crate) bridge: BridgeHandle,

@@ -70,7 +70,11 @@ pub(crate) async fn open(
     let granted = Arc::new(session.handle.granted.clone());
     let lender = session.handle.lender.clone();
     let cycles = session.handle.cycles.clone();
-    let (model, description) = connected_model::of(session.version, &channel, builder).await?;
+    let (model, mut description) = connected_model::of(session.version, &channel, builder).await?;
+    if description.is_none() && builder.policy.is_some() {
+        // Only supervision compares robots. A model library has megabytes.
+        description = connected_model::hash_of(session.version, &channel, limit).await;
+    }
     let newer = (&mut session.handle, &session.wake);
     let (model, geometry) = check_geometry(model, &session.first, newer, builder).await?;
     let model = Arc::new(model);

@@ -9,7 +9,7 @@ use crate::lifecycle::Differences;
 /// Data about a robot with which it is recognised after a lost connection.
 #[derive(Clone, Debug)]
 pub(super) struct Identity {
-    /// Hash of the robot's description; `None` for a robot without one.
+    /// Hash of the robot's description or model library; `None` for a robot without either.
     description: Option<u64>,
     frames: [[f64; 16]; 3],
     /// Mass, centre of mass and inertia of the robot's end effector.
@@ -170,7 +170,7 @@ mod tests {
         assert!(before.differences(&other).description);
         let none = Identity::of(None, &state(1500), MS(500));
         let text = before.differences(&none).to_string();
-        assert_eq!(text, "its description has changed");
+        assert_eq!(text, "the model that it sends has changed");
     }
 
     #[test]

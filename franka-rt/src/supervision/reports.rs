@@ -31,8 +31,8 @@ pub enum ConnectFailure {
 
 impl Supervision {
     /// Records that a connection was made, with its first state and the refused requests of the
-    /// control thread. `description` is a hash of the robot's description, if it has one. Returns
-    /// false if no connection is needed any more; the caller must then close it.
+    /// control thread. `description` is a hash of the robot's description or model library, if it
+    /// sent one. Returns false if no connection is needed any more; the caller must then close it.
     pub fn on_connected(
         &mut self,
         description: Option<u64>,

@@ -4,7 +4,7 @@ use std::future::IntoFuture;
 use std::sync::Arc;
 use std::time::Duration;
 
-use franka_async::error::{CloseReason, Unready};
+use franka_async::error::{CloseReason, Differences, Unready};
 use franka_async::settings::{CollisionBehavior, Load};
 use franka_async::state::RobotMode;
 use franka_async::supervision::{Condition, EventKind};
@@ -224,6 +224,51 @@ async fn another_robot_in_the_place_of_the_first_is_refused() {
     );
     let error = robot.move_to(robot.pose()).await.unwrap_err();
     assert!(matches!(error, MotionError::ConnectionClosed { .. }));
+}
+
+/// Returns how a robot differs if `second` answers at the address of `first`.
+async fn differences(first: impl Fn() -> Sim, second: impl Fn() -> Sim) -> Differences {
+    let sim = start(first()).await;
+    let address = sim.addr();
+    let builder = Robot::builder(address).realtime(Realtime::Ignore);
+    let builder = builder.nominal_model(true).supervise(policy());
+    let robot = builder.connect().await.expect("it takes a client");
+    let mut events = robot.events();
+    sim.stop().await;
+    let sim = started_at(address, || second().ideal().tool(Tool::hand())).await;
+    let differences = |kind: &EventKind| match kind {
+        EventKind::Unrecognised { differences } => Some(*differences),
+        _ => None,
+    };
+    let differences = told(&mut events, differences).await;
+    robot.shutdown().await;
+    sim.stop().await;
+    differences
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn robots_whose_model_is_not_used_are_compared_by_it() {
+    let _alone = alone();
+    let fer = |library: Option<u8>| {
+        let library = library.map(|byte| vec![byte; 2 << 20].into());
+        move || Sim::fer().configure(|config| config.model_library = library.clone())
+    };
+    let fr3 = |remark: &'static str| {
+        let as_described = franka_sim::Robot::new(Config::default());
+        let urdf = as_described
+            .description()
+            .map(|text| format!("{text}{remark}"));
+        move || Sim::fr3().configure(|config| config.urdf = urdf.clone())
+    };
+    let restarted = differences(fer(Some(1)), fer(Some(1))).await;
+    assert!(restarted.clock && !restarted.description, "{restarted}");
+    assert!(!differences(fer(None), fer(None)).await.description);
+    for (first, second) in [(Some(1), Some(2)), (Some(1), None), (None, Some(2))] {
+        let differences = differences(fer(first), fer(second)).await;
+        assert!(differences.description, "{first:?}, {second:?}");
+    }
+    assert!(!differences(fr3(""), fr3("")).await.description);
+    assert!(differences(fr3(""), fr3("<!-- -->")).await.description);
 }
 
 /// A robot that describes other lengths than those that it computes its poses with.
