@@ -178,7 +178,7 @@ fn places(kind: RobotKind) {
     let (all, told) = of(4..=8);
     assert!(told.len() * 2 >= all, "{} of {all}", told.len());
     let errors = errors(&told);
-    assert!(errors.place < 0.03 && errors.force < 0.15, "{errors}");
+    assert!(errors.place < 0.03 && errors.force < 0.17, "{errors}");
 }
 
 /// Explanation for an arm that swings around the posture of the push, and is pushed in motion
