@@ -8,7 +8,7 @@ use crate::profile::Profile;
 use crate::state::{AxisState, State};
 use crate::straight_line::StraightLine;
 
-/// How the axes of a motion to a target are synchronised. In both cases, all axes arrive at the
+/// Synchronisation of the axes of a motion to a target. In both cases, all axes arrive at the
 /// same instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {

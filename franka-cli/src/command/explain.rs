@@ -23,9 +23,8 @@ use crate::output::{Output, say};
 /// Explain why a motion ended, and where the arm was touched
 ///
 /// FILE is a recording, a table of libfranka's logToCSV, or a text with the message of a
-/// ControlException; a text can contain both. If there are several motions, the
-/// command explains the newest one that the robot or a guard stopped, or that ended with a lost
-/// link.
+/// ControlException; a text can contain both. Of several motions, the command explains the newest
+/// motion that the robot or a guard stopped, or that ended with a lost link.
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]

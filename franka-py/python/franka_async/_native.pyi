@@ -1803,7 +1803,7 @@ class Sim:
         `recorded` (upper arm 0.3162 m, forearm 0.3842 m; the default unless `ideal`), `described`
         (0.316 m, 0.384 m) or `random` (1 mm and 3 mrad off, by `seed`): the geometry of its own
         poses. `kinematic_error`, `none` or `random` (by `seed`): errors of the true links against
-        these poses, instead of those of the arm. `seed` of all other randomness. `q`, joint
+        these poses, instead of the arm's own. `seed` of all other randomness. `q`, joint
         positions at the start, 7 numbers, rad, within the joint ranges. `tool`, `hand` or a tuple
         of its frame on the flange (a pose), its mass, kg, and its centre of mass in the flange
         frame, m: declared to the robot. `load`, a tuple of mass and centre: not declared. `hand`

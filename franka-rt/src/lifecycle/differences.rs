@@ -7,8 +7,8 @@ use core::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Differences {
-    /// True if the robots' descriptions (URDF) differ, or if only one robot sent one. A robot without
-    /// a description has its model library instead.
+    /// True if the robots' descriptions (URDF) differ, or if only one robot sent one. A robot
+    /// without a description has its model library instead.
     pub description: bool,
     /// True if a frame of the end effector differs (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or if the end
     /// effector's mass, centre of mass or inertia differs.

@@ -202,8 +202,8 @@ pub struct Goal {
     /// Condition that ends the motion early. A goal keeps its first condition: updates do not
     /// change it.
     pub reaction: Option<Reaction>,
-    /// The common motion of a team that the goal belongs to. The goal begins together with the goals
-    /// of the other members, and a fault of one member aborts all of them. Accepted only for
+    /// The common motion of a team that the goal belongs to. The goal begins together with the
+    /// goals of the other members, and a fault of one member aborts all of them. Accepted only for
     /// sessions with a [`Member`].
     ///
     /// [`Member`]: crate::team::Member

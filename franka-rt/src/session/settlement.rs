@@ -51,7 +51,7 @@ pub enum Settlement {
     /// The arm rests where it braked, or only the reference rests and something outside moves the
     /// arm.
     AtRest,
-    /// The reference reached the target but the arm did not, or does not come to rest there.
+    /// The reference reached the target but the arm did not, or does not stop there.
     /// Something holds or moves the arm, its load differs from the declared load, or its posture is
     /// nearly singular.
     TargetNotReached(Shortfall),

@@ -311,7 +311,7 @@ mod tests {
             assert_eq!(got.kinematic_error, expected);
         }
         assert_ne!(drawn(3).kinematic_error, none);
-        // The two errors are independent: the rest of the body stays that of the arm.
+        // The two errors are independent: the rest of the body is the arm's.
         let only = Body {
             kinematic_error: drawn(3).kinematic_error,
             ..drawn(7)

@@ -75,8 +75,8 @@ impl Case {
 }
 
 /// Runs `test` with a session on an ideal and a realistic arm of each robot whose states have each
-/// geometry, under each backend with each kind of setpoint; for one in `every` of these cases. Each
-/// realistic case has an arm of its own, sampled with the number of the case as seed.
+/// geometry, under each backend with each kind of setpoint; for one in `every` of these cases. The
+/// realistic arm of a case is sampled with the number of the case as seed.
 fn for_each_geometry(every: u64, test: impl Fn(&Case, &mut Lockstep, GoalId)) {
     let backends = [Backend::Torques].into_iter();
     let backends = backends.chain(Backend::ROBOT_CONTROLLERS);
