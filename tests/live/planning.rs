@@ -1,8 +1,8 @@
-//! Paths are planned in parallel with the task that serves stops. These tests delay a plan: the
-//! only thread for blocking work waits for the test.
+//! Paths are planned in parallel with the task that serves stops. These tests hold a plan where it
+//! begins: the thread that plans writes a line to the log, and the log waits for the test.
 
 use std::future::IntoFuture;
-use std::sync::mpsc;
+use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
 use std::time::Duration;
 
 use franka_async::error::GoalError;
@@ -10,28 +10,44 @@ use franka_async::goal::{Budget, Deviation, Tuning};
 use franka_async::state::RobotMode;
 use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
 use franka_sim::Running;
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::Runtime;
 use tokio::task::JoinHandle;
+use tokio::time::timeout;
+use tracing::{Event, Subscriber};
+use tracing_subscriber::layer::{Context, Layer};
 
-use crate::{alone, robot_time, simulated, under_way};
+use crate::telemetry::listen;
+use crate::{SOON, alone, robot_time, simulated, under_way};
 
 type Outcome = Result<MotionReport, MotionError>;
 
-/// A runtime whose only thread for blocking work can be held.
 fn runtime() -> Runtime {
-    let mut builder = Builder::new_multi_thread();
-    let builder = builder.worker_threads(2).max_blocking_threads(1);
-    builder.enable_all().build().expect("a runtime starts")
+    Runtime::new().expect("a runtime starts")
 }
 
+/// Every plan waits where it begins for this lock.
+static PLANS: RwLock<()> = RwLock::new(());
+
 /// Holds every plan until it is dropped.
-fn hold() -> mpsc::Sender<()> {
-    let (release, held) = mpsc::channel();
-    tokio::task::spawn_blocking(move || {
-        // Fails once it is dropped.
-        let _: Result<(), _> = held.recv();
-    });
-    release
+struct Hold {
+    _guard: RwLockWriteGuard<'static, ()>,
+}
+
+fn hold() -> Hold {
+    listen();
+    let _guard = PLANS.write().unwrap_or_else(PoisonError::into_inner);
+    Hold { _guard }
+}
+
+/// A log that waits at the first line of each plan.
+pub(crate) struct Barrier;
+
+impl<S: Subscriber> Layer<S> for Barrier {
+    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
+        if event.metadata().target() == "franka_async::bridge::planning" {
+            drop(PLANS.read().unwrap_or_else(PoisonError::into_inner));
+        }
+    }
 }
 
 struct Scene {
@@ -81,7 +97,8 @@ fn stop_and_cancel_are_served_while_a_path_is_planned() {
         let release = hold();
 
         let stopped = scene.planned().await;
-        robot.stop().await.expect("nothing moves");
+        let stop = timeout(SOON, robot.stop()).await;
+        stop.expect("it is served").expect("nothing moves");
         assert_eq!(stopped.await.unwrap(), Err(MotionError::Stopped));
 
         let motion = robot.move_through(scene.way);

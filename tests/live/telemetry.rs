@@ -20,7 +20,7 @@ use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt;
 
-use crate::{SOON, ahead_of_the_client, alone};
+use crate::{SOON, ahead_of_the_client, alone, planning};
 
 /// One event, with its thread and its spans, the outermost first.
 pub(crate) struct Told {
@@ -61,7 +61,10 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Listener {
 
 pub(crate) fn listen() {
     static ONCE: Once = Once::new();
-    ONCE.call_once(|| tracing_subscriber::registry().with(Listener).init());
+    ONCE.call_once(|| {
+        let log = tracing_subscriber::registry();
+        log.with(Listener).with(planning::Barrier).init();
+    });
     TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
 }
 

@@ -231,5 +231,6 @@ fn plan_path(
     model: &Model,
     state: &RobotState,
 ) -> Result<Chunk, PathError> {
+    tracing::debug!(waypoints = waypoints.len(), "planning a path");
     Chunk::through(waypoints, start, goal, model, state)
 }
