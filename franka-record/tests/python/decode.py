@@ -33,8 +33,12 @@ def check(path: str, cycles: int) -> str:
         assert sum(counts.values()) == summary.statistics.message_count
         metadata = {entry.name for entry in reader.iter_metadata()}
         assert "recording" in metadata and any(name.startswith("robot:") for name in metadata)
-        attachments = [attachment.name for attachment in reader.iter_attachments()]
+        attachments = list(reader.iter_attachments())
         assert attachments, "the description of the robot is missing"
+        for attachment in attachments:
+            # Of the recording, not of 1970: viewers show the time from the earliest record on.
+            off = attachment.log_time - summary.statistics.message_start_time
+            assert abs(off) < 3600 * 10**9, (attachment.name, off)
     for topic in ("/cycle", "/tool", "/event", "/log", "/tf", "/target", "/joints", "/scene", "/gripper"):
         assert counts.get(topic, 0) > 0, f"nothing in {topic}"
     assert counts["/cycle"] == cycles, counts
