@@ -5,7 +5,7 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
 /// Endpoint of a device: a host and a port. The default port depends on the device: 1337 for a
-/// robot, 1338 for a Franka Hand, and 1339 for a vacuum gripper.
+/// robot, 1338 for a Franka Hand. For a vacuum gripper, it is 1339.
 ///
 /// It is made from an [`IpAddr`], from a [`SocketAddr`], or from text:
 ///
