@@ -172,10 +172,9 @@ impl Builder {
         self
     }
 
-    /// Sets whether to connect to a robot whose reported poses disagree with its model, regardless
-    /// of which known [link lengths](crate::model::geometry::Lengths::KNOWN) are assumed. This is
-    /// off by default: such a robot is refused as
-    /// [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the robot is accepted,
+    /// Sets whether to connect to a robot whose reported poses disagree with its model with all
+    /// known [link lengths](crate::model::geometry::Lengths::KNOWN). This is off by default: such a
+    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the robot is accepted,
     /// goals move the arm to poses as the robot reports them; in simulation, the errors were up to
     /// 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by the geometric
     /// error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`) states it.

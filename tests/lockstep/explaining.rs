@@ -178,7 +178,8 @@ fn places(kind: RobotKind) {
     let (all, told) = of(4..=8);
     assert!(told.len() * 2 >= all, "{} of {all}", told.len());
     let errors = errors(&told);
-    assert!(errors.place < 0.03 && errors.force < 0.17, "{errors}");
+    let most = if franka_tests::thorough() { 0.15 } else { 0.17 };
+    assert!(errors.place < 0.03 && errors.force < most, "{errors}");
 }
 
 /// Explanation for an arm that swings around the posture of the push, and is pushed in motion

@@ -15,9 +15,9 @@
 //! one.
 //!
 //! An open connection alone does not keep the lease: call [`Holder::keep_alive`] only for messages
-//! of the client's own program. When these calls stop, the silence is measured by two clocks. By
-//! the robot's clock, the control thread brakes the arm, even if the rest of the process hangs. By
-//! the host's clock, the lease becomes free, and later requests of the former holder are refused.
+//! of the client's own program. Two clocks measure the time without such a call. By the robot's
+//! clock, the control thread brakes the arm, even if the rest of the process hangs. By the host's
+//! clock, the lease becomes free, and later requests of the former holder are refused.
 //!
 //! The lease restricts clients, not the program itself: a motion that the program begins needs no
 //! lease. [`Robot::stop`] needs no lease either, so the service can offer it to every client.

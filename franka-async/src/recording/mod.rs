@@ -224,7 +224,7 @@ impl Recorder {
     }
 
     /// Records the arms of a team, each as [`Self::attach`] does. A remark in the recording states
-    /// which member of the team each arm is.
+    /// the number of each arm in the team.
     ///
     /// # Errors
     /// Returns the errors of [`Self::attach`]. Members before the failed member stay attached.
