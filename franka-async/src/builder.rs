@@ -174,10 +174,11 @@ impl Builder {
 
     /// Sets whether to connect to a robot whose reported poses disagree with its model with all
     /// known [link lengths](crate::model::geometry::Lengths::KNOWN). This is off by default: such a
-    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the robot is accepted,
-    /// goals move the arm to poses as the robot reports them; in simulation, the errors were up to
-    /// 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by the geometric
-    /// error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`) states it.
+    /// robot is refused as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). If the
+    /// robot is accepted, goals move the arm to poses as the robot reports them; in simulation, the
+    /// errors were up to 1 mm and 3 mrad. Inverse kinematics, clearances and previews are wrong by
+    /// the geometric error. [`Robot::geometry_check`] returns this error, and a warning (`tracing`)
+    /// states it.
     pub fn accept_geometry_error(mut self, accept: bool) -> Self {
         self.accept_geometry_error = accept;
         self

@@ -25,8 +25,9 @@ pub struct Friction {
     /// at 0.45, which is 0.05 to 0.15.
     pub stribeck_speed: JointVector,
     /// Viscous friction, `[N·m·s/rad]`. Sources: ETH PdZ, 0 to 1.2; Gaz et al., 0 to 0.17; a
-    /// recorded Franka Research 3, up to 1.1 on joint 1. In the recorded experiment with four
-    /// gains, joints 1, 3 and 4 swing as with 0.2 more than these.
+    /// recorded Franka Research 3, up to 1.1 on joint 1.
+    ///
+    /// In the recorded experiment with soft springs, joints 1, 3 and 4 swing as with more friction.
     pub viscous: JointVector,
     /// Elasticity before a joint slides; `None` for smooth friction.
     pub bristle: Option<Bristle>,
