@@ -3,6 +3,7 @@
 
 use std::future::IntoFuture;
 use std::sync::{PoisonError, RwLock, RwLockWriteGuard};
+use std::thread;
 use std::time::Duration;
 
 use franka_async::error::GoalError;
@@ -10,7 +11,7 @@ use franka_async::goal::{Budget, Deviation, Tuning};
 use franka_async::state::RobotMode;
 use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
 use franka_sim::Running;
-use tokio::runtime::Runtime;
+use tokio::runtime::{Builder, Runtime};
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
 use tracing::{Event, Subscriber};
@@ -172,6 +173,33 @@ fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
         last.await.unwrap().expect("it arrives");
         for superseded in back {
             assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
+        }
+        scene.robot.shutdown().await;
+    });
+}
+
+/// The bridge finds the cancellation and the plan at the same time.
+#[test]
+fn path_cancelled_before_its_plan_is_ready_supersedes_nothing() {
+    let _alone = alone();
+    let runtime = Builder::new_current_thread().enable_all().build();
+    runtime.expect("a runtime starts").block_on(async {
+        let scene = Scene::new().await;
+        for _ in 0..10 {
+            let release = hold();
+            let motion = scene.robot.move_through([scene.way[0]]);
+            let older = tokio::spawn(motion.into_future());
+            robot_time(&scene.robot, 50).await;
+            let motion = scene.robot.move_through([scene.way[1]]);
+            let handle = motion.handle();
+            let cancelled = tokio::spawn(motion.into_future());
+            robot_time(&scene.robot, 50).await;
+            handle.cancel();
+            drop(release);
+            // The only thread of the runtime waits, so the bridge does not run meanwhile.
+            thread::sleep(Duration::from_millis(30));
+            assert_eq!(cancelled.await.unwrap(), Err(MotionError::Stopped));
+            older.await.unwrap().expect("it arrives");
         }
         scene.robot.shutdown().await;
     });

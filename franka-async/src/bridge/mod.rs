@@ -213,10 +213,11 @@ impl Bridge {
                     None => self.begin_closing(),
                 },
                 Some(report) = reports.recv() => self.on_report(report),
-                path = planned(&mut self.planning) => {
+                // Earlier inputs come first: one of them may cancel the path.
+                () = planned(&mut self.planning) => if inbox.is_empty() {
                     self.catch_up();
-                    self.on_planned(path);
-                }
+                    self.on_planned();
+                },
                 () = sleep_until(deadline) => {
                     if closing.is_some_and(|closing| closing <= world::now()) {
                         tracing::error!("the motion did not end in time; closing the connection \

@@ -26,6 +26,8 @@ pub(super) struct Planning {
     /// Number of plans that may still be made if the arm has left the start in the meantime.
     plans_left: u32,
     task: JoinHandle<Result<Chunk, PathError>>,
+    /// Output of the task.
+    planned: Option<Result<Chunk, PathError>>,
 }
 
 /// If a joint is further than this from the start of a path, `[rad]`, the path is planned anew. If
@@ -41,22 +43,25 @@ pub(super) const PLANS: u32 = 4;
 /// one.
 const PENDING_MAX: usize = 4;
 
-/// Waits for the plan of the newest path and returns it. Without pending paths, this waits forever.
+/// Waits for the plan of the newest path. Without pending paths, this waits forever.
 ///
 /// # Cancel safety
 /// Dropping the future loses nothing.
-pub(super) async fn planned(pending: &mut [Planning]) -> Result<Chunk, PathError> {
-    let Some(planning) = pending.last_mut() else {
+pub(super) async fn planned(pending: &mut [Planning]) {
+    let Some(newest) = pending.last_mut() else {
         return std::future::pending().await;
     };
-    match (&mut planning.task).await {
-        Ok(planned) => planned,
+    if newest.planned.is_some() {
+        return;
+    }
+    newest.planned = match (&mut newest.task).await {
+        Ok(planned) => Some(planned),
         Err(failed) => match failed.try_into_panic() {
             Ok(panic) => resume_unwind(panic),
             // The runtime ends, and this task ends with it.
             Err(_) => std::future::pending().await,
         },
-    }
+    };
 }
 
 impl Planning {
@@ -102,22 +107,24 @@ impl Bridge {
             start,
             plans_left,
             task: world::spawn_blocking(plan),
+            planned: None,
         });
     }
 
-    /// Begins or refuses the newest motion, whose path has been planned.
-    pub(super) fn on_planned(&mut self, planned: Result<Chunk, PathError>) {
-        let Some(planning) = self.planning.pop() else {
-            return;
-        };
-        let Planning {
+    /// Begins or refuses the newest motion if its path has been planned.
+    pub(super) fn on_planned(&mut self) {
+        let Some(Planning {
             motion,
             waypoints,
             replies,
             start,
             plans_left,
             task: _,
-        } = planning;
+            planned: Some(planned),
+        }) = self.planning.pop_if(|newest| newest.planned.is_some())
+        else {
+            return;
+        };
         let id = motion.motion.id();
         let path = match planned {
             Ok(path) => path,
