@@ -16,8 +16,6 @@ pub use crate::goal::OnTimeout;
 #[doc(no_inline)]
 pub use crate::state::{RobotMode, RobotState};
 #[doc(no_inline)]
-pub use crate::supervision::Policy;
-#[doc(no_inline)]
 pub use crate::{
     Arm, Engage, Motion, MotionError, MotionReport, Offset, Pose, READY, Realtime, Robot,
 };

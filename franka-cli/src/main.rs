@@ -32,7 +32,9 @@ mod values;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{ArgAction, Parser};
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::prelude::*;
 
 use command::Command;
 use report::report_usage;
@@ -46,9 +48,11 @@ use report::report_usage;
 #[derive(Debug, Parser)]
 #[command(name = "franka", version, after_help = ending::TABLE, subcommand_required = true, arg_required_else_help = true)]
 struct Program {
-    /// Log the driver's actions to standard error
-    #[arg(short, long, global = true)]
-    verbose: bool,
+    /// Log the driver's actions to standard error; -vv logs more, RUST_LOG selects modules
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
+    #[command(flatten)]
+    color: colorchoice_clap::Color,
     #[command(subcommand)]
     command: Command,
 }
@@ -64,21 +68,44 @@ fn main() -> ExitCode {
             error.exit()
         }
     };
-    if program.verbose || program.command.logs() {
-        tracing_subscriber::fmt()
-            .with_writer(std::io::stderr)
-            .with_ansi(has_colours(&std::io::stderr()))
-            .with_target(false)
-            .init();
-    }
+    program.color.write_global();
+    let verbose = program.verbose.max(program.command.logs().into());
+    start_log(verbose);
     match program.command.run() {
         Ok(ending) => ending.code(),
         Err(error) => report::report(&error, json).code(),
     }
 }
 
-/// Returns true if this stream shows colours. As for all other output, this depends on NO_COLOR,
-/// CLICOLOR_FORCE and similar variables.
+/// Logs to standard error, at the levels of RUST_LOG or as chosen by the number of `-v`.
+fn start_log(verbose: u8) {
+    let level = match verbose {
+        0 => LevelFilter::OFF,
+        1 => LevelFilter::INFO,
+        _ => LevelFilter::DEBUG,
+    };
+    let mut levels = Targets::new()
+        .with_default(level.min(LevelFilter::INFO))
+        .with_target("franka", level);
+    if let Ok(chosen) = std::env::var("RUST_LOG") {
+        match chosen.parse::<Targets>() {
+            Ok(chosen) if chosen.iter().next().is_some() => levels = chosen,
+            Ok(_) => (),
+            // The variable may be meant for another program and must not prevent a stop.
+            Err(error) => output::say(&format!("note: RUST_LOG={chosen} is ignored: {error}")),
+        }
+    }
+    let log = tracing_subscriber::fmt::layer()
+        .with_writer(std::io::stderr)
+        .with_ansi(has_colours(&std::io::stderr()))
+        .with_target(false);
+    tracing_subscriber::registry()
+        .with(log.with_filter(levels))
+        .init();
+}
+
+/// Returns true if this stream shows colours. As for all other output, this depends on --color,
+/// NO_COLOR, CLICOLOR_FORCE and similar variables.
 fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }

@@ -33,6 +33,29 @@ fn colours_follow_the_rules_of_no_color() {
     };
     assert!(state("CLICOLOR_FORCE").contains('\x1b'));
     assert!(!state("NO_COLOR").contains('\x1b'));
+    let mut command = home.command(&["state", &sim.address(), "--color=always"]);
+    let output = command.env("NO_COLOR", "1").output().expect("it runs");
+    assert!(output.stdout.contains(&b'\x1b'));
+}
+
+#[test]
+fn logs_have_the_levels_of_flags_and_of_rust_log() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let address = sim.address();
+    let log = |option: Option<&str>, variable: &str| {
+        let mut command = home.command(&["state", &address]);
+        let command = command.args(option).env("RUST_LOG", variable);
+        let output = command.output().expect("it runs");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    assert_eq!(log(None, ""), "");
+    for option in ["-v", "-vv"] {
+        assert!(log(Some(option), "").contains("INFO"));
+    }
+    assert!(log(None, "franka_async=info").contains("INFO"));
+    assert_eq!(log(Some("-v"), "nothing=info"), "");
+    let note = "note: RUST_LOG=a=b=c is ignored: ";
+    assert!(log(None, "a=b=c").starts_with(note));
 }
 
 #[test]
