@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
+use axum::Router;
 use franka_async::connection::admission::Token;
 use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
@@ -14,6 +15,7 @@ use franka_async::nalgebra::Vector3;
 use franka_async::{Pose, READY, Realtime, Robot};
 use franka_dash::Options;
 use franka_sim::{Fingers, Running, Sim, Tool};
+use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::task::JoinHandle;
 
@@ -26,6 +28,12 @@ pub(crate) struct Served {
     pub(crate) folder: PathBuf,
     pub(crate) running: Arc<Running>,
     runtime: Runtime,
+}
+
+/// Serves pages that know the address of each viewer; without it, they require a token.
+fn serve(listener: TcpListener, pages: Router) {
+    let pages = pages.into_make_service_with_connect_info::<SocketAddr>();
+    tokio::spawn(axum::serve(listener, pages).into_future());
 }
 
 impl Served {
@@ -48,9 +56,7 @@ impl Served {
             let options = options.patience(PATIENCE).keep_out([block()]);
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
-            let router = franka_dash::router(robot.clone(), options);
-            let router = router.into_make_service_with_connect_info::<SocketAddr>();
-            tokio::spawn(axum::serve(listener, router).into_future());
+            serve(listener, franka_dash::router(robot.clone(), options));
             anyhow::Ok((address, robot, gripper, running))
         })?;
         Ok(Self {
@@ -70,8 +76,7 @@ impl Served {
         let address = runtime.block_on(async {
             let listener = franka_dash::bind(address, &options).await?;
             let address = listener.local_addr()?;
-            let router = franka_dash::router(robot, options);
-            tokio::spawn(async move { axum::serve(listener, router).await });
+            serve(listener, franka_dash::router(robot, options));
             anyhow::Ok(address)
         })?;
         Ok((address, runtime))
@@ -85,9 +90,7 @@ impl Served {
             let address = listener.local_addr()?;
             let robots = [("left", &self.robot), ("right", &other.robot)];
             let robots = robots.map(|(name, robot)| (name, robot.clone(), options.clone()));
-            let pages = franka_dash::several(robots)?;
-            let pages = pages.into_make_service_with_connect_info::<SocketAddr>();
-            tokio::spawn(axum::serve(listener, pages).into_future());
+            serve(listener, franka_dash::several(robots)?);
             Ok(address)
         })
     }
@@ -98,9 +101,7 @@ impl Served {
             let options = Options::default().token(Token::new(token)?);
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
-            let page = franka_dash::router(self.robot.clone(), options);
-            let page = page.into_make_service_with_connect_info::<SocketAddr>();
-            tokio::spawn(axum::serve(listener, page).into_future());
+            serve(listener, franka_dash::router(self.robot.clone(), options));
             Ok(address)
         })
     }
