@@ -19,7 +19,7 @@
 //! | [`figures`] | no benchmark: statistics for the programs |
 //! | [`guarded`] | the same with every guard on, for each kind of goal |
 //! | [`inverse`] | all postures of a pose, joint velocities in a box |
-//! | [`line`] | the decision about a straight line to a pose |
+//! | [`mod@line`] | the decision about a straight line to a pose |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for axes in motion |
 //! | [`record`] | bytes and processor time of a recording, in virtual time |

@@ -2,19 +2,15 @@
 //! reason why it has none. Programs of the book and the examples name no other crate of ours.
 //!
 //! ```text
-//! lib.rs ── pub mod x; ──> files ── pub use a::B, pub struct C ──> module, name, path of the item
+//! cargo doc ──> all.html: items ──> page of each: fields, variants, methods, constants
 //! ```
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::mem;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
-use syn::visit::{self, Visit};
-use syn::{Ident, Item, UseTree, Visibility};
+use anyhow::{Context as _, bail};
 
-use crate::metadata;
 use xtask::workspace::Workspace;
 
 /// Number of public names at the root must be below this.
@@ -23,153 +19,28 @@ const ROOT_MAX: usize = 40;
 /// The module whose names are also in other modules.
 const PRELUDE: &str = "prelude";
 
-/// Python name of each name: `name = franka_async.Name`, or `name: reason for its absence`. The
-/// tests of the package look the names up.
+/// Python name of each name: `name = franka_async.Name`, or `name: reason for its absence`. A line
+/// about a module is about all of its names. The tests of the package look the names up.
 const IN_PYTHON: &str = "franka-py/tests/rust_names.txt";
 
-/// Our public names in Rust.
-#[derive(Default)]
-pub(crate) struct Ours {
-    /// Names that each public module of `franka-async` offers, and the paths of the items behind
-    /// them. The root is the module "".
-    modules: BTreeMap<String, BTreeMap<String, String>>,
-    /// Fields and variants of the types of all our crates.
-    pub(crate) parts: Parts,
-}
+/// Crates that programs use, and the module of their names.
+const CRATES: [(&str, &str); 2] = [("franka_async", ""), ("franka_sim", "franka_sim")];
 
-/// Names of declarations: members by `struct S`, `enum E`, or `S` for its functions and constants,
-/// and free functions and constants by "". Types of the same name in several modules are merged.
+/// Public names, as rustdoc shows them.
 #[derive(Debug, Default)]
-pub(crate) struct Parts {
-    of: BTreeMap<String, BTreeSet<String>>,
-    /// The words in macros, which may write functions of any type.
-    in_macros: BTreeSet<String>,
-    /// The declaration that is read, a key of `of`.
-    owner: String,
-}
-
-impl Parts {
-    /// Reads the files that match these patterns of git.
-    pub(crate) fn read(workspace: &Workspace, files: &[impl AsRef<str>]) -> anyhow::Result<Self> {
-        let mut parts = Self::default();
-        let files: Vec<_> = files.iter().map(AsRef::as_ref).collect();
-        for path in workspace.files(&files)? {
-            let text = fs::read_to_string(workspace.root().join(&path))?;
-            let file = syn::parse_file(&text).with_context(|| path.display().to_string())?;
-            parts.visit_file(&file);
-        }
-        Ok(parts)
-    }
-
-    /// The fields of `struct S`, or the variants of `enum E`.
-    pub(crate) fn of(&self, of: &str) -> BTreeSet<&str> {
-        let parts = self.of.get(of).into_iter().flatten();
-        parts.map(String::as_str).collect()
-    }
-
-    /// True if a type of this name may have this member, or if it is a type or free itself.
-    fn has(&self, name: &str, member: &str) -> bool {
-        let keys = |name: &str| {
-            [
-                name.into(),
-                format!("struct {name}"),
-                format!("enum {name}"),
-            ]
-        };
-        let mut of = keys(name).into_iter().filter_map(|key| self.of.get(&key));
-        let is_free = self.of("").contains(member)
-            || keys(member).iter().any(|key| self.of.contains_key(key));
-        is_free || of.any(|members| members.contains(member) || self.in_macros.contains(member))
-    }
-
-    /// True if any type may have this member.
-    fn any_has(&self, member: &str) -> bool {
-        self.in_macros.contains(member) || self.of.values().any(|of| of.contains(member))
-    }
-
-    fn insert(&mut self, name: &Ident) {
-        let of = self.of.entry(self.owner.clone()).or_default();
-        of.insert(name.to_string());
-    }
-
-    fn within(&mut self, owner: String, visit: impl FnOnce(&mut Self)) {
-        self.of.entry(owner.clone()).or_default();
-        let outer = mem::replace(&mut self.owner, owner);
-        visit(self);
-        self.owner = outer;
-    }
-}
-
-impl<'a> Visit<'a> for Parts {
-    fn visit_item_struct(&mut self, item: &'a syn::ItemStruct) {
-        self.within(format!("struct {}", item.ident), |it| {
-            visit::visit_item_struct(it, item)
-        });
-    }
-
-    fn visit_item_enum(&mut self, item: &'a syn::ItemEnum) {
-        self.within(format!("enum {}", item.ident), |it| {
-            item.variants
-                .iter()
-                .for_each(|variant| it.insert(&variant.ident));
-        });
-    }
-
-    fn visit_item_trait(&mut self, item: &'a syn::ItemTrait) {
-        self.within(item.ident.to_string(), |it| {
-            visit::visit_item_trait(it, item)
-        });
-    }
-
-    fn visit_item_impl(&mut self, item: &'a syn::ItemImpl) {
-        if let (syn::Type::Path(path), None) = (&*item.self_ty, &item.trait_)
-            && let Some(of) = path.path.segments.last()
-        {
-            self.within(of.ident.to_string(), |it| visit::visit_item_impl(it, item));
-        }
-    }
-
-    fn visit_field(&mut self, field: &'a syn::Field) {
-        field.ident.iter().for_each(|name| self.insert(name));
-    }
-
-    fn visit_signature(&mut self, function: &'a syn::Signature) {
-        self.insert(&function.ident);
-    }
-
-    fn visit_impl_item_const(&mut self, item: &'a syn::ImplItemConst) {
-        self.insert(&item.ident);
-    }
-
-    fn visit_trait_item_const(&mut self, item: &'a syn::TraitItemConst) {
-        self.insert(&item.ident);
-    }
-
-    fn visit_item_const(&mut self, item: &'a syn::ItemConst) {
-        self.insert(&item.ident);
-    }
-
-    /// Names in the bodies of functions do not count.
-    fn visit_block(&mut self, _: &'a syn::Block) {}
-
-    fn visit_macro(&mut self, item: &'a syn::Macro) {
-        let text = item.tokens.to_string();
-        let words = text.split(|it: char| !it.is_alphanumeric() && it != '_');
-        let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-        for pair in words
-            .windows(2)
-            .filter(|pair| ["struct", "enum"].contains(&pair[0]))
-        {
-            self.of.entry(pair.join(" ")).or_default();
-        }
-        self.in_macros.extend(words.into_iter().map(str::to_owned));
-    }
+pub(crate) struct Ours {
+    /// Members of each item by its path, as rustdoc writes them: `variant.Stopped`, `method.new`.
+    items: BTreeMap<String, BTreeSet<String>>,
+    modules: BTreeSet<String>,
 }
 
 /// Fails with every name that breaks a rule; returns the names.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Ours> {
-    let ours = Ours::read(workspace)?;
-    let at_root = ours.modules[""].len();
+    let mut ours = Ours::default();
+    for (library, prefix) in CRATES {
+        ours.read(&workspace.target().join("doc").join(library), prefix)?;
+    }
+    let at_root = ours.names().filter(|name| !name.contains("::")).count();
     let table = workspace.root().join(IN_PYTHON);
     let table = fs::read_to_string(&table).with_context(|| format!("cannot read {IN_PYTHON}"))?;
     let mut found = ours.untold(&table);
@@ -196,147 +67,99 @@ fn names_another_crate(line: &str) -> bool {
 }
 
 impl Ours {
-    /// Reads the sources of our crates.
-    fn read(workspace: &Workspace) -> anyhow::Result<Self> {
-        let mut ours = Self::default();
-        let mut sources = Vec::new();
-        for (name, root) in metadata::crates(workspace)? {
-            if name == "franka_async" {
-                ours.read_module(&root, "", true)?;
-            }
-            if name.starts_with("franka_") && root.ends_with(Path::new("src/lib.rs")) {
-                let directory = root.parent().context("a file is in a directory")?;
-                sources.push(format!("{}/*.rs", directory.display()));
-            }
+    /// Reads the pages of a crate.
+    fn read(&mut self, pages: &Path, prefix: &str) -> anyhow::Result<()> {
+        let read = |page: &Path| {
+            let path = pages.join(page);
+            fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+        };
+        let list = read("all.html".as_ref())?;
+        let links = texts(&list, "<li><a href=\"");
+        for page in links.filter(|page| page.ends_with(".html")) {
+            self.insert(prefix, &page, &read(page.as_ref())?);
         }
-        ours.parts = Parts::read(workspace, &sources)?;
-        Ok(ours)
+        for module in self.modules.clone().into_iter().chain([prefix.to_owned()]) {
+            let path = module.replace("::", "/");
+            let path = Path::new(&path).strip_prefix(prefix);
+            let Ok(path) = path else { continue };
+            let html = read(&path.join("index.html"))?;
+            let exported = texts(&html, "id=\"reexport.");
+            let exported = exported.map(|name| (join(&module, &name), BTreeSet::new()));
+            self.items.extend(exported);
+        }
+        Ok(())
+    }
+
+    /// Adds the item that this page describes, such as `goal/struct.Gains.html`.
+    fn insert(&mut self, prefix: &str, page: &str, html: &str) {
+        let (module, file) = page.rsplit_once('/').unwrap_or(("", page));
+        let module = module.replace('/', "::");
+        let module = match prefix {
+            "" => module,
+            prefix => join(prefix, &module).trim_end_matches("::").to_owned(),
+        };
+        let mut path = module.as_str();
+        while !path.is_empty() && self.modules.insert(path.to_owned()) {
+            path = path.rsplit_once("::").map_or("", |(outer, _)| outer);
+        }
+        let (kind, name) = file.split_once('.').unwrap_or_default();
+        let name = name.trim_end_matches(".html");
+        // The page of an alias repeats the members of the type.
+        let is_alias = kind == "type";
+        let members = texts(html, " id=\"").filter(|_| !is_alias).collect();
+        self.items.insert(join(&module, name), members);
+    }
+
+    /// The names of `franka-async`, modules included.
+    fn names(&self) -> impl Iterator<Item = &String> {
+        let of_driver = |name: &&String| !name.starts_with("franka_sim");
+        self.items.keys().chain(&self.modules).filter(of_driver)
+    }
+
+    /// The members of this kind (`variant`, `structfield`) of the items called `name`.
+    pub(crate) fn members(&self, kind: &str, name: &str) -> BTreeSet<&str> {
+        let of = |path: &str| path.rsplit("::").next() == Some(name);
+        let items = self.items.iter().filter(|(path, _)| of(path));
+        let members = items.flat_map(|(_, members)| members);
+        let members = members.filter_map(|it| it.strip_prefix(kind)?.strip_prefix('.'));
+        members.filter(|member| !member.contains('.')).collect()
     }
 
     /// The enumerations of errors: `MotionError`, and the enumerations of the module `error`.
-    pub(crate) fn errors(&self) -> Vec<String> {
+    pub(crate) fn errors(&self) -> Vec<&str> {
         const ENDINGS: [&str; 5] = ["Error", "Fault", "Lapse", "Reason", "Unready"];
-        let names = self.modules.get("error").into_iter().flatten();
-        let is_error = |name: &&String| ENDINGS.iter().any(|ending| name.ends_with(ending));
-        let names = names.map(|(name, _)| name).filter(is_error).cloned();
-        let is_enumeration = |name: &String| !self.parts.of(&format!("enum {name}")).is_empty();
-        let motion = ["MotionError".to_owned()];
-        names.chain(motion).filter(is_enumeration).collect()
+        let names = self.items.keys();
+        let names = names.filter_map(|path| match path.as_str() {
+            "MotionError" => Some("MotionError"),
+            path => path.strip_prefix("error::"),
+        });
+        let is_error = |name: &&str| ENDINGS.iter().any(|ending| name.ends_with(ending));
+        let errors = names.filter(is_error);
+        errors
+            .filter(|it| !self.members("variant", it).is_empty())
+            .collect()
     }
 
     /// True if a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
     /// `.method(..)` of any type, `franka_sim::Sim::fr3`.
     pub(crate) fn has(&self, span: &str) -> bool {
         let path = span.split(['(', '<', ' ']).next().unwrap_or_default();
-        if let Some(member) = path.strip_prefix('.') {
-            return self.parts.any_has(member);
-        }
         let path = path.strip_prefix("franka_async::").unwrap_or(path);
-        let (outer, last) = path.rsplit_once("::").unwrap_or(("", path));
-        let item = |module: &str, name: &str| self.modules.get(module)?.get(name);
-        if self.modules.contains_key(path) || item(outer, last).is_some() {
+        let is_in = |members: &BTreeSet<String>, member: &str| {
+            let ids = members.iter().filter_map(|id| id.split('.').nth(1));
+            ids.into_iter()
+                .any(|it| it.split('-').next() == Some(member))
+        };
+        if let Some(member) = path.strip_prefix('.') {
+            return self.items.values().any(|members| is_in(members, member));
+        }
+        if self.items.contains_key(path) || self.modules.contains(path) {
             return true;
         }
-        let (module, of) = outer.rsplit_once("::").unwrap_or(("", outer));
-        let found = item(module, of);
-        // A module of another crate may be exported as a whole.
-        let first = outer.split("::").next().unwrap_or_default();
-        let is_module = first.starts_with(char::is_lowercase) && item("", first).is_some();
-        // The item may have another name where it is declared.
-        let of = found.map_or(of, |path| path.rsplit("::").next().unwrap_or(of));
-        (found.is_some() || is_module || first == "franka_sim") && self.parts.has(of, last)
-    }
-
-    fn read_module(&mut self, file: &Path, module: &str, is_root: bool) -> anyhow::Result<()> {
-        let text =
-            fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let parsed =
-            syn::parse_file(&text).with_context(|| format!("cannot parse {}", file.display()))?;
-        let directory = match is_root || file.ends_with("mod.rs") {
-            true => file.with_file_name(""),
-            false => file.with_extension(""),
-        };
-        self.scan(&parsed.items, module, &directory)
-    }
-
-    fn scan(&mut self, items: &[Item], module: &str, directory: &Path) -> anyhow::Result<()> {
-        self.modules.entry(module.to_owned()).or_default();
-        for item in items {
-            let (visibility, name) = match item {
-                Item::Const(item) => (&item.vis, &item.ident),
-                Item::Enum(item) => (&item.vis, &item.ident),
-                Item::Fn(item) => (&item.vis, &item.sig.ident),
-                Item::Mod(item) => (&item.vis, &item.ident),
-                Item::Static(item) => (&item.vis, &item.ident),
-                Item::Struct(item) => (&item.vis, &item.ident),
-                Item::Trait(item) => (&item.vis, &item.ident),
-                Item::Type(item) => (&item.vis, &item.ident),
-                Item::Union(item) => (&item.vis, &item.ident),
-                Item::Use(item) if matches!(item.vis, Visibility::Public(_)) => {
-                    self.export(&item.tree, module, Vec::new())?;
-                    continue;
-                }
-                Item::Macro(item) => {
-                    let exported =
-                        |attribute: &syn::Attribute| attribute.path().is_ident("macro_export");
-                    ensure!(!item.attrs.iter().any(exported), "a macro at the root");
-                    continue;
-                }
-                _ => continue,
-            };
-            if !matches!(visibility, Visibility::Public(_)) {
-                continue;
-            }
-            let name = name.to_string();
-            let path = join(module, &name);
-            self.insert(module, name.clone(), path.clone());
-            let Item::Mod(item) = item else { continue };
-            match &item.content {
-                Some((_, items)) => self.scan(items, &path, &directory.join(&name))?,
-                None => {
-                    let within = directory.join(&name).join("mod.rs");
-                    let beside = directory.join(&name).with_extension("rs");
-                    let file = if within.exists() { within } else { beside };
-                    self.read_module(&file, &path, false)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn export(&mut self, tree: &UseTree, module: &str, path: Vec<String>) -> anyhow::Result<()> {
-        let under = |name: &syn::Ident| {
-            let mut path = path.clone();
-            // The first segment of a path in this crate.
-            if !["crate", "self"].iter().any(|own| name == own) {
-                path.push(name.to_string());
-            }
-            path
-        };
-        match tree {
-            UseTree::Path(inner) => self.export(&inner.tree, module, under(&inner.ident))?,
-            UseTree::Name(name) => {
-                let path = under(&name.ident);
-                let name = path.last().context("a name")?.clone();
-                self.insert(module, name, path.join("::"));
-            }
-            UseTree::Rename(rename) => {
-                let path = under(&rename.ident);
-                self.insert(module, rename.rename.to_string(), path.join("::"));
-            }
-            UseTree::Group(group) => {
-                for tree in &group.items {
-                    self.export(tree, module, path.clone())?;
-                }
-            }
-            UseTree::Glob(_) => bail!("{module}: a glob, whose names cannot be counted"),
-        }
-        Ok(())
-    }
-
-    fn insert(&mut self, module: &str, name: String, path: String) {
-        let names = self.modules.entry(module.to_owned()).or_default();
-        names.insert(name, path);
+        path.rsplit_once("::").is_some_and(|(item, member)| {
+            let members = self.items.get(item);
+            members.is_some_and(|members| is_in(members, member))
+        })
     }
 
     /// A line for each name that is missing in the table, and for each name in the table that does
@@ -348,22 +171,27 @@ impl Ours {
         };
         let lines = table.lines().filter(|line| !line.starts_with('#'));
         let told: BTreeSet<String> = lines.filter_map(told).collect();
-        let modules = self
-            .modules
-            .iter()
-            .filter(|(module, _)| **module != PRELUDE);
-        let names: BTreeSet<String> = modules
-            .flat_map(|(module, names)| names.keys().map(|name| join(module, name)))
-            .filter(|name| !self.modules.contains_key(name))
-            .collect();
-        let missing = names.difference(&told);
-        let missing = missing.map(|name| {
+        let names: BTreeSet<&String> = self.names().collect();
+        let is_told = |name: &str| {
+            let outer = name.match_indices("::").map(|(end, _)| &name[..end]);
+            outer
+                .chain([name])
+                .any(|it| told.contains(it) || it == PRELUDE)
+        };
+        let items = names.iter().filter(|name| !self.modules.contains(**name));
+        let missing = items.filter(|name| !is_told(name)).map(|name| {
             format!("{IN_PYTHON} lacks {name} (`{name} = franka_async.X` or `{name}: why not`)")
         });
-        let gone = told.difference(&names);
+        let gone = told.iter().filter(|name| !names.contains(name));
         let gone = gone.map(|name| format!("{IN_PYTHON} has {name}, which franka-async lacks"));
         missing.chain(gone).collect()
     }
+}
+
+/// Each text between `begin` and the next quotation mark.
+fn texts<'a>(html: &'a str, begin: &'a str) -> impl Iterator<Item = String> + 'a {
+    let parts = html.split(begin).skip(1);
+    parts.filter_map(|part| Some(part.split('"').next()?.to_owned()))
 }
 
 /// The path of a name of a module.
@@ -388,13 +216,18 @@ mod tests {
     #[test]
     fn each_name_has_one_in_python_or_a_reason() {
         let mut ours = Ours::default();
-        let source = "pub use a::{B as C, d::{self}}; pub mod m { pub fn f() {} } pub mod prelude {} \
-                      struct P; pub(crate) use a::Q;";
-        let items = syn::parse_file(source).expect("it is Rust").items;
-        ours.scan(&items, "", Path::new("")).expect("it is read");
+        for page in [
+            "struct.C.html",
+            "d/e/enum.E.html",
+            "m/fn.f.html",
+            "prelude/struct.C.html",
+        ] {
+            ours.insert("", page, "");
+        }
+        ours.insert("franka_sim", "struct.Sim.html", "");
         let told = "C = franka_async.C\nd: a module\nm::f: a generic function\n";
         assert_eq!(ours.untold(told), Vec::<String>::new());
-        let found = ours.untold("# see: above\nC = franka_async.C\nd: x\nm::g: gone\n");
+        let found = ours.untold("# see: above\nC = franka_async.C\nd::e: x\nm::g: gone\n");
         assert!(found[0].contains(" lacks m::f "), "{found:?}");
         assert!(
             found[1].ends_with("has m::g, which franka-async lacks"),
@@ -405,26 +238,40 @@ mod tests {
 
     #[test]
     fn methods_fields_variants_and_constants_are_members() {
-        let mut parts = Parts::default();
-        let source = "pub struct S { pub a: u8 } enum E { C } trait T { fn d(); } \
-             impl S { pub fn e() {} pub const G: u8 = 0; } mod m { enum E { H } } \
-             impl X for S { fn z() {} } macro_rules! m { ($t:ident) => { impl $t { pub fn i(self) {} } struct M; } }";
-        parts.visit_file(&syn::parse_file(source).expect("it is Rust"));
-        for member in [
-            "S a", "E C", "T d", "S e", "S G", "E H", "S i", "Y M", "Y S",
+        let mut ours = Ours::default();
+        let ids = [
+            "variant.A",
+            "variant.B.field.x",
+            "method.new",
+            "method.new-1",
+            "structfield.q",
+        ];
+        let html = ids
+            .map(|id| format!("<section id=\"{id}\" class=\"x\">"))
+            .concat();
+        ours.insert("", "error/enum.SomeError.html", &html);
+        ours.insert("franka_sim", "struct.Sim.html", &html);
+        assert_eq!(ours.members("variant", "SomeError"), BTreeSet::from(["A"]));
+        assert_eq!(ours.members("structfield", "Sim"), BTreeSet::from(["q"]));
+        assert_eq!(ours.errors(), ["SomeError"]);
+        for span in [
+            "error",
+            "error::SomeError::new(1)",
+            "franka_sim::Sim::q",
+            ".new",
+            ".q(..)",
         ] {
-            let (name, member) = member.split_once(' ').expect("two words");
-            assert!(parts.has(name, member), "{name}::{member}");
+            assert!(ours.has(span), "{span}");
         }
-        assert!(
-            !parts.has("S", "f")
-                && !parts.has("S", "z")
-                && !parts.has("E", "a")
-                && !parts.has("Y", "i")
-        );
-        assert!(parts.any_has("i") && !parts.any_has("z"));
-        assert_eq!(parts.of("enum E"), BTreeSet::from(["C", "H"]));
-        assert_eq!(parts.of("struct S"), BTreeSet::from(["a"]));
+        for span in [
+            "SomeError",
+            "error::SomeError::x",
+            ".x",
+            "franka_sim::Sim::z",
+            "B",
+        ] {
+            assert!(!ours.has(span), "{span}");
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::fs;
 
 use anyhow::{Context as _, ensure};
 
-use crate::names::{Ours, Parts};
+use crate::names::Ours;
 use crate::page::{Page, Table};
 use xtask::workspace::Workspace;
 
@@ -18,8 +18,7 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
         text.with_context(|| format!("cannot read {path}"))
     };
     let errors = read("docs/src/errors.md")?;
-    let state = Parts::read(workspace, &["franka-proto/src/robot/state/*.rs"])?;
-    let mut found = states(&read("docs/src/states.md")?, &state);
+    let mut found = states(&read("docs/src/states.md")?, ours);
     found.extend(variants(&errors, ours));
     let mut entries = robot_errors(&read("franka-proto/src/robot/robot_error.rs")?);
     ensure!(
@@ -92,12 +91,12 @@ fn ours_in(table: &Table, tables: &[Table], names: &str) -> Vec<String> {
 }
 
 /// The fields of the robot's state, and of values computed from it.
-fn states(page: &str, parts: &Parts) -> Vec<String> {
+fn states(page: &str, ours: &Ours) -> Vec<String> {
     let tables = Page::parse(page).tables;
     let of_robot = tables.iter().filter(|it| it.column("field") == Some(0));
     let named: BTreeSet<&str> = of_robot.flat_map(Table::names).collect();
-    let mut fields = parts.of("struct RobotState");
-    fields.extend(parts.of("struct TotalLoad"));
+    let mut fields = ours.members("structfield", "RobotState");
+    fields.extend(ours.members("structfield", "TotalLoad"));
     differences("states.md", &named, &fields)
 }
 
@@ -110,13 +109,13 @@ fn variants(page: &str, ours: &Ours) -> Vec<String> {
             continue;
         };
         let named: BTreeSet<&str> = table.names().collect();
-        let variants = ours.parts.of(&format!("enum {name}"));
+        let variants = ours.members("variant", name);
         let place = format!("errors.md: {name}");
         found.extend(differences(&place, &named, &variants));
         told.insert(name.to_owned());
     }
     let errors = ours.errors().into_iter();
-    let wanted = errors.filter(|name| !told.contains(name));
+    let wanted = errors.filter(|name| !told.contains(*name));
     found.extend(wanted.map(|name| format!("errors.md: no table of {name}")));
     found
 }
