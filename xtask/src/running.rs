@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 
 /// A program that serves others and prints its address; dropping this value ends it.
 #[derive(Debug)]
@@ -57,37 +57,6 @@ impl Drop for Running {
     }
 }
 
-/// Runs a program to its end, with each line of its output. A program that takes longer than
-/// `time_max` is killed and counts as failed.
-///
-/// # Errors
-/// If the program cannot be started, fails or is killed.
-pub fn read(
-    command: Command,
-    time_max: Duration,
-    mut each: impl FnMut(&str) + Send,
-) -> anyhow::Result<()> {
-    thread::scope(|scope| {
-        let (mut child, output) = spawn(command)?;
-        scope.spawn(move || {
-            let lines = BufReader::new(output).lines().map_while(Result::ok);
-            lines.for_each(|line| each(&line));
-        });
-        let deadline = Instant::now() + time_max;
-        loop {
-            match child.try_wait()? {
-                Some(status) if status.success() => return Ok(()),
-                Some(status) => bail!("the program failed: {status}"),
-                None if Instant::now() >= deadline => {
-                    kill(&mut child);
-                    bail!("the program took longer than {time_max:?}");
-                }
-                None => thread::sleep(POLL),
-            }
-        }
-    })
-}
-
 /// Starts a program; the pipe has both its outputs.
 fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
     let (output, end) = io::pipe()?;
@@ -109,5 +78,3 @@ fn kill(child: &mut Child) {
 /// A simulator listens within milliseconds. On a machine that is busy with a build, or under an
 /// emulator, it may take seconds.
 const READY_TIME_MAX: Duration = Duration::from_secs(20);
-
-const POLL: Duration = Duration::from_millis(50);
