@@ -4,8 +4,6 @@ use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::{Mutex, PoisonError};
-use std::{iter, thread};
 
 use anyhow::{Context as _, bail};
 
@@ -117,22 +115,6 @@ impl Workspace {
 /// it.
 pub fn is_ci() -> bool {
     env::var("CI").is_ok_and(|value| value == "true" || value == "1")
-}
-
-/// Works on all items, as many at a time as there are processors. The results have no order.
-pub fn in_parallel<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
-    let waiting = Mutex::new(items.into_iter());
-    let next = || {
-        let mut waiting = waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.next()
-    };
-    thread::scope(|scope| {
-        let worker = || iter::from_fn(next).map(&work).collect::<Vec<_>>();
-        let workers = thread::available_parallelism().map_or(1, usize::from);
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
-        let ended = workers.into_iter().map(|worker| worker.join());
-        ended.flat_map(|ended| ended.expect("no panic")).collect()
-    })
 }
 
 /// The command as typed by a user: changed variables, program, arguments.

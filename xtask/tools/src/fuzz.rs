@@ -2,13 +2,14 @@
 
 use std::fs;
 use std::process::Command;
+use std::thread;
 
 use anyhow::{Context as _, ensure};
 
 use crate::tools;
-use xtask::workspace::{Workspace, in_parallel};
+use xtask::workspace::Workspace;
 
-/// Runs each target for `runs` executions, as many targets at a time as there are processors. A
+/// Runs each target for `runs` executions, all at the same time. A
 /// finding ends its target, but not the others.
 pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     let path = tools::path_with(workspace, tools::FUZZ)?;
@@ -45,7 +46,7 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     };
     let targets: Vec<&str> = targets.lines().collect();
     ensure!(!targets.is_empty(), "there are no targets");
-    let run = |target| -> anyhow::Result<Option<&str>> {
+    let run = &|target| -> anyhow::Result<Option<&str>> {
         let output = command(target)?.output().context("cannot run cargo")?;
         let log = String::from_utf8_lossy(&output.stderr);
         if output.status.success() {
@@ -56,10 +57,14 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
         println!("{log}\n{target}: A FINDING, or it could not be run");
         Ok(Some(target))
     };
-    let found = in_parallel(targets, run)
-        .into_iter()
-        .filter_map(Result::transpose);
-    let found: Vec<&str> = found.collect::<Result<_, _>>()?;
+    let found: Vec<&str> = thread::scope(|scope| {
+        let runs = targets.into_iter().map(|it| scope.spawn(move || run(it)));
+        let ended = runs.collect::<Vec<_>>().into_iter().map(|it| it.join());
+        let found = ended.map(|it| it.expect("no panic"));
+        found
+            .filter_map(Result::transpose)
+            .collect::<Result<_, _>>()
+    })?;
     ensure!(
         found.is_empty(),
         "{}: see target/fuzz/findings",

@@ -11,7 +11,6 @@
 //! library into its output directory.
 
 use std::env;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
@@ -22,7 +21,7 @@ use xtask::workspace::Workspace;
 
 /// Makes the library available, unless it is there or the user names another one.
 pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
-    if let Some(variable) = named_by_user(workspace) {
+    if let Some(variable) = named_by_user() {
         println!("using the library of {variable}");
         return Ok(());
     }
@@ -71,19 +70,13 @@ pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
 
 /// The variable with which the user names a library. Cargo sets one of them itself, from its
 /// configuration.
-fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
-    ["MUJOCO_STATIC_LINK_DIR", "MUJOCO_DYNAMIC_LINK_DIR"]
-        .into_iter()
-        .find(|name| env::var_os(name).is_some_and(|value| !is_in(workspace.root(), &value)))
-}
-
-/// True if the configuration in `root` sets this value.
-fn is_in(root: &Path, value: &OsStr) -> bool {
-    let real = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let same = |own: &Path| real(own) == real(root);
-    let path = Path::new(value);
-    path.ends_with(Path::new(".mujoco").join(LIBRARIES))
-        && path.ancestors().nth(2).is_some_and(same)
+fn named_by_user() -> Option<&'static str> {
+    let is_of_user = |name: &&str| {
+        let directory = env::var_os(name);
+        directory.is_some_and(|it| !Path::new(&it).ends_with(LIBRARIES))
+    };
+    let names = ["MUJOCO_STATIC_LINK_DIR", "MUJOCO_DYNAMIC_LINK_DIR"];
+    names.into_iter().find(is_of_user)
 }
 
 /// The MuJoCo version for the crate `mujoco-rs`.
@@ -109,20 +102,6 @@ const WHEELS: &str = "mujoco==3.17.0 \
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_configured_directory_is_not_the_users_own() {
-        let root = Path::new("/project");
-        assert!(is_in(
-            root,
-            "/project/.mujoco/by-cargo-xtask-mujoco".as_ref()
-        ));
-        assert!(!is_in(
-            root,
-            "/home/someone/.mujoco/by-cargo-xtask-mujoco".as_ref()
-        ));
-        assert!(!is_in(root, "/opt/mujoco-3.17.0/lib".as_ref()));
-    }
 
     #[test]
     fn the_configuration_of_cargo_names_the_directory() {
