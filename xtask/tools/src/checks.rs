@@ -37,7 +37,7 @@ pub(crate) const CHECK: &[Step] = &[
     ),
     step(
         "release",
-        "Crates that can be published, one version everywhere, the form of the change log",
+        "Crates that can be published, one version everywhere",
         |workspace| release::check(workspace, release::Depth::default()),
     ),
     step(

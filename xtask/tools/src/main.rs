@@ -116,9 +116,9 @@ enum Task {
         check: bool,
     },
     /// Build the program `franka` for machines without other software: static for x86-64 and 64-bit
-    /// Arm, and for C libraries from 2.17 on. Moves a simulated robot with
-    /// each, under qemu if necessary, and packs them in `target/artefacts`: archives, packages for
-    /// Debian, a container image, bills of materials, checksums.
+    /// Arm, and for C libraries from 2.17 on. Moves a simulated robot with each, under qemu if
+    /// necessary, and packs them in `target/artefacts`: archives, packages for Debian, bills of
+    /// materials, checksums.
     Dist {
         /// Build only for these targets (may be repeated or separated by commas).
         #[arg(long, value_delimiter = ',')]

@@ -8,8 +8,6 @@ use std::path::PathBuf;
 
 use anyhow::{Context as _, bail};
 use cargo_metadata::{Metadata, Package};
-use jiff::civil::Date;
-use semver::Version;
 
 use crate::metadata;
 use xtask::realtime::succeeds;
@@ -26,17 +24,7 @@ const FILES: [&str; 4] = ["Cargo.toml", "LICENSE", "NOTICE", "README.md"];
 /// Directories that belong to the workspace.
 const LEFT_OUT: [&str; 2] = ["tests/", "target/"];
 
-/// Titles in the change log, by Keep a Changelog 1.1.0.
-const KINDS: [&str; 6] = [
-    "Added",
-    "Changed",
-    "Deprecated",
-    "Removed",
-    "Fixed",
-    "Security",
-];
-
-/// Checks besides the form.
+/// Additional checks.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Depth {
     /// Build each crate from its package; takes minutes.
@@ -59,7 +47,6 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
     if !citation.contains(&format!("\nversion: \"{version}\"\n")) {
         found.push(format!("CITATION.cff: expected version {version}"));
     }
-    found.extend(log_faults(&log));
     if depth.last {
         let set = |text: Option<&str>| text.is_some_and(|text| !text.is_empty());
         if !published(&metadata).all(|package| set(package.repository.as_deref())) {
@@ -172,29 +159,6 @@ fn package_faults(workspace: &Workspace, package: &PathBuf) -> anyhow::Result<Ve
     Ok(found)
 }
 
-/// Deviations of the change log from its form: `## [Unreleased]` first, then
-/// `## [X.Y.Z] - YYYY-MM-DD`.
-fn log_faults(log: &str) -> Vec<String> {
-    let titles = log.lines().filter_map(|line| line.strip_prefix("## "));
-    let is_title = |(index, title): (usize, &str)| match index {
-        0 => title == "[Unreleased]",
-        _ => title.strip_prefix('[').is_some_and(|title| {
-            let parts = title.split_once("] - ");
-            parts.is_some_and(|(version, date)| {
-                Version::parse(version).is_ok() && date.parse::<Date>().is_ok()
-            })
-        }),
-    };
-    let wrong = titles.enumerate().filter(|title| !is_title(*title));
-    let wrong = wrong.map(|(_, title)| title);
-    let kinds = log.lines().filter_map(|line| line.strip_prefix("### "));
-    let kinds = kinds.filter(|kind| !KINDS.contains(kind));
-    wrong
-        .chain(kinds)
-        .map(|title| format!("CHANGELOG.md: the title {title:?}"))
-        .collect()
-}
-
 /// Compares the public names with the last release, if any.
 fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let tags = workspace.git(&["tag", "--list", "v*", "--sort=-v:refname"])?;
@@ -221,23 +185,6 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-
-    #[test]
-    fn departures_of_the_change_log_from_its_form_are_faults() {
-        let log = "# Changelog\n\n## [Unreleased]\n\n### Added\n\n* a\n\n## [0.2.0] - 2026-12-24\n";
-        assert_eq!(log_faults(log), Vec::<String>::new());
-        for (from, to) in [
-            ("[Unreleased]", "Unreleased"),
-            ("[Unreleased]", "[0.3.0] - 2026-12-25"),
-            ("### Added", "### Improved"),
-            ("0.2.0", "two"),
-            ("2026-12-24", "24.12.2026"),
-            ("2026-12-24", "2026-13-24"),
-        ] {
-            let changed = log.replacen(from, to, 1);
-            assert!(!log_faults(&changed).is_empty(), "{from} -> {to}");
-        }
-    }
 
     #[test]
     fn a_manifest_has_all_that_a_reader_looks_for() {

@@ -4,12 +4,13 @@
 //! ```text
 //! standard library of the target? ── cargo zigbuild ──> franka ── static? size
 //!    ── here, or under qemu: a simulated robot, and a motion of it in virtual time
-//!    ──> target/artefacts: archive, package for Debian, bill of materials; image of all; SHA256SUMS
+//!    ──> target/artefacts: archive, package for Debian, bill of materials; SHA256SUMS
+//!    ──> target/image: the files of the image that `franka-cli/dist/image.sh` builds
 //! ```
 //!
 //! | module | content |
 //! |---|---|
-//! | this | machines, building for them, and packing with tar, cargo-deb and buildah |
+//! | this | machines, building for them, and packing with tar and cargo-deb |
 //! | `bill` | parts of the program, and their licences |
 //! | `program` | checking a built program |
 //! | `trial` | packed artefacts, used outside the repository |
@@ -147,10 +148,6 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
         };
         lines.push(format!("{}: {line}", machine.target));
     }
-    lines.push(format!(
-        "image: {}",
-        containers(workspace, &release, &image)?
-    ));
     let mut sums = workspace.program("sh");
     sums.current_dir(&release.artefacts);
     workspace.run(sums.args(["-c", "sha256sum -- * > SHA256SUMS"]))?;
@@ -355,53 +352,6 @@ fn stage_files(
         fs::write(file, output.stdout)?;
     }
     Ok(())
-}
-
-/// Makes the image of the static programs whose files are in `context`, without a daemon and
-/// without root: an OCI layout in one tar file. Returns a line about it.
-fn containers(workspace: &Workspace, release: &Release, context: &Path) -> anyhow::Result<String> {
-    let there = |it: &&str| context.join(it).exists();
-    let architectures: Vec<&str> = ["amd64", "arm64"].into_iter().filter(there).collect();
-    if architectures.is_empty() {
-        return Ok("NOT BUILT: it takes a static program".to_owned());
-    }
-    if !is_installed("buildah") {
-        ensure!(!is_ci(), "buildah is not installed");
-        return Ok("NOT BUILT: buildah is not installed".to_owned());
-    }
-    let store = empty(workspace.target().join("image-store"))?;
-    let buildah = || {
-        let mut command = workspace.program("buildah");
-        command
-            .args(["--storage-driver", "vfs", "--root"])
-            .arg(&store);
-        command.arg("--runroot").arg(store.join("run"));
-        command
-    };
-    // podman would interpret a version alone as the name of the image.
-    let name = format!("franka:{}", release.version);
-    let platforms = architectures.iter().map(|it| format!("linux/{it}"));
-    let platforms = platforms.collect::<Vec<_>>().join(",");
-    let mut build = buildah();
-    build.args(["build", "--quiet", "--isolation", "chroot"]);
-    build.args(["--platform", &platforms, "--manifest", &name]);
-    build.args(["--timestamp", &release.epoch]);
-    build.args(["--build-arg", &format!("VERSION={}", release.version)]);
-    let revision = workspace.git(&["rev-parse", "HEAD"])?;
-    build.arg(format!(
-        "--label=org.opencontainers.image.revision={revision}"
-    ));
-    build.args(["--file", "franka-cli/dist/Dockerfile"]);
-    workspace.run(build.arg(context))?;
-    let file = release
-        .artefacts
-        .join(format!("franka-{}.oci.tar", release.version));
-    let mut push = buildah();
-    push.args(["manifest", "push", "--quiet", "--all", &name]);
-    push.arg(format!("oci-archive:{}:{name}", file.display()));
-    workspace.run(&mut push)?;
-    fs::remove_dir_all(store)?;
-    Ok(format!("for {platforms}"))
 }
 
 /// An empty directory, in place of an earlier one.

@@ -10,14 +10,13 @@
 
 use std::env;
 use std::fs;
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, ensure};
+use tungstenite::client::ClientRequestBuilder;
 
 use super::program::moves;
 use super::{Machine, Release};
@@ -118,15 +117,11 @@ impl Outside {
         let (mut sim, address) = self.simulator(franka)?;
         let page = sim.address("dashboard on http://")?;
         let page = page.trim_end_matches('/');
-        let html = ask(page, "GET / HTTP/1.0", "")?;
+        let html = get(&format!("http://{page}/"))?;
         ensure!(html.contains("dash.js"), "got the page {html:?}");
-        let script = ask(page, "GET /dash.js HTTP/1.0", "")?.len();
-        let socket = ask(page, SOCKET, "")?;
-        let expected = "HTTP/1.1 101 ";
-        ensure!(
-            socket.starts_with(expected),
-            "got {socket:?}, expected {expected:?}"
-        );
+        let script = get(&format!("http://{page}/dash.js"))?.len();
+        let socket = ClientRequestBuilder::new(format!("ws://{page}/ws").parse()?);
+        tungstenite::connect(socket.with_sub_protocol("franka-dash"))?;
         moves(self.alone(franka), &address)?;
         Ok(format!(
             "franka sim with a dashboard ({script} bytes of script, a socket), franka move"
@@ -161,12 +156,12 @@ impl Outside {
         service.arg(address);
         let mut service = Running::start("service", service)?;
         let listening = service.address("listening on ")?;
-        let job = "POST /jobs HTTP/1.0\r\ncontent-type: application/json";
-        let taken = ask(&listening, job, "[0, 0, 0.05]")?;
-        ensure!(taken.starts_with("HTTP/1.0 202 "), "got {taken:?}");
+        let jobs = format!("http://{listening}/jobs");
+        let taken = ureq::post(&jobs).send_json([0.0, 0.0, 0.05])?;
+        ensure!(taken.status() == 202, "got {taken:?}");
         let outcomes = loop {
-            let outcomes = ask(&listening, "GET /jobs HTTP/1.0", "")?;
-            if !outcomes.ends_with("[]") {
+            let outcomes = get(&jobs)?;
+            if outcomes != "[]" {
                 break outcomes;
             }
             ensure!(built.elapsed() < SOON, "the job never ends");
@@ -174,7 +169,7 @@ impl Outside {
         };
         let expected = "[\"arrived\"]";
         ensure!(
-            outcomes.ends_with(expected),
+            outcomes == expected,
             "got {outcomes:?}, expected {expected}"
         );
         let mut test = self.beside(workspace.cargo());
@@ -219,6 +214,10 @@ fn unpack(workspace: &Workspace, archive: &Path, directory: &Path) -> anyhow::Re
     workspace.run(tar.arg(archive))
 }
 
+fn get(address: &str) -> anyhow::Result<String> {
+    Ok(ureq::get(address).call()?.body_mut().read_to_string()?)
+}
+
 /// The manifest of a program that finds these packages instead of a registry's packages.
 fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> String {
     let mut text = format!(
@@ -235,31 +234,7 @@ fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> Strin
     text
 }
 
-/// Response of a server on this computer: head and body, or the first line of the head if the
-/// connection stays open.
-fn ask(address: &str, head: &str, body: &str) -> anyhow::Result<String> {
-    let mut stream = TcpStream::connect(address)?;
-    stream.set_read_timeout(Some(SOON))?;
-    let length = body.len();
-    write!(
-        stream,
-        "{head}\r\nhost: {address}\r\ncontent-length: {length}\r\n\r\n{body}"
-    )?;
-    let mut stream = BufReader::new(stream);
-    let mut answer = Vec::new();
-    match head.contains("HTTP/1.0") {
-        true => stream.read_to_end(&mut answer)?,
-        false => stream.read_until(b'\n', &mut answer)?,
-    };
-    Ok(String::from_utf8_lossy(&answer).into_owned())
-}
-
-/// Begins a WebSocket, RFC 6455, with the key of its example.
-const SOCKET: &str = "GET /ws HTTP/1.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n\
-    sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\
-    sec-websocket-protocol: franka-dash";
-
-/// Time limit for every answer.
+/// Time limit for a job.
 const SOON: Duration = Duration::from_secs(60);
 
 /// Programs of the book, which users copy.
