@@ -1,5 +1,5 @@
 //! The handshake on a new command connection. `franka_proto::client::Session` defines its messages
-//! and its verdict.
+//! and its verdict. `crate::error::connecting` recognises a second client.
 
 use franka_proto::Protocol;
 use franka_proto::client::{Event, Session};

@@ -1,16 +1,15 @@
-//! Passes arbitrary viewer messages to an authority. The authority must accept or refuse every
-//! message, and no message may have a forbidden effect. A test and the fuzz target `dashboard` use
-//! this module.
+//! Passes arbitrary viewer messages to a lease. It must accept or refuse every message, and no
+//! message may have a forbidden effect. A test and the fuzz target `dashboard` use this module.
 
 use core::time::Duration;
 use std::time::Instant;
 
 use franka_async::connection::lease::Lease;
 
-use crate::authority::{Authority, DEADMAN, Effect, LEASE, Permissions};
 use crate::request::Request;
+use crate::viewer_lease::{DEADMAN, Effect, LEASE, Permissions, ViewerLease};
 
-/// Passes messages to an authority, and panics if a message has a forbidden effect.
+/// Passes messages to a lease, and panics if a message has a forbidden effect.
 ///
 /// Each line of `bytes` is a message. Its first byte is the viewer, its second byte is the time
 /// since the last message in milliseconds, and the rest is the text. The first byte of `bytes`
@@ -26,15 +25,15 @@ pub(crate) fn check(bytes: &[u8]) {
         recording: permitted & 8 != 0,
         patience: Duration::ZERO,
     };
-    let mut authority = Authority::new(permissions, Lease::default(), Instant::now());
+    let mut viewer_lease = ViewerLease::new(permissions, Lease::default(), Instant::now());
     let (mut now, mut fed) = (Duration::ZERO, Duration::ZERO);
     for line in bytes.split(|byte| *byte == b'\n') {
         let [viewer, wait, text @ ..] = line else {
             continue;
         };
         now += Duration::from_millis(u64::from(*wait));
-        authority.tick(now);
-        let before = authority.status();
+        viewer_lease.tick(now);
+        let before = viewer_lease.status();
         let silent = now - fed > DEADMAN;
         assert!(!before.holding || !silent, "moves without messages");
         let Ok(request) = serde_json::from_slice::<Request>(text) else {
@@ -43,8 +42,8 @@ pub(crate) fn check(bytes: &[u8]) {
         let (viewer, valid) = (u64::from(viewer % 4), request.check().is_ok());
         let round_trip = Some(Duration::from_millis(viewer));
         let is_stop = matches!(request, Request::Stop {});
-        let step = authority.handle(now, viewer, round_trip, request);
-        let after = authority.status();
+        let step = viewer_lease.handle(now, viewer, round_trip, request);
+        let after = viewer_lease.status();
         match &step.effect {
             None => {}
             Some(Effect::Stop) => assert!(is_stop && !after.holding),
@@ -73,8 +72,8 @@ pub(crate) fn check(bytes: &[u8]) {
         assert!(!after.holding || after.commander.is_some());
     }
     now += LEASE + Duration::from_millis(1);
-    authority.tick(now);
-    assert!(!authority.status().holding);
+    viewer_lease.tick(now);
+    assert!(!viewer_lease.status().holding);
 }
 
 /// Returns messages of every kind, in the page's format, for one run of [`check`].

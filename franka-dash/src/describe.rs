@@ -7,11 +7,11 @@ use franka_async::record::Guard;
 use franka_async::{READY, pose};
 use serde::Serialize;
 
-use crate::authority::ViewerId;
 use crate::frame;
 use crate::hub::Hub;
 use crate::request::{SPEED_MAX, SPEED_MIN, Tuning};
 use crate::simulated::Simulated;
+use crate::viewer_lease::ViewerId;
 
 /// Data about the robot, and the permissions of this viewer.
 #[derive(Debug, Serialize)]

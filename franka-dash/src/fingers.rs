@@ -8,8 +8,8 @@ use franka_async::error::GripperError;
 use franka_async::gripper::{Grasp, Gripper};
 use serde::Serialize;
 
-use crate::authority::ViewerId;
 use crate::request::GripperAction;
+use crate::viewer_lease::ViewerId;
 
 /// A Franka Hand that viewers can move.
 #[derive(Clone)]

@@ -3,14 +3,14 @@
 //! ```text
 //!  Robot or Running ──states──> hub ──newest frame, events──> viewer ──WebSocket──> page
 //!        ^                       |                               |
-//!        └── sessions, stop ─────┴──── authority <───requests────┘
+//!        └── sessions, stop ─────┴── viewer_lease <─requests─────┘
 //! ```
 //!
 //! | module | content |
 //! |---|---|
 //! | `admission` | the checks of requests for the files of a page, and of all other requests |
 //! | `any_messages` | properties that hold for any viewer messages, for tests |
-//! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
+//! | `viewer_lease` | lease, hold and deadman: a state machine without clock and sockets |
 //! | `contact` | the estimated place of a contact on the arm |
 //! | `describe` | the first message to a page |
 //! | `fingers` | the gripper |
@@ -74,7 +74,6 @@
 mod admission;
 #[cfg(test)]
 mod any_messages;
-mod authority;
 mod contact;
 mod describe;
 mod fingers;
@@ -94,6 +93,7 @@ mod simulated;
 mod source;
 mod statistics;
 mod viewer;
+mod viewer_lease;
 mod way;
 
 use std::io;

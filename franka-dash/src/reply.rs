@@ -3,7 +3,6 @@
 use franka_async::state::WrenchTare;
 use serde::Serialize;
 
-use crate::authority;
 use crate::contact::Contact;
 use crate::fingers::FingerState;
 use crate::plan::Plan;
@@ -11,6 +10,7 @@ use crate::recording::Progress;
 use crate::request::Tuning;
 use crate::simulated::Setting;
 use crate::statistics::Statistics;
+use crate::viewer_lease;
 
 /// A message to a viewer.
 #[derive(Clone, Debug, Serialize)]
@@ -106,7 +106,7 @@ impl Reply {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
     #[serde(flatten)]
-    pub(crate) authority: authority::Status,
+    pub(crate) viewer_lease: viewer_lease::Status,
     /// The stiffness of the arm during a hold.
     pub(crate) tuning: Tuning,
     /// Settings of the simulation; `None` if viewers cannot disturb the robot.

@@ -17,7 +17,6 @@ use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
-use crate::authority::ViewerId;
 use crate::describe::Hello;
 use crate::fingers::Fingers;
 use crate::frame;
@@ -26,6 +25,7 @@ use crate::plan::{Question, in_background};
 use crate::reply::{Reply, Status};
 use crate::request::Request;
 use crate::statistics::{Counts, Statistics};
+use crate::viewer_lease::ViewerId;
 
 /// Serves a viewer until the viewer disconnects, and then ends its hold.
 pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
@@ -238,7 +238,7 @@ async fn write(
                     continue;
                 }
                 let now = hub.now_ms();
-                let holding = status.borrow().authority.holding;
+                let holding = status.borrow().viewer_lease.holding;
                 let server = frame::Server {
                     ms: now,
                     holding,

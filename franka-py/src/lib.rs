@@ -12,7 +12,7 @@
 mod active;
 mod arm;
 mod arrays;
-mod asynchronous;
+mod asynchronous_control;
 mod batch;
 mod chunk;
 mod condition;
@@ -77,7 +77,7 @@ mod _native {
     #[pymodule_export]
     use crate::arrays::_row;
     #[pymodule_export]
-    use crate::asynchronous::AsynchronousControl;
+    use crate::asynchronous_control::AsynchronousControl;
     #[pymodule_export]
     use crate::condition::{
         Condition, Quantity, Then, cartesian_contact, collision, contact, elapsed, force, force_x,

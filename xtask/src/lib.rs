@@ -8,7 +8,7 @@
 //! | [`running`] | programs whose output is read while they run |
 //! | [`selection`] | selections of tests by package |
 //! | [`step`] | steps with headers, times and a summary |
-//! | [`suite`] | the steps of `cargo xtask test` |
+//! | [`test_steps`] | the steps of `cargo xtask test` |
 //! | [`workspace`] | directories of the workspace, and running a program |
 
 pub mod peers;
@@ -17,5 +17,5 @@ pub mod realtime;
 pub mod running;
 pub mod selection;
 pub mod step;
-pub mod suite;
+pub mod test_steps;
 pub mod workspace;

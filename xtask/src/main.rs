@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use lexopt::{Arg, Parser, ValueExt as _};
 use xtask::step;
-use xtask::suite::STEPS;
+use xtask::test_steps::STEPS;
 use xtask::workspace::Workspace;
 
 fn main() -> ExitCode {

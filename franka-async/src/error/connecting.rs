@@ -1,5 +1,4 @@
-//! Errors of connecting. If the robot already has a client, the error is `ConnectionClosed`; see
-//! `likely_taken`.
+//! Errors of connecting. A second client gets `ConnectionClosed`; see `is_second_client`.
 
 use std::io;
 use std::net::SocketAddr;
@@ -182,7 +181,7 @@ impl<P: Protocol> ConnectError<P> {
                 };
                 ("connect-incompatible-version", party)
             }
-            Self::ConnectionClosed { reason } if likely_taken(reason) => {
+            Self::ConnectionClosed { reason } if is_second_client(reason) => {
                 ("closed-by-peer", reason.party())
             }
             Self::ConnectionClosed { reason } => (reason.entry(), reason.party()),
@@ -208,7 +207,7 @@ pub struct Attempt<P: Protocol = Version> {
 }
 
 /// True if the connection ended as it does if the robot already has a client.
-fn likely_taken(reason: &CloseReason) -> bool {
+fn is_second_client(reason: &CloseReason) -> bool {
     matches!(
         reason,
         CloseReason::ClosedByPeer
@@ -220,7 +219,7 @@ fn likely_taken(reason: &CloseReason) -> bool {
 }
 
 fn closed(reason: &CloseReason) -> String {
-    if likely_taken(reason) {
+    if is_second_client(reason) {
         return format!(
             "the connection was closed before the first answer: another client may be connected, \
              or the address belongs to another device ({reason})"

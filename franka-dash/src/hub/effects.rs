@@ -1,4 +1,4 @@
-//! Performs the effects of requests that the authority has allowed.
+//! Performs the effects of requests that the lease has allowed.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -7,12 +7,12 @@ use franka_async::Robot;
 use tokio::sync::watch;
 
 use super::{Command, Hub};
-use crate::authority::{Effect, ViewerId};
 use crate::hold::{self, Ended, Hold, Settings, Task};
 use crate::plan::{Plan, Question};
 use crate::reply::Level;
 use crate::request::{Disturbance, GripperAction, Motion};
 use crate::source::Source;
+use crate::viewer_lease::{Effect, ViewerId};
 
 impl Hub {
     /// Performs an effect. If the effect is a question, returns the question, which the viewer's

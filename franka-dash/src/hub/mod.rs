@@ -11,7 +11,6 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use franka_async::model::collision::Obstacle;
 use tokio::sync::{Semaphore, broadcast, watch};
 
-use crate::authority::{Authority, Lost, Permissions, Refusal, Step, ViewerId};
 use crate::contact::Contact;
 use crate::fingers::Fingers;
 use crate::hold::{Hold, Settings};
@@ -22,6 +21,7 @@ use crate::reply::{Level, News, Status};
 use crate::request::{Request, Tuning};
 use crate::simulated::Simulated;
 use crate::source::Source;
+use crate::viewer_lease::{Lost, Permissions, Refusal, Step, ViewerId, ViewerLease};
 use taring::Tared;
 
 /// The state that all viewers share.
@@ -54,7 +54,7 @@ pub(crate) struct Hub {
 }
 
 struct Command {
-    authority: Authority,
+    viewer_lease: ViewerLease,
     hold: Option<Hold>,
     settings: watch::Sender<Settings>,
 }
@@ -101,7 +101,7 @@ impl Hub {
             fingers: gripper.map(Fingers::new),
             recordings: recordings.map(|folder| Recordings::new(folder, writing)),
             command: Mutex::new(Command {
-                authority: Authority::new(permissions, lease, start),
+                viewer_lease: ViewerLease::new(permissions, lease, start),
                 hold: None,
                 settings: watch::Sender::default(),
             }),
@@ -158,7 +158,9 @@ impl Hub {
             ended,
             effect,
             refusal,
-        } = command.authority.handle(now, viewer, round_trip, request);
+        } = command
+            .viewer_lease
+            .handle(now, viewer, round_trip, request);
         self.end(&mut command, ended);
         let question = effect.and_then(|effect| self.perform(&mut command, viewer, effect));
         self.publish(&command);
@@ -168,14 +170,14 @@ impl Hub {
     /// Processes the disconnection of a viewer. The viewer's hold ends.
     pub(crate) fn gone(&self, viewer: ViewerId) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
-        let ended = command.authority.gone(viewer);
+        let ended = command.viewer_lease.gone(viewer);
         self.end(&mut command, ended);
         self.publish(&command);
     }
 
     fn tick(&self) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
-        let ended = command.authority.tick(self.now());
+        let ended = command.viewer_lease.tick(self.now());
         self.end(&mut command, ended);
         self.publish(&command);
     }
@@ -183,9 +185,9 @@ impl Hub {
     /// Processes the end of the motion of hold `number`.
     fn motion_ended(&self, number: u64) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
-        let holding = command.authority.status().holding;
-        command.authority.ended(number);
-        if holding && !command.authority.status().holding {
+        let holding = command.viewer_lease.status().holding;
+        command.viewer_lease.ended(number);
+        if holding && !command.viewer_lease.status().holding {
             command.hold = None;
         }
         self.publish(&command);
@@ -202,16 +204,16 @@ impl Hub {
     /// Publishes changes to all viewers. When the lease of a commander ends, the commander's
     /// settings are reset.
     fn publish(&self, command: &Command) {
-        let authority = command.authority.status();
-        if authority.commander != self.status.borrow().authority.commander {
+        let viewer_lease = command.viewer_lease.status();
+        if viewer_lease.commander != self.status.borrow().viewer_lease.commander {
             let settings = &command.settings;
             settings.send_modify(|settings| settings.tuning = Tuning::default());
         }
         if let Some(fingers) = &self.fingers {
-            fingers.end_unless(authority.commander);
+            fingers.end_unless(viewer_lease.commander);
         }
         let newest = Status {
-            authority,
+            viewer_lease,
             tuning: command.settings.borrow().tuning,
             simulation: self.simulated.as_ref().map(Simulated::setting),
         };

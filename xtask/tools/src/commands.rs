@@ -16,7 +16,7 @@ use crate::names;
 use crate::page::Page;
 use xtask::realtime::succeeds;
 use xtask::step;
-use xtask::suite::STEPS;
+use xtask::test_steps::STEPS;
 use xtask::workspace::Workspace;
 
 /// Fails with every command that cannot be run.

@@ -1,4 +1,5 @@
-//! Computes the desired state of the current chunk at each time of the robot.
+//! Computes the desired state of the current chunk at each time of the robot, and blends a new
+//! chunk into the previous motion.
 
 use core::time::Duration;
 

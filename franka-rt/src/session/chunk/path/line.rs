@@ -35,7 +35,8 @@ impl Goal {
     /// [reaction](Self::reaction) or an object in the hand, or if [`check`](Self::check) refuses
     /// it. Keep-out regions are not considered.
     ///
-    /// This usually takes a millisecond, and rarely more than four. Do not call it on the control thread.
+    /// This usually takes a millisecond, and rarely more than four. Do not call it on the control
+    /// thread.
     ///
     /// # Errors
     /// Returns [`GoalError::NoLine`] if the arm cannot follow the line with any of these postures,

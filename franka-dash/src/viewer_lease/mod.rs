@@ -1,5 +1,5 @@
-//! The authority to move the arm, with its time limits, as a state machine without clock and
-//! sockets.
+//! The lease of a viewer who moves the arm, with its time limits, as a state machine without clock
+//! and sockets.
 //!
 //! ```text
 //!             take                begin                 hold 1, 2, 3 .. in time
@@ -8,7 +8,7 @@
 //!    └─ socket closed       └── end, gap, silence, stop, arrival, socket closed
 //! ```
 //!
-//! The inputs are requests and the time ([`Authority::handle`], [`Authority::tick`]). The outputs
+//! The inputs are requests and the time ([`ViewerLease::handle`], [`ViewerLease::tick`]). The outputs
 //! are effects and refusals. Time may count from any moment. If the time decreases, it counts as
 //! unchanged.
 //!
@@ -127,7 +127,7 @@ pub(crate) struct Step {
 
 /// The state machine; see the [module](self).
 #[derive(Debug)]
-pub(crate) struct Authority {
+pub(crate) struct ViewerLease {
     permissions: Permissions,
     lease: Lease,
     /// Instant that corresponds to the time zero.
@@ -153,8 +153,8 @@ struct Hold {
     heard: Duration,
 }
 
-impl Authority {
-    /// Creates an authority that uses the robot's `lease`. Times are relative to `start`.
+impl ViewerLease {
+    /// Creates the lease of the viewers, which uses the robot's `lease`. Times are relative to `start`.
     pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,

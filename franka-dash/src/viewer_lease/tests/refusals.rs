@@ -21,7 +21,7 @@ fn second_viewer_commands_only_once_the_lease_is_free() {
         assert_eq!(step.refusal, Some(Refusal::NoLease));
         assert_eq!((step.effect, step.ended), (None, None));
     }
-    assert!(server.authority.status().holding);
+    assert!(server.viewer_lease.status().holding);
 
     server.ask(COMMANDER, Request::Release {});
     assert_eq!(server.take(OTHER).refusal, None);
@@ -29,11 +29,11 @@ fn second_viewer_commands_only_once_the_lease_is_free() {
     server.pass(4000);
     server.ask(OTHER, Request::Alive {});
     server.pass(5000);
-    assert_eq!(server.authority.status().commander, Some(OTHER));
+    assert_eq!(server.viewer_lease.status().commander, Some(OTHER));
     server.pass(1);
-    assert_eq!(server.authority.status().commander, None);
+    assert_eq!(server.viewer_lease.status().commander, None);
     assert_eq!(server.take(COMMANDER).refusal, None);
-    server.authority.gone(COMMANDER);
+    server.viewer_lease.gone(COMMANDER);
     assert_eq!(server.take(OTHER).refusal, None);
 }
 
@@ -47,7 +47,7 @@ fn lease_of_another_service_keeps_viewers_from_commanding() {
     let refused = server.take(COMMANDER).refusal;
     let name = "a joystick".to_owned();
     assert_eq!(refused, Some(Refusal::Taken(Taken { name: name.clone() })));
-    let status = server.authority.status();
+    let status = server.viewer_lease.status();
     assert_eq!((status.commander, status.name), (None, Some(name)));
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
     drop(other);
@@ -81,9 +81,9 @@ fn lease_with_patience_outlasts_its_deadman() {
     server.take(COMMANDER);
     assert!(server.begin(COMMANDER).effect.is_some());
     assert_eq!(server.pass(30_150), None);
-    assert!(server.authority.status().holding);
+    assert!(server.viewer_lease.status().holding);
     assert_eq!(server.pass(1), Some(Lost::Silent));
-    assert_eq!(server.authority.status().commander, Some(COMMANDER));
+    assert_eq!(server.viewer_lease.status().commander, Some(COMMANDER));
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn a_begin_is_refused_with_the_reason() {
     let slow = Duration::from_millis(101);
     let begun = |server: &mut Server, round_trip| {
         let step = server
-            .authority
+            .viewer_lease
             .handle(now, COMMANDER, round_trip, begin(0.1));
         (step.effect.is_some(), step.refusal)
     };

@@ -1,4 +1,4 @@
-//! An authority and its viewers, without a clock and sockets, with arbitrary requests.
+//! A lease and its viewers, without a clock and sockets, with arbitrary requests.
 
 mod holds;
 mod refusals;
@@ -17,9 +17,9 @@ const UP: Motion = Motion::Translate {
     axes: Axes::Base,
 };
 
-/// An authority, and its simulated time.
+/// A lease, and its simulated time.
 struct Server {
-    authority: Authority,
+    viewer_lease: ViewerLease,
     /// Lease of the robot.
     lease: Lease,
     /// Moment at which the simulated time is zero.
@@ -41,7 +41,7 @@ impl Server {
     fn with(permissions: Permissions) -> Self {
         let (lease, start) = (Lease::default(), Instant::now());
         Self {
-            authority: Authority::new(permissions, lease.clone(), start),
+            viewer_lease: ViewerLease::new(permissions, lease.clone(), start),
             lease,
             start,
             now: Duration::ZERO,
@@ -50,7 +50,8 @@ impl Server {
 
     fn ask(&mut self, viewer: ViewerId, request: Request) -> Step {
         let round_trip = Some(Duration::from_millis(5));
-        self.authority.handle(self.now, viewer, round_trip, request)
+        self.viewer_lease
+            .handle(self.now, viewer, round_trip, request)
     }
 
     /// Advances the time, in the steps of the server's checks. Returns the reason if a hold was
@@ -59,7 +60,7 @@ impl Server {
         let mut lost = None;
         for _ in 0..milliseconds {
             self.now += Duration::from_millis(1);
-            lost = lost.or(self.authority.tick(self.now));
+            lost = lost.or(self.viewer_lease.tick(self.now));
         }
         lost
     }
@@ -89,7 +90,7 @@ impl Server {
 
     /// Asserts that the arm does not move, and that only another `Begin` can move it.
     fn assert_at_rest(&mut self) {
-        assert!(!self.authority.status().holding);
+        assert!(!self.viewer_lease.status().holding);
         for seq in 0..20 {
             let step = self.ask(COMMANDER, Request::Hold { seq });
             assert!(step.effect.is_none() && step.refusal.is_some(), "{step:?}");
@@ -126,7 +127,7 @@ fn arm_moves_only_on_messages_of_its_commander() {
             Request::Recover {},
         ];
         let request = requests.choose(&mut random).expect("some").clone();
-        let commander = server.authority.status().commander;
+        let commander = server.viewer_lease.status().commander;
         let step = server.ask(viewer, request.clone());
         if step.ended.is_some() || step.effect == Some(Effect::Stop) {
             moving = None;
@@ -150,10 +151,10 @@ fn arm_moves_only_on_messages_of_its_commander() {
             }
             assert!(moving.is_none() || server.now - fed <= DEADMAN);
         }
-        if random.random_bool(0.02) && server.authority.gone(viewer).is_some() {
+        if random.random_bool(0.02) && server.viewer_lease.gone(viewer).is_some() {
             assert_eq!(moving.take(), Some(viewer));
         }
-        assert_eq!(server.authority.status().holding, moving.is_some());
+        assert_eq!(server.viewer_lease.status().holding, moving.is_some());
     }
     assert!(begun > 1000, "{begun} holds are too few to say anything");
 }

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn a_hold_goes_on_while_messages_come_in_time() {
     let mut server = Server::holding(200);
-    assert!(server.authority.status().holding);
+    assert!(server.viewer_lease.status().holding);
     assert_eq!(server.pass(150), None);
     let kept = server.ask(COMMANDER, Request::Hold { seq: 201 });
     assert_eq!(kept, effect(Effect::KeepAlive));
@@ -19,11 +19,11 @@ fn a_hold_ends_by_silence_within_the_deadman() {
         assert_eq!(server.pass(151), Some(Lost::Silent));
         server.assert_at_rest();
         // Shown until the next hold.
-        assert!(server.authority.status().expired);
+        assert!(server.viewer_lease.status().expired);
         server.begin(COMMANDER);
-        assert!(!server.authority.status().expired);
+        assert!(!server.viewer_lease.status().expired);
         server.ask(COMMANDER, Request::End {});
-        assert!(!server.authority.status().expired);
+        assert!(!server.viewer_lease.status().expired);
     }
 }
 
@@ -82,25 +82,28 @@ fn a_hold_ends_when_it_is_let_go_released_replaced_or_stopped() {
         server.ask(COMMANDER, Request::Take { name }),
         Step::default()
     );
-    assert!(server.authority.status().holding);
+    assert!(server.viewer_lease.status().holding);
 }
 
 #[test]
 fn a_hold_ends_with_the_socket_of_its_commander_only() {
     let mut server = Server::holding(3);
-    assert_eq!(server.authority.gone(OTHER), None);
-    assert!(server.authority.status().holding);
-    assert_eq!(server.authority.gone(COMMANDER), Some(Lost::Disconnected));
-    assert_eq!(server.authority.status(), Status::default());
+    assert_eq!(server.viewer_lease.gone(OTHER), None);
+    assert!(server.viewer_lease.status().holding);
+    assert_eq!(
+        server.viewer_lease.gone(COMMANDER),
+        Some(Lost::Disconnected)
+    );
+    assert_eq!(server.viewer_lease.status(), Status::default());
     server.assert_at_rest();
 }
 
 #[test]
 fn a_motion_that_has_ended_ends_its_own_hold_only() {
     let mut server = Server::holding(3);
-    server.authority.ended(0);
-    assert!(server.authority.status().holding);
-    server.authority.ended(1);
+    server.viewer_lease.ended(0);
+    assert!(server.viewer_lease.status().holding);
+    server.viewer_lease.ended(1);
     server.assert_at_rest();
     assert_eq!(server.ask(COMMANDER, Request::End {}), Step::default());
 }
@@ -108,7 +111,7 @@ fn a_motion_that_has_ended_ends_its_own_hold_only() {
 #[test]
 fn a_clock_that_goes_back_ends_nothing_and_prolongs_nothing() {
     let mut server = Server::holding(3);
-    assert_eq!(server.authority.tick(Duration::ZERO), None);
+    assert_eq!(server.viewer_lease.tick(Duration::ZERO), None);
     assert_eq!(server.pass(151), Some(Lost::Silent));
 }
 
