@@ -14,12 +14,12 @@ pub mod seeds;
 
 #[path = "../../franka-dash/src/any_messages.rs"]
 mod any_messages;
-#[allow(dead_code)]
-#[path = "../../franka-dash/src/viewer_lease/mod.rs"]
-mod viewer_lease;
 #[allow(dead_code, unused_imports)]
 #[path = "../../franka-dash/src/request/mod.rs"]
 mod request;
+#[allow(dead_code)]
+#[path = "../../franka-dash/src/viewer_lease/mod.rs"]
+mod viewer_lease;
 
 /// Has the lease of a dashboard take messages: see `any_messages`.
 pub fn dashboard(bytes: &[u8]) {
