@@ -263,7 +263,9 @@
 //! ```no_run
 //! use std::time::Duration;
 //!
-//! # use franka_async::prelude::*;
+//! use franka_async::prelude::*;
+//! use franka_async::supervision::Policy;
+//!
 //! # async fn run() -> Result<(), franka_async::Error> {
 //! let policy = Policy::default().recover(3, Duration::from_secs(60));
 //! let robot = Robot::builder("172.16.0.2").supervise(policy).connect().await?;
