@@ -8,9 +8,9 @@
 //!    └─ socket closed       └── end, gap, silence, stop, arrival, socket closed
 //! ```
 //!
-//! The inputs are requests and the time ([`ViewerLease::handle`], [`ViewerLease::tick`]). The outputs
-//! are effects and refusals. Time may count from any moment. If the time decreases, it counts as
-//! unchanged.
+//! The inputs are requests and the time ([`ViewerLease::handle`], [`ViewerLease::tick`]). The
+//! outputs are effects and refusals. Time may count from any moment. If the time decreases, it
+//! counts as unchanged.
 //!
 //! The lease (the exclusive right to move the arm) belongs to the robot, so other services can have
 //! it too. During a hold, the arm moves while a viewer holds a button. When a hold has ended, only
@@ -154,7 +154,8 @@ struct Hold {
 }
 
 impl ViewerLease {
-    /// Creates the lease of the viewers, which uses the robot's `lease`. Times are relative to `start`.
+    /// Creates the lease of the viewers, which uses the robot's `lease`. Times are relative to
+    /// `start`.
     pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,
